@@ -14,6 +14,7 @@ use crate::claim::{Engine, Subject};
 use crate::claims;
 use crate::proof::smt::{in_doubles, of_path, of_paths};
 use crate::proof::{Fate, analyse, transcript};
+use crate::statement::Statement;
 
 /// Writes every proof as text into `directory`, one file `NAME.proof` each, and answers how many.
 ///
@@ -21,19 +22,12 @@ use crate::proof::{Fate, analyse, transcript};
 /// A statement that is not proved, and whatever keeps the files from being written.
 pub fn certificates(directory: &std::path::Path) -> io::Result<usize> {
     std::fs::create_dir_all(directory)?;
-    let mut seen = BTreeSet::new();
-    for check in claims::all().iter().flat_map(|claim| &claim.checks) {
-        let (Subject::Statement(statement), Engine::Proof, false) =
-            (check.subject, check.engine, check.control)
-        else {
-            continue;
-        };
-        if seen.insert(statement.name) {
-            let text = transcript(&statement).map_err(io::Error::other)?;
-            std::fs::write(directory.join(format!("{}.proof", statement.name)), text)?;
-        }
+    let statements = claims::statements(Engine::Proof);
+    for (name, statement) in &statements {
+        let text = transcript(statement).map_err(io::Error::other)?;
+        std::fs::write(directory.join(format!("{name}.proof")), text)?;
     }
-    Ok(seen.len())
+    Ok(statements.len())
 }
 
 /// Writes the SMT-LIB problems into `directory` and answers how many.
@@ -45,36 +39,33 @@ pub fn export(directory: &std::path::Path) -> io::Result<usize> {
     let (mut seen, mut count) = (BTreeSet::new(), 0);
     for check in claims::all().iter().flat_map(|claim| &claim.checks) {
         let Subject::Statement(statement) = check.subject else { continue };
-        if !matches!(check.engine, Engine::Proof | Engine::Doubles)
-            || !seen.insert((check.engine, statement.name))
-        {
+        if !seen.insert((check.engine, statement.name)) {
             continue;
         }
-        if check.engine == Engine::Doubles {
-            for (name, problem) in in_doubles(&statement, check.control) {
-                std::fs::write(directory.join(name), problem)?;
-                count += 1;
-            }
-            continue;
-        }
-        if !check.control {
-            for (name, problem) in of_paths(&statement) {
-                std::fs::write(directory.join(name), problem)?;
-                count += 1;
-            }
-            continue;
-        }
-        let analysis = analyse(&statement);
-        for (i, fate) in &analysis.fates {
-            let expected = match fate {
-                Fate::Impossible(_) => "unsat",
-                Fate::Refuted(_) => "sat",
-                Fate::Open => "unknown",
-            };
-            let (name, problem) = of_path(&statement, *i, &analysis.paths[*i], expected);
+        let problems = match (check.engine, check.control) {
+            (Engine::Doubles, control) => in_doubles(&statement, control),
+            (Engine::Proof, false) => of_paths(&statement),
+            (Engine::Proof, true) => of_control(&statement),
+            _ => Vec::new(),
+        };
+        count += problems.len();
+        for (name, problem) in problems {
             std::fs::write(directory.join(name), problem)?;
-            count += 1;
         }
     }
     Ok(count)
+}
+
+/// The failing paths of a control, with what this engine finds of each.
+fn of_control(statement: &Statement) -> Vec<(String, String)> {
+    let analysis = analyse(statement);
+    let one = |(i, fate): &(usize, Fate)| {
+        let expected = match fate {
+            Fate::Impossible(_) => "unsat",
+            Fate::Refuted(_) => "sat",
+            Fate::Open => "unknown",
+        };
+        of_path(statement, *i, &analysis.paths[*i], expected)
+    };
+    analysis.fates.iter().map(one).collect()
 }

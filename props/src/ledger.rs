@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use crate::claim::{Check, Claim, Engine, Subject};
+use crate::claim::{Check, Claim, Engine};
 use crate::claims;
 use crate::items::ITEMS;
 use crate::paper;
@@ -105,7 +105,7 @@ pub fn ledger() -> String {
         let _ = writeln!(text, "| {} | {} | {rows} | {evidence} | {missing} |", item.name, says);
     }
     claims.iter().for_each(|claim| text += &row(claim));
-    text + &proofs(&claims)
+    text + &proofs()
 }
 
 /// What holds by which engines, and what the receipts are about.
@@ -152,16 +152,8 @@ fn counted(checks: &[&Check]) -> String {
 }
 
 /// The proofs one by one, as `reference/check_certificates.py` reads them.
-fn proofs(claims: &[Claim]) -> String {
+fn proofs() -> String {
     let theorems = paper::theorems();
-    let mut found: BTreeMap<&str, Statement> = BTreeMap::new();
-    for check in claims.iter().flat_map(|claim| &claim.checks) {
-        if let (Subject::Statement(statement), Engine::Proof, false) =
-            (check.subject, check.engine, check.control)
-        {
-            found.insert(statement.name, statement);
-        }
-    }
     let line = |(name, statement): (&&str, &Statement)| {
         let paths = explore(statement.variables.len(), statement.symbolic);
         let refuted = paths.iter().filter(|path| path.verdict.fails()).count();
@@ -170,7 +162,7 @@ fn proofs(claims: &[Claim]) -> String {
         let classes = statement.classes.join(" | ");
         format!("- `{name}`: {}/{refuted}; {classes}{rocq}\n", paths.len())
     };
-    let lines: String = found.iter().map(line).collect();
+    let lines: String = claims::statements(Engine::Proof).iter().map(line).collect();
     format!(
         "\n## The proofs\n\nEach statement with its paths, those of them that a certificate refutes (11/6), and the classes that it reaches; with the \
          theorem that Rocq proved from the same certificates.\n\n{lines}"

@@ -35,6 +35,8 @@ pub mod page;
 #[cfg(not(kani))]
 pub mod paper;
 #[cfg(not(kani))]
+pub mod problems;
+#[cfg(not(kani))]
 pub mod proof;
 #[cfg(not(kani))]
 pub mod receipt;

@@ -6,11 +6,10 @@ use std::io;
 use std::path::Path;
 use std::sync::OnceLock;
 
-use crate::claim::{Engine, Subject};
+use crate::claim::Engine;
 use crate::claims;
 use crate::proof::rocq;
 use crate::solvers::{Receipt, hash};
-use crate::statement::Statement;
 
 const PAPER: &str = include_str!("../rocq/paper.v");
 
@@ -71,14 +70,7 @@ pub fn receipt() -> &'static Receipt {
 /// # Errors
 /// A predicate that is no claim or is not proved, and a planted mistake that is not in its theorem.
 pub fn files() -> Result<BTreeMap<String, String>, String> {
-    let claims = claims::all();
-    let checks = claims.iter().flat_map(|claim| &claim.checks);
-    let statements: BTreeMap<&str, Statement> = checks
-        .filter_map(|check| match (check.subject, check.engine, check.control) {
-            (Subject::Statement(s), Engine::Proof, false) => Some((s.name, s)),
-            _ => None,
-        })
-        .collect();
+    let statements = claims::statements(Engine::Proof);
     let mut paper = PAPER.split("\nTheorem ").next().unwrap_or_default().to_owned();
     let mut files = BTreeMap::new();
     for Theorem { name, text, predicate, planted } in theorems() {

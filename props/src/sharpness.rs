@@ -5,23 +5,23 @@
 //! M_1 = S^T S with at most two rows of S for each contact edge. Hence, with the solver's own matrices,
 //! 1/gamma0* = mu_max(S K^-1 S^T) and lambda_min = 1/(1 + gamma0 mu_max(S A^-1 S^T)) (docs/theory.md, 2.4).
 
-use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::fmt::Write;
 use std::path::Path;
-use std::sync::Arc;
 
 use faer::{Mat, Side};
 use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
 use signorini::fem::{
-    Condition, Diagonal, Discretization, Mesh, Perturbation, Problem, Rectangle, SharedFunction,
-    Structured, Trapezoid,
+    Diagonal, Discretization, Mesh, Perturbation, Problem, Rectangle, Structured, Trapezoid,
 };
 use signorini::io::Case;
 use signorini::kernel::{Material, Plane};
 use signorini::solve::factor::Factor;
 use signorini::solve::ordering::nested_dissection;
 use signorini::solve::{Degree, Gamma0, Method, discretize};
+
+use crate::claim::text;
+use crate::problems::{self, cells, floor, held, mapped, unloaded};
 
 /// What went wrong, in words.
 type Result<T> = std::result::Result<T, String>;
@@ -34,20 +34,11 @@ pub struct Specimen {
     pub problem: Problem,
 }
 
-fn constant(value: f64) -> SharedFunction {
-    Arc::new(move |_: [f64; 2]| value)
-}
-
 /// The body clamped on the named sides, in contact at the bottom.
 pub fn clamped(mesh: Mesh, material: Material<f64>, sides: &[&str]) -> Problem {
-    let mut conditions =
-        BTreeMap::from([("bottom".to_owned(), Condition::Contact { gap: constant(0.0) })]);
-    for &side in sides {
-        let nothing = [0, 1].map(|_| Some(constant(0.0)));
-        conditions.insert(side.to_owned(), Condition::Displacement(nothing));
-    }
-    let body_force = [0, 1].map(|_| constant(0.0));
-    Problem::new(mesh, material, body_force, conditions)
+    let mut problem = unloaded(mesh, material, [("bottom", floor(0.0))]);
+    problem.conditions.extend(sides.iter().map(|&side| (side.to_owned(), held([0.0; 2]))));
+    problem
 }
 
 /// The material with lambda and mu = 1.
@@ -63,14 +54,9 @@ fn rectangle(width: f64, n: usize, diagonal: Diagonal) -> Rectangle {
 /// The trapezoid (-3, 0), (3, 0), (0, 4), (e, 4), which attains the limit as e goes to 0.
 pub fn trapezoid(e: f64) -> Result<Problem> {
     let vertices = vec![[-3.0, 0.0], [3.0, 0.0], [0.0, 4.0], [e, 4.0]];
-    let named = [("bottom", [0, 1]), ("top", [2, 3])];
-    let named = named.map(|(name, edge)| (name.to_owned(), vec![edge]));
-    let mesh = Mesh::new(vertices, vec![[0, 1, 2], [1, 3, 2]], named).map_err(text)?;
+    let sides = [("bottom", [0, 1]), ("top", [2, 3])];
+    let mesh = problems::mesh(vertices, vec![[0, 1, 2], [1, 3, 2]], sides)?;
     Ok(clamped(mesh, material(1.0, Plane::Strain), &["top"]))
-}
-
-fn text(error: impl ToString) -> String {
-    error.to_string()
 }
 
 /// The bodies of the table.
@@ -85,22 +71,22 @@ fn specimens() -> Result<Vec<Specimen>> {
         let mesh = structured.mesh(perturbation).map_err(text)?;
         Ok::<_, String>(clamped(mesh, material, sides))
     };
-    let cells = |width, n, diagonal| Structured::Rectangle(rectangle(width, n, diagonal));
+    let rectangle_of = |width, n, diagonal| Structured::Rectangle(rectangle(width, n, diagonal));
     for n in [2, 4, 8, 16] {
-        let square = cells(1.0, n, Diagonal::Right);
+        let square = rectangle_of(1.0, n, Diagonal::Right);
         add(&format!("square, n = {n}"), body(square, None, strain(), &["top"])?);
     }
     for n in [4, 16] {
-        let square = cells(1.0, n, Diagonal::Crossed);
+        let square = rectangle_of(1.0, n, Diagonal::Crossed);
         add(&format!("square, crossed, n = {n}"), body(square, None, strain(), &["top"])?);
     }
-    let square = cells(1.0, 8, Diagonal::Right);
+    let square = rectangle_of(1.0, 8, Diagonal::Right);
     for amount in [0.2, 0.35] {
         let moved = Some(Perturbation { amount, seed: 1 });
         let name = format!("square, n = 8, vertices moved by up to {amount}");
         add(&name, body(square, moved, strain(), &["top"])?);
     }
-    add("cells 4:1, n = 8", body(cells(4.0, 8, Diagonal::Right), None, strain(), &["top"])?);
+    add("cells 4:1, n = 8", body(rectangle_of(4.0, 8, Diagonal::Right), None, strain(), &["top"])?);
     for lambda in [0.0, 100.0] {
         let name = format!("square, n = 8, lambda = {lambda}");
         add(&name, body(square, None, material(lambda, Plane::Strain), &["top"])?);
@@ -154,17 +140,9 @@ pub fn small_bodies() -> Result<Vec<Specimen>> {
 ///
 /// # Errors
 /// A mesh that is none.
-pub fn moved([nx, ny]: [usize; 2], seed: u64) -> Result<Mesh> {
-    let (width, height, diagonal) = (nx as f64, ny as f64, Diagonal::Right);
-    let cells = Rectangle { width, height, nx, ny, diagonal };
-    let mesh = cells.perturbed(0.2, seed).map_err(text)?;
-    let vertices = mesh.vertices().iter().map(|x| x.map(|c| (32.0 * c).round() / 32.0)).collect();
-    let mut named = Vec::new();
-    for name in mesh.boundary_names() {
-        let edges = mesh.edges_of(name).map_err(text)?.iter().map(|&edge| mesh.ends(edge));
-        named.push((name.to_owned(), edges.collect()));
-    }
-    Mesh::new(vertices, mesh.triangles().to_vec(), named).map_err(text)
+pub fn moved(size: [usize; 2], seed: u64) -> Result<Mesh> {
+    let mesh = cells(size, Diagonal::Right).perturbed(0.2, seed).map_err(text)?;
+    mapped(&mesh, |x| x.map(|c| (32.0 * c).round() / 32.0))
 }
 
 /// A length that stands in gamma = gamma0 h_T, of an edge's triangle (its diameter h_T) or of the edge.

@@ -202,26 +202,13 @@ mod tests {
         assert!(parsed("", "problem\thash\texpected\na\tb\tunsat\n").is_err());
     }
 
-    /// The statements that must hold, under these engines.
-    fn statements(of: Engine) -> Vec<Statement> {
-        let claims = claims::all();
-        let checks = claims.iter().flat_map(|claim| &claim.checks);
-        let checks = checks.filter(|check| check.engine == of && !check.control);
-        checks
-            .filter_map(|check| match check.subject {
-                Subject::Statement(statement) => Some(statement),
-                _ => None,
-            })
-            .collect()
-    }
-
     #[test]
     fn every_statement_in_doubles_is_decided_over_all_finite_doubles_by_a_receipt_that_is_not_stale()
      {
-        let statements = statements(Engine::Doubles);
+        let statements = claims::statements(Engine::Doubles);
         assert!(statements.len() >= 5, "{}", statements.len());
-        for statement in statements {
-            let opinion = opinion(&statement, Field::Doubles);
+        for statement in statements.values() {
+            let opinion = opinion(statement, Field::Doubles);
             let holds = matches!(opinion, Some(Opinion::Holds { .. }));
             assert!(holds, "{}: {opinion:?}; {AGAIN}", statement.name);
         }
@@ -230,8 +217,8 @@ mod tests {
     #[test]
     fn no_solver_contradicts_a_proof_and_no_receipt_of_one_is_stale() {
         let (mut asked, mut confirmed) = (0, 0);
-        for statement in statements(Engine::Proof) {
-            let Some(opinion) = opinion(&statement, Field::Reals) else { continue };
+        for statement in claims::statements(Engine::Proof).values() {
+            let Some(opinion) = opinion(statement, Field::Reals) else { continue };
             asked += 1;
             match opinion {
                 Opinion::Holds { .. } => confirmed += 1,

@@ -1,40 +1,25 @@
 //! At a point of a triangle the error of a displacement is that of the nodes.
 
-use std::sync::Arc;
-
-use signorini::fem::{Condition, Degree, Problem, SharedFunction};
+use signorini::fem::{Degree, Problem};
 use signorini::kernel::{Material, Plane};
 use signorini::solve::iterate::Evaluated;
 use signorini::solve::{Method, Solution, discretize};
 
 use super::assembled::solver::unsolved;
-use super::honesty::field;
 use crate::claim::{Outcome, text};
 use crate::proof::sampler::Random;
 use crate::{draws, sharpness};
 
-fn constant(value: f64) -> SharedFunction {
-    Arc::new(move |_: [f64; 2]| value)
-}
-
 /// A random displacement of a block of unequal triangles as a solution.
 fn anything(degree: Degree, problem: &Problem) -> Result<Solution, String> {
     let d = discretize(problem, &Method { degree, ..Method::default() }).map_err(text)?;
-    let drawn = field(d.space.nodes().len(), &mut Random::new(draws::seed()));
+    let drawn = Random::new(draws::seed()).field(d.space.nodes().len());
     Ok(Solution::new(&d, Evaluated::new(&d, drawn), unsolved()))
 }
 
 fn unequal() -> Result<Problem, String> {
-    let mesh = sharpness::moved([3, 2], 5)?;
-    let held = Condition::Displacement([0, 1].map(|_| Some(constant(0.0))));
-    let floor = Condition::Contact { gap: constant(0.0) };
-    let conditions = [("top", held), ("bottom", floor)];
-    Ok(Problem::new(
-        mesh,
-        Material::lame(1.5, 1.0, Plane::Strain),
-        [constant(0.0), constant(0.0)],
-        conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
-    ))
+    let material = Material::lame(1.5, 1.0, Plane::Strain);
+    Ok(sharpness::clamped(sharpness::moved([3, 2], 5)?, material, &["top"]))
 }
 
 /// At points of triangles a displacement that is moved at the nodes by no more than is said there moves by no more than

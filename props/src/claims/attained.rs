@@ -33,18 +33,10 @@ use signorini::solve::{Degree, Gamma0, Method, Settings, discretize, enclosure, 
 use super::certificate::factor_of;
 use super::error_bound::solved::{Draw as Floor, bodies};
 use crate::claim::{Check, Outcome, noticed, text};
+use crate::problems::{cells, diagonals, floor, held, mesh, problem, unloaded};
 use crate::proof::sampler::Random;
 use crate::verdict::Verdict;
 use crate::{draws, ensure, sharpness};
-
-fn constant(value: f64) -> SharedFunction {
-    Arc::new(move |_: [f64; 2]| value)
-}
-
-/// A number between 0 and 1.
-fn share(random: &mut Random) -> f64 {
-    random.below(1001) as f64 / 1000.0
-}
 
 /// How far the last of the two triangles is from being a line: kappa is attained up to this.
 const NARROW: f64 = 0.001;
@@ -63,7 +55,7 @@ fn attained(
     kappa: f64,
     matrix: f64,
 ) -> Result<[f64; 2], String> {
-    problem.conditions.insert("bottom".to_owned(), Condition::Contact { gap: constant(1.0) });
+    problem.conditions.insert("bottom".to_owned(), floor(1.0));
     let d = discretize(&problem, &sharpness::at_kappa(&problem, degree, kappa)?).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
     let factor = Factor::new(&system.matrix).map_err(text)?;
@@ -89,12 +81,9 @@ fn attained(
 fn soft_neighbour() -> Result<Problem, String> {
     let vertices = vec![[-3.0, 0.0], [3.0, 0.0], [0.0, 4.0], [4.0, 4.0]];
     let sides = [("bottom", [0, 1]), ("top", [2, 3])];
-    let sides = sides.map(|(name, edge)| (name.to_owned(), vec![edge]));
-    let mesh = Mesh::new(vertices, vec![[0, 1, 2], [1, 3, 2]], sides).map_err(text)?;
+    let mesh = mesh(vertices, vec![[0, 1, 2], [1, 3, 2]], sides)?;
     let [hard, soft] = [1.0, 1e-10].map(|mu| Material::lame(mu, mu, Plane::Strain));
-    let held = Condition::Displacement([0, 1].map(|_| Some(constant(0.0))));
-    let conditions = BTreeMap::from([("top".to_owned(), held)]);
-    let mut problem = Problem::new(mesh, hard, [constant(0.0), constant(0.0)], conditions);
+    let mut problem = unloaded(mesh, hard, [("top", held([0.0; 2]))]);
     problem.material = Materials::in_parts(hard, 2, [(soft, &[1][..])]);
     Ok(problem)
 }
@@ -143,16 +132,13 @@ const MODULUS: f64 = 1e6;
 fn held_beside_contact() -> Result<Problem, String> {
     let vertices = [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1]].map(|x| x.map(f64::from));
     let sides = [("floor", [0, 1]), ("left", [3, 0]), ("right", [2, 5])];
-    let sides = sides.map(|(name, edge)| (name.to_owned(), vec![edge]));
     let triangles = vec![[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]];
-    let mesh = Mesh::new(vertices.to_vec(), triangles, sides).map_err(text)?;
-    let held = || Condition::Displacement([0, 1].map(|_| Some(constant(0.0))));
-    let floor = Condition::Contact { gap: constant(-1.0) };
-    let conditions = [("floor", floor), ("left", held()), ("right", held())];
-    let conditions = conditions.map(|(name, condition)| (name.to_owned(), condition)).into();
+    let mesh = mesh(vertices.to_vec(), triangles, sides)?;
+    let still = || held([0.0; 2]);
+    let conditions = [("floor", floor(-1.0)), ("left", still()), ("right", still())];
     let [hard, soft] =
         [1.0, 1e-3].map(|mu| Material::lame(mu * MODULUS, mu * MODULUS, Plane::Strain));
-    let mut problem = Problem::new(mesh, soft, [constant(0.0), constant(0.0)], conditions);
+    let mut problem = unloaded(mesh, soft, conditions);
     problem.material = Materials::in_parts(soft, 4, [(hard, &[2][..])]);
     Ok(problem)
 }
@@ -306,8 +292,7 @@ fn factors(draw: &Held, degree: Degree, by: f64) -> Verdict {
     let (width, height) = (2.0 * nx as f64, ny as f64);
     let cells = Rectangle { width, height, nx, ny, diagonal: Diagonal::Left };
     let Ok(mesh) = cells.perturbed(0.2, draw.moved) else { return Verdict::Fails("a mesh") };
-    let contact = BTreeMap::from([("bottom".into(), Condition::Contact { gap: constant(0.0) })]);
-    let problem = Problem::new(mesh, draw.material, [constant(0.0), constant(0.0)], contact);
+    let problem = unloaded(mesh, draw.material, [("bottom", floor(0.0))]);
     let (mesh, space) = (&problem.mesh, Space::new(&problem.mesh, degree));
     let Ok(constraints) = Constraints::new(&problem, &space) else {
         return Verdict::Fails("there are no constraints");
@@ -331,7 +316,7 @@ fn factors(draw: &Held, degree: Degree, by: f64) -> Verdict {
         .map(|(triangle, at, d)| Hold {
             triangle,
             terms: vec![(at.map(Ball::point), d.map(Ball::point))],
-            most: share(&mut random),
+            most: random.share(),
         })
         .collect();
     let Some(korn) = Korn::new(&space, &problem.material, &constraints, &holds) else {
@@ -367,12 +352,11 @@ struct Pushed {
 }
 
 fn pushed_bodies() -> impl Strategy<Value = Pushed> {
-    let diagonal = prop::sample::select(&[Diagonal::Left, Diagonal::Right, Diagonal::Crossed]);
     let lambda = prop::sample::select(&[0.0, 1.0, 4.0]);
     let place = ([0.2_f64..0.8, -0.1_f64..0.0], [-0.05_f64..0.05, -0.5_f64..-0.2]);
     let load = [-0.1_f64..0.1, -0.2_f64..0.1];
     let cells = (1..=3_usize, 1..=2_usize);
-    (cells, diagonal, lambda, 3.0_f64..20.0, place, load, any::<u64>()).prop_map(
+    (cells, diagonals(), lambda, 3.0_f64..20.0, place, load, any::<u64>()).prop_map(
         |((nx, ny), diagonal, lambda, radius, (top, push), load, seed)| Pushed {
             cells: [nx, ny],
             diagonal,
@@ -388,10 +372,8 @@ fn pushed_bodies() -> impl Strategy<Value = Pushed> {
 
 impl Pushed {
     fn certificate(&self, degree: Degree) -> Result<Certificate, String> {
-        let [nx, ny] = self.cells;
-        let [width, height] = self.cells.map(|n| n as f64);
-        let mesh = Rectangle { width, height, nx, ny, diagonal: self.diagonal }.mesh();
-        let center = [self.top[0] * width, self.top[1] - self.radius];
+        let cells = cells(self.cells, self.diagonal);
+        let center = [self.top[0] * cells.width, self.top[1] - self.radius];
         let round = Obstacle::Circle { center, radius: self.radius, side: Side::Outside };
         let value =
             |value: f64| -> SharedFunction { Arc::new(signorini::io::Expression::from(value)) };
@@ -399,12 +381,9 @@ impl Pushed {
             ("top", Condition::Displacement(self.push.map(|u| Some(value(u))))),
             ("bottom", Condition::Obstacle("round".into(), round)),
         ];
-        let problem = Problem::new(
-            mesh.map_err(text)?,
-            Material::lame(self.lambda, 1.0, Plane::Strain),
-            self.load.map(value),
-            conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
-        );
+        let (mesh, material) =
+            (cells.mesh().map_err(text)?, Material::lame(self.lambda, 1.0, Plane::Strain));
+        let problem = problem(mesh, material, self.load.map(value), conditions);
         let method = Method { degree, ..Method::default() };
         let (solution, _) = solve(&problem, &method, &Settings::default()).map_err(text)?;
         Ok(certify(&problem, &solution).map_err(text)?.certificate)
@@ -441,7 +420,7 @@ fn with_another_v(certificate: &Certificate, random: &mut Random, size: f64) -> 
     }
     let mut other = certificate.clone();
     let mut step = |d: Option<&[f64; 2]>| {
-        let [s, t] = [0, 1].map(|_| size * share(random));
+        let [s, t] = [0, 1].map(|_| size * random.share());
         d.map_or([2.0 * s - size, 2.0 * t - size], |d| d.map(|c| -s * c))
     };
     let free = |held: &[Option<f64>; 2]| held.iter().all(Option::is_none);
@@ -506,7 +485,7 @@ fn raised_by_the_gap(draw: &Pushed, degree: Degree, share_of: f64) -> Verdict {
     for (e, edge) in other.edges.iter_mut().enumerate() {
         let Role::Contact { pressure: [p, q], gap, .. } = &mut edge.role else { continue };
         let [a, b] = edge.ends.map(|k| place(&certificate, k));
-        let [first, last, between] = [0, 1, 2].map(|_| share(&mut random));
+        let [first, last, between] = [0, 1, 2].map(|_| random.share());
         *gap = [gap[0] + first, gap[1] + last];
         let mut integral = (2.0 * *p * first + *p * last + *q * first + 2.0 * *q * last) / 6.0;
         if let Some(curved) = &mut other.curved {

@@ -14,7 +14,6 @@
 //! to (C2) are compared with the error itself. Where an edge is cut, u^h is irrational; one step makes a much better point
 //! u', whose own enclosure is so small that |u~ - u'| stands for the error.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use num_bigint::BigInt;
@@ -41,6 +40,8 @@ use crate::claim::{Check, Outcome, noticed, text};
 use crate::discrete::{CUT, Discrete, Nodal, exactly};
 use crate::elimination::{Matrix, combined, dot, solve_definite, square};
 use crate::numbers::Exact;
+use crate::problems::{cells, constant, diagonals, floor, held, mapped, mesh, problem, unloaded};
+use crate::proof::sampler::Random;
 use crate::verdict::Verdict;
 use crate::{draws, ensure, sharpness};
 
@@ -148,8 +149,7 @@ const BETWEEN: Gap = -4..=8;
 
 /// Problems on up to `most` cells along each side; data in sixty-fourths.
 fn problems(most: [usize; 2], gap: Gap) -> impl Strategy<Value = Draw> {
-    let diagonal = prop::sample::select(&[Diagonal::Left, Diagonal::Right, Diagonal::Crossed]);
-    let mesh = (1..=most[0], 1..=most[1], diagonal, prop::option::of(0_u64..1000));
+    let mesh = (1..=most[0], 1..=most[1], diagonals(), prop::option::of(0_u64..1000));
     let lambda = prop::sample::select(&[-0.5, 0.0, 1.0, 4.0]);
     let plane = prop::sample::select(&[Plane::Strain, Plane::Stress]);
     let part = |range: Gap| range.prop_map(|k| f64::from(k) / 64.0);
@@ -179,19 +179,12 @@ fn problems_by_contact(most: [usize; 2], steeper: f64) -> impl Strategy<Value = 
     })
 }
 
-fn constant(value: f64) -> SharedFunction {
-    Arc::new(move |_: [f64; 2]| value)
-}
-
 impl Draw {
     fn mesh(&self) -> Result<Mesh, String> {
         if let Some(seed) = self.moved {
             return sharpness::moved(self.cells, seed);
         }
-        let [nx, ny] = self.cells;
-        let (width, height) = (nx as f64, ny as f64);
-        let rectangle = Rectangle { width, height, nx, ny, diagonal: self.diagonal };
-        rectangle.mesh().map_err(text)
+        cells(self.cells, self.diagonal).mesh().map_err(text)
     }
 
     /// Whether the whole problem is turned by a right angle, counter-clockwise: forces of contact are along x then.
@@ -210,30 +203,20 @@ impl Draw {
         let ([g0, g1], turned) = (self.gap, self.is_turned());
         let along = move |[x, y]: [f64; 2]| if turned { y } else { x };
         let gap: SharedFunction = Arc::new(move |x: [f64; 2]| g0 + g1 * along(x));
-        let floor = ("bottom".to_owned(), Condition::Contact { gap });
-        let conditions = if self.by_contact {
-            let none = || [0.0; 2].map(constant);
+        let floor = ("bottom", Condition::Contact { gap });
+        let mesh = mapped(&self.mesh()?, |x| self.turned(x))?;
+        let material = Material::lame(self.lambda, 1.0, self.plane);
+        let load = self.turned(self.load).map(constant);
+        Ok(if self.by_contact {
+            let traction = [0.0; 2].map(constant);
             let guided = self.turned([1, 0]).map(|c| (c != 0).then(|| constant(0.0)));
-            let guided = Condition::Mixed { displacement: guided, traction: none() };
+            let guided = Condition::Mixed { displacement: guided, traction };
             let pressed = Condition::Traction(self.turned([0.0, -1.0]).map(constant));
-            BTreeMap::from([floor, ("left".to_owned(), guided), ("top".to_owned(), pressed)])
+            problem(mesh, material, load, [floor, ("left", guided), ("top", pressed)])
         } else {
-            let push = self.turned([0.0, -self.push]).map(|c| Some(constant(c)));
-            BTreeMap::from([floor, ("top".to_owned(), Condition::Displacement(push))])
-        };
-        let mesh = self.mesh()?;
-        let mut named = Vec::new();
-        for name in mesh.boundary_names() {
-            let edges = mesh.edges_of(name).map_err(text)?.iter().map(|&edge| mesh.ends(edge));
-            named.push((name.to_owned(), edges.collect::<Vec<_>>()));
-        }
-        let vertices = mesh.vertices().iter().map(|&x| self.turned(x)).collect();
-        Ok(Problem::new(
-            Mesh::new(vertices, mesh.triangles().to_vec(), named).map_err(text)?,
-            Material::lame(self.lambda, 1.0, self.plane),
-            self.turned(self.load).map(constant),
-            conditions,
-        ))
+            let pushed = held(self.turned([0.0, -self.push]));
+            problem(mesh, material, load, [floor, ("top", pushed)])
+        })
     }
 }
 
@@ -316,13 +299,8 @@ impl Asked {
 
 /// The field moved at random.
 fn moved(u: &[[f64; 2]], by: f64) -> Vec<[f64; 2]> {
-    let mut state = 1_u64;
-    let mut next = || {
-        state =
-            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        by * ((state >> 33) as f64 / f64::from(1_u32 << 31) - 0.5)
-    };
-    u.iter().map(|v| v.map(|c| c + next())).collect()
+    let steps = Random::new(1).field(u.len());
+    u.iter().zip(steps).map(|(u, d)| [0, 1].map(|c| u[c] + by * d[c] / 2.0)).collect()
 }
 
 /// The factor of A times a number.
@@ -595,18 +573,14 @@ fn a_third_of_what_contact_holds() -> Outcome {
 /// of the method, times `scale`, rounded up, and its bounds at the nodes are Korn's factors times the radius.
 fn proved_kappa(scale: f64) -> Outcome {
     let mut turning: f64 = 0.0;
+    let material = Material::lame(1.0, 1.0, Plane::Strain);
     for radius in [1.0, 3.0, 20.0] {
         let cells = Rectangle { width: 2.0, height: 1.0, nx: 3, ny: 2, diagonal: Diagonal::Left };
         let center = [0.7, -0.05 - radius];
         let round = Obstacle::Circle { center, radius, side: Side::Outside };
-        let held = Condition::Displacement([0.0, -0.1].map(|x| Some(constant(x))));
-        let conditions = [("top", held), ("bottom", Condition::Obstacle("round".into(), round))];
-        let problem = Problem::new(
-            cells.mesh().map_err(text)?,
-            Material::lame(1.0, 1.0, Plane::Strain),
-            [constant(0.0), constant(0.0)],
-            conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
-        );
+        let round = Condition::Obstacle("round".into(), round);
+        let conditions = [("top", held([0.0, -0.1])), ("bottom", round)];
+        let problem = unloaded(cells.mesh().map_err(text)?, material, conditions);
         for gamma0 in [Gamma0::Auto, Gamma0::Local(0.5)] {
             turning = turning.max(proved_kappa_on(Degree::One, &problem, gamma0, scale)?);
             turning = turning.max(proved_kappa_on(Degree::Two, &problem, gamma0, scale)?);
@@ -614,16 +588,10 @@ fn proved_kappa(scale: f64) -> Outcome {
     }
     // At a corner a triangle may have two edges on Gamma_C.
     for diagonal in [Diagonal::Left, Diagonal::Right] {
-        let cells = Rectangle { width: 2.0, height: 1.0, nx: 2, ny: 1, diagonal };
-        let held = Condition::Displacement([0.1, -0.1].map(|x| Some(constant(x))));
-        let contact = || Condition::Contact { gap: constant(0.0) };
-        let conditions = [("top", held), ("bottom", contact()), ("right", contact())];
-        let problem = Problem::new(
-            cells.mesh().map_err(text)?,
-            Material::lame(1.0, 1.0, Plane::Strain),
-            [constant(0.0), constant(0.0)],
-            conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
-        );
+        let mesh = cells([2, 1], diagonal).mesh().map_err(text)?;
+        let conditions =
+            [("top", held([0.1, -0.1])), ("bottom", floor(0.0)), ("right", floor(0.0))];
+        let problem = unloaded(mesh, material, conditions);
         proved_kappa_on(Degree::One, &problem, Gamma0::Auto, scale)?;
         proved_kappa_on(Degree::Two, &problem, Gamma0::Auto, scale)?;
     }
@@ -704,9 +672,7 @@ fn a_tenth() -> Outcome {
 /// (-1/2, 0), whose load is (-1, 0).
 fn triangle() -> Result<Problem, String> {
     let named = [("bottom", [0, 1]), ("left", [2, 0])];
-    let named = named.map(|(name, edge)| (name.to_owned(), vec![edge]));
-    let mesh = Mesh::new(vec![[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]], vec![[0, 1, 2]], named)
-        .map_err(text)?;
+    let mesh = mesh(vec![[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]], vec![[0, 1, 2]], named)?;
     let mut problem = sharpness::clamped(mesh, Material::lame(1.0, 1.0, Plane::Strain), &["left"]);
     problem.body_force = [constant(-0.5), constant(0.0)];
     Ok(problem)

@@ -16,6 +16,7 @@ use signorini::solve::system::System;
 use signorini::solve::{Degree, Method, discretize};
 
 use crate::claim::{Outcome, text};
+use crate::problems::mesh;
 use crate::verdict::Verdict;
 use crate::{draws, ensure, sharpness};
 
@@ -235,9 +236,9 @@ pub(super) fn korn(by: f64) -> Outcome {
         sharpness::small_bodies()?.into_iter().map(|body| body.problem).collect();
     let beam = Rectangle { width: 24.0, height: 1.0, nx: 24, ny: 1, diagonal: Diagonal::Right };
     bodies.push(sharpness::clamped(beam.mesh().map_err(text)?, strain(), &["left"]));
-    let named = [("top", [1, 2]), ("bottom", [0, 1])].map(|(n, e)| (n.to_owned(), vec![e]));
-    let tall = Mesh::new(vec![[0.0, 0.0], [0.3, 4.0], [-0.3, 4.0]], vec![[0, 1, 2]], named);
-    bodies.push(sharpness::clamped(tall.map_err(text)?, strain(), &["top"]));
+    let sides = [("top", [1, 2]), ("bottom", [0, 1])];
+    let tall = mesh(vec![[0.0, 0.0], [0.3, 4.0], [-0.3, 4.0]], vec![[0, 1, 2]], sides)?;
+    bodies.push(sharpness::clamped(tall, strain(), &["top"]));
     // Far from its support a slender body moves much further than one of its triangles lets it, and so does a soft one.
     let long = Rectangle { width: 512.0, height: 1.0, nx: 512, ny: 1, diagonal: Diagonal::Right };
     bodies.push(sharpness::clamped(long.mesh().map_err(text)?, strain(), &["left"]));

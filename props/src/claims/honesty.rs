@@ -13,12 +13,9 @@ use signorini::solve::system::System;
 use signorini::solve::{Method, discretize};
 
 use crate::claim::{Outcome, text};
+use crate::problems::{constant, held};
 use crate::proof::sampler::Random;
 use crate::{draws, sharpness};
-
-fn constant(value: f64) -> SharedFunction {
-    Arc::new(move |_: [f64; 2]| value)
-}
 
 /// The small bodies of row 9 under a load and a displacement of their upper side, half of them pressed on their obstacle.
 fn loaded_bodies() -> Result<Vec<(String, Problem)>, String> {
@@ -27,24 +24,18 @@ fn loaded_bodies() -> Result<Vec<(String, Problem)>, String> {
         let mut problem = body.problem;
         let down = if i % 2 == 0 { -1.0 } else { 1.0 };
         problem.body_force = [constant(0.3), constant(down)];
-        let moved = [Some(constant(0.05)), Some(constant(0.1 * down))];
         let displacement = |name: &str| name == "top" || name == "right";
         let sides: Vec<String> =
             problem.conditions.keys().filter(|name| displacement(name)).cloned().collect();
-        let held = BTreeMap::from([(sides[0].clone(), Condition::Displacement(moved))]);
+        let moved = BTreeMap::from([(sides[0].clone(), held([0.05, 0.1 * down]))]);
         // One side is moved: two that meet would have to agree.
         problem.conditions.retain(|name, _| !displacement(name));
-        problem.conditions.extend(held);
+        problem.conditions.extend(moved);
         let gap: SharedFunction = Arc::new(|[x, _]: [f64; 2]| 0.02 + 0.01 * x);
         problem.conditions.insert("bottom".to_owned(), Condition::Contact { gap });
         bodies.push((body.name, problem));
     }
     Ok(bodies)
-}
-
-/// Numbers between -1 and 1.
-pub(super) fn field(nodes: usize, random: &mut Random) -> Vec<[f64; 2]> {
-    (0..nodes).map(|_| [0, 1].map(|_| random.below(2001) as f64 / 1000.0 - 1.0)).collect()
 }
 
 /// a(u, v) by stresses in doubles, for a random u that is carried along by `by`, less a(u, v) in balls: its norm dual to |v|_a on
@@ -54,7 +45,7 @@ fn rounding_of_stresses(degree: Degree, problem: &Problem, by: f64) -> Result<f6
     let system = System::new(&d).map_err(text)?;
     let mut random = Random::new(draws::seed());
     let nodes = d.space.nodes().len();
-    let [heads, tails] = [0, 1].map(|_| field(nodes, &mut random));
+    let [heads, tails] = [0, 1].map(|_| random.field(nodes));
     let small = 2.0_f64.powi(-54);
     let u: Vec<[PreciseBall; 2]> = (0..nodes)
         .map(|i| {

@@ -169,7 +169,7 @@ fn sides(ladder: &Ladder, level: usize) -> Result<[f64; 3], String> {
 /// Theorem 3.5 on 5 meshes, 3 solutions, 2 kappas: `scale` multiplies the errors.
 fn bounds(scale: f64) -> Outcome {
     let [mut least, mut most] = [f64::INFINITY, 0.0_f64];
-    for ladder in rates::bodies_in_h2() {
+    for ladder in rates::bodies_in_h2()? {
         for kappa in [0.25, 0.5] {
             for level in 0..LEVELS {
                 let limit = ladder.outline(level).map_err(text)?.gamma.coercivity.limit();

@@ -7,13 +7,13 @@ use std::sync::Arc;
 use proptest::prelude::*;
 use signorini::fem::{Diagonal, Perturbation, Problem, Rectangle, Structured, Trapezoid};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::{Degree, Method};
-use signorini::study::Exact;
-use signorini::study::exact::{self, Corner, Kind, Singular, Smooth};
+use signorini::solve::{Degree, Method, Settings};
+use signorini::study::exact::{Corner, Kind, Singular, Smooth};
+use signorini::study::{Exact, Ladder};
 
 /// A solution with its parameters.
 #[derive(Clone, Debug)]
-enum Known {
+pub(super) enum Known {
     /// (a): exponents, c, amplitudes.
     Smooth([f64; 5]),
     /// (b): c, amplitude.
@@ -25,10 +25,11 @@ enum Known {
 /// A solution, the mesh and the element.
 #[derive(Clone, Debug)]
 pub(super) struct Sample {
-    known: Known,
-    lambda: f64,
-    n: usize,
-    moved: Option<u64>,
+    pub(super) known: Known,
+    pub(super) lambda: f64,
+    /// Cells a side.
+    pub(super) n: usize,
+    pub(super) moved: Option<u64>,
     pub(super) degree: Degree,
 }
 
@@ -58,36 +59,43 @@ pub(super) fn samples() -> impl Strategy<Value = Sample> {
 }
 
 impl Sample {
-    fn solution(&self) -> Option<Exact> {
+    /// The solution on finer and finer meshes, of which this one is the first.
+    pub(super) fn ladder(&self) -> Option<Ladder> {
         let material = Material::lame(self.lambda, 1.0, Plane::Strain);
-        Some(match self.known {
+        let n = self.n;
+        let square = Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal: Diagonal::Right };
+        let square = Structured::Rectangle(square);
+        let (d, t) = (Kind::Displacement, Kind::Traction);
+        let (solution, body, [left, right, top]): (Exact, _, _) = match self.known {
             Known::Smooth([k, m, c, ap, aq]) => {
-                Arc::new(Smooth { material, c, k, m, ap, aq, gap: Vec::new() })
+                let solution = Smooth { material, c, k, m, ap, aq, gap: Vec::new() };
+                (Arc::new(solution), square, [t, t, d])
             }
-            Known::Singular([c, amplitude]) => Arc::new(Singular { material, c, amplitude }),
-            Known::Corner(omega) => Arc::new(Corner::new(material, omega * PI)?),
+            Known::Singular([c, amplitude]) => {
+                (Arc::new(Singular { material, c, amplitude }), square, [d; 3])
+            }
+            Known::Corner(omega) => {
+                let wedge = Trapezoid { omega: omega * PI, n };
+                let solution = Corner::new(material, omega * PI)?;
+                (Arc::new(solution), Structured::Trapezoid(wedge), [t, d, d])
+            }
+        };
+        let kinds = [("left", left), ("right", right), ("top", top), ("bottom", Kind::Contact)];
+        Some(Ladder {
+            solution,
+            kinds: kinds.map(|(name, kind)| (name.to_owned(), kind)).into(),
+            body,
+            perturbation: self.moved.map(|seed| Perturbation { amount: 0.2, seed }),
+            method: self.method(),
+            settings: Settings::default(),
         })
     }
 
     /// The solution, and the problem that it solves.
     pub(super) fn problem(&self) -> Option<(Exact, Problem)> {
-        let (n, diagonal) = (self.n, Diagonal::Right);
-        let square =
-            Structured::Rectangle(Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal });
-        let (d, t) = (Kind::Displacement, Kind::Traction);
-        let (body, [left, right, top]) = match self.known {
-            Known::Smooth(_) => (square, [t, t, d]),
-            Known::Singular(_) => (square, [d; 3]),
-            Known::Corner(omega) => {
-                (Structured::Trapezoid(Trapezoid { omega: omega * PI, n }), [t, d, d])
-            }
-        };
-        let moved = self.moved.map(|seed| Perturbation { amount: 0.2, seed });
-        let kinds = [("left", left), ("right", right), ("top", top), ("bottom", Kind::Contact)];
-        let kinds = kinds.map(|(name, kind)| (name.to_owned(), kind)).into();
-        let solution = self.solution()?;
-        let problem = exact::problem(&solution, body.mesh(moved).ok()?, &kinds);
-        Some((solution, problem))
+        let ladder = self.ladder()?;
+        let problem = ladder.problem(0).ok()?;
+        Some((ladder.solution, problem))
     }
 
     pub(super) fn method(&self) -> Method {

@@ -53,7 +53,12 @@ pub mod theorem_3_4;
 pub mod variational_inequality;
 
 #[cfg(not(kani))]
-use crate::claim::Claim;
+use std::collections::BTreeMap;
+
+#[cfg(not(kani))]
+use crate::claim::{Claim, Engine, Subject};
+#[cfg(not(kani))]
+use crate::statement::Statement;
 
 /// All claims, in the order of the paper.
 #[cfg(not(kani))]
@@ -82,6 +87,19 @@ pub fn all() -> Vec<Claim> {
     ];
     claims.sort_by_key(|claim| claim.id.parse::<u32>().expect("the id of a row is a number"));
     claims
+}
+
+/// The statements that must hold by this engine, each once, by their names.
+#[cfg(not(kani))]
+pub fn statements(engine: Engine) -> BTreeMap<&'static str, Statement> {
+    let checks = all().into_iter().flat_map(|claim| claim.checks);
+    let asked = checks.filter(|check| check.engine == engine && !check.control);
+    asked
+        .filter_map(|check| match check.subject {
+            Subject::Statement(statement) => Some((statement.name, statement)),
+            _ => None,
+        })
+        .collect()
 }
 
 #[cfg(test)]

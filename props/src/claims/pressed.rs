@@ -7,18 +7,13 @@
 //! - its springs are those of P0(v)^2 / gamma;
 //! - where nothing that is pressed stops a motion, all displacements up to the next obstacle are solutions, and no others.
 
-use std::sync::Arc;
-
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
 use signorini::fem::contact_line::Coercivity;
 use signorini::fem::element::value_at;
 use signorini::fem::quadrature::gauss;
-use signorini::fem::{
-    Condition, ContactFace, Diagonal, Discretization, EdgeRule, Mesh, Problem, Rectangle,
-    SharedFunction,
-};
+use signorini::fem::{ContactFace, Diagonal, Discretization, EdgeRule, Problem, Rectangle};
 use signorini::kernel::PreciseBall;
 use signorini::kernel::contact_edge::integral_of_product;
 use signorini::kernel::{self, Material, Plane};
@@ -26,30 +21,16 @@ use signorini::solve::balls::lines;
 use signorini::solve::pressed::{Pressed, SHARES};
 use signorini::solve::{Degree, Method, Settings, solve};
 
-use super::honesty::field;
 use crate::claim::{Outcome, text};
 use crate::draws;
+use crate::problems::{cells, constant, floor, mapped, problem};
 use crate::proof::sampler::Random;
-
-fn constant(value: f64) -> SharedFunction {
-    Arc::new(move |_: [f64; 2]| value)
-}
-
-/// Between 0 and 1.
-fn number(random: &mut Random) -> f64 {
-    random.below(1001) as f64 / 1000.0
-}
 
 /// A square on its floor under its weight.
 fn square() -> Result<Problem, String> {
-    let cells = Rectangle { width: 1.0, height: 1.0, nx: 1, ny: 1, diagonal: Diagonal::Right };
-    let floor = Condition::Contact { gap: constant(0.0) };
-    Ok(Problem::new(
-        cells.mesh().map_err(text)?,
-        Material::lame(1.0, 1.0, Plane::Strain),
-        [0.0, -1.0].map(constant),
-        [("bottom".to_owned(), floor)].into(),
-    ))
+    let mesh = cells([1, 1], Diagonal::Right).mesh().map_err(text)?;
+    let material = Material::lame(1.0, 1.0, Plane::Strain);
+    Ok(problem(mesh, material, [0.0, -1.0].map(constant), [("bottom", floor(0.0))]))
 }
 
 /// A displacement, and what is known of it.
@@ -145,7 +126,7 @@ fn stays_on(degree: Degree, rule: EdgeRule, times: f64) -> Result<[usize; 2], St
     for draw in 0..400 {
         let mut value = || match draw {
             0 => 1.0,
-            _ => (4.0 * number(&mut random) - 1.0).powi(3),
+            _ => (4.0 * random.share() - 1.0).powi(3),
         };
         let u = at.field((0..nodes).map(|_| value()).collect());
         let p = at.p(&u);
@@ -267,7 +248,7 @@ fn springs_on(degree: Degree, scale: f64) -> Result<(), String> {
             return Err(format!("{points:?} points, P{p}: not pressed"));
         }
         let mut random = Random::new(draws::seed());
-        let v = field(d.space.nodes().len(), &mut random);
+        let v = random.field(d.space.nodes().len());
         let mut forces = vec![[PreciseBall::from(0); 2]; v.len()];
         pressed.add_springs(&at.lines, &balls(&v), &mut forces);
         let pairs = forces.iter().flatten().zip(v.as_flattened());
@@ -292,18 +273,10 @@ fn between_walls(gaps: [Option<f64>; 2], angle: f64) -> Result<Problem, String> 
     let mesh = cells.mesh().map_err(text)?;
     let (sin, cos) = angle.sin_cos();
     let turned = |[x, y]: [f64; 2]| [cos * x - sin * y, sin * x + cos * y];
-    let sides = ["bottom", "left", "right"];
-    let edges = |side: &str| -> Result<Vec<[usize; 2]>, String> {
-        Ok(mesh.edges_of(side).map_err(text)?.iter().map(|&edge| mesh.ends(edge)).collect())
-    };
-    let named = sides.iter().map(|side| Ok((side.to_string(), edges(side)?)));
-    let named = named.collect::<Result<Vec<_>, String>>()?;
-    let vertices = mesh.vertices().iter().map(|&x| turned(x)).collect();
-    let mesh = Mesh::new(vertices, mesh.triangles().to_vec(), named).map_err(text)?;
-    let walls = sides.into_iter().zip([Some(0.0), gaps[0], gaps[1]]);
-    let conditions = walls.filter_map(|(side, gap)| {
-        Some((side.to_owned(), Condition::Contact { gap: constant(gap?) }))
-    });
+    let mesh = mapped(&mesh, turned)?;
+    let walls = [("bottom", Some(0.0)), ("left", gaps[0]), ("right", gaps[1])];
+    let conditions =
+        walls.into_iter().filter_map(|(side, gap)| Some((side.to_owned(), floor(gap?))));
     let material = Material::lame(1.0, 1.0, Plane::Strain);
     Ok(Problem::new(mesh, material, turned([0.0, -0.1]).map(constant), conditions.collect()))
 }

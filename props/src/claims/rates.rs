@@ -6,18 +6,11 @@
 //! faster (0 < nu < 1/2), and the end of contact, in H^(5/2), where P1 has the rate 1 and P2 the rate 3/2 of Remark 3.7.
 //! The whole study is `tests/suite/convergence.rs` and `docs/convergence.md`.
 
-use std::collections::BTreeMap;
-use std::f64::consts::PI;
-use std::sync::Arc;
-
-use signorini::fem::{Diagonal, Rectangle, Structured, Trapezoid};
-use signorini::kernel::{Material, Plane};
-use signorini::solve::{Degree, Method, Settings};
-use signorini::study::exact::{Corner, Kind, Singular, Smooth};
+use signorini::solve::Degree;
 use signorini::study::ladder::fitted_slope;
-use signorini::study::{Errors, Exact};
-use signorini::study::{Ladder, Theorem};
+use signorini::study::{Errors, Ladder, Theorem};
 
+use super::known::{Known, Sample};
 use crate::claim::{Claim, Outcome, noticed, text};
 
 /// Cells a side on the coarsest mesh, and how many meshes.
@@ -27,54 +20,26 @@ const LEVELS: usize = 4;
 /// How far a slope fitted over these meshes may be from the rate: the next term of the error is still there at h = 1/32.
 const BAND: f64 = 0.08;
 
-const OMEGA: f64 = 0.75 * PI;
-
-fn material() -> Material<f64> {
-    Material::lame(1.0, 1.0, Plane::Strain)
+/// A solution for lambda = mu = 1.
+fn ladder(known: Known, degree: Degree) -> Result<Ladder, String> {
+    let sample = Sample { known, lambda: 1.0, n: COARSEST, moved: None, degree };
+    sample.ladder().ok_or_else(|| "there is no such solution".to_owned())
 }
 
-fn ladder(solution: Exact, body: Structured, sides: [Kind; 3], degree: Degree) -> Ladder {
-    let [left, right, top] = sides;
-    let kinds = [("bottom", Kind::Contact), ("left", left), ("right", right), ("top", top)];
-    Ladder {
-        solution,
-        kinds: BTreeMap::from(kinds.map(|(name, kind)| (name.to_owned(), kind))),
-        body,
-        perturbation: None,
-        method: Method { degree, ..Method::default() },
-        settings: Settings::default(),
-    }
-}
-
-/// The wedge, with its alpha.
-fn wedge(degree: Degree) -> Result<(Ladder, f64), String> {
-    let corner = Corner::new(material(), OMEGA).ok_or("no wedge of this angle")?;
-    let alpha = corner.alpha();
-    let body = Structured::Trapezoid(Trapezoid { omega: OMEGA, n: COARSEST });
-    let sides = [Kind::Traction, Kind::Displacement, Kind::Displacement];
-    Ok((ladder(Arc::new(corner), body, sides, degree), alpha))
+/// The wedge of 3 pi/4.
+fn wedge(degree: Degree) -> Result<Ladder, String> {
+    ladder(Known::Corner(0.75), degree)
 }
 
 /// The end of contact at c = 1/2.
-fn end_of_contact(degree: Degree) -> Ladder {
-    let (n, diagonal) = (COARSEST, Diagonal::Right);
-    let square = Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal };
-    let solution = Singular { material: material(), c: 0.5, amplitude: 1.0 };
-    ladder(Arc::new(solution), Structured::Rectangle(square), [Kind::Displacement; 3], degree)
-}
-
-/// A smooth solution with these exponents, contact for x < c.
-fn smooth([k, m, c]: [f64; 3]) -> Ladder {
-    let (n, diagonal) = (COARSEST, Diagonal::Right);
-    let square = Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal };
-    let solution = Smooth { material: material(), c, k, m, ap: 8.0, aq: 4.0, gap: Vec::new() };
-    let sides = [Kind::Traction, Kind::Traction, Kind::Displacement];
-    ladder(Arc::new(solution), Structured::Rectangle(square), sides, Degree::One)
+fn end_of_contact(degree: Degree) -> Result<Ladder, String> {
+    ladder(Known::Singular([0.5, 1.0]), degree)
 }
 
 /// Those in H^2, 4 cells a side on the coarsest mesh.
-pub fn bodies_in_h2() -> [Ladder; 3] {
-    [end_of_contact(Degree::One), smooth([4.0, 3.0, 0.5]), smooth([3.0, 2.0, 1.0 / 3.0])]
+pub(super) fn bodies_in_h2() -> Result<[Ladder; 3], String> {
+    let smooth = |[k, m, c]: [f64; 3]| ladder(Known::Smooth([k, m, c, 8.0, 4.0]), Degree::One);
+    Ok([end_of_contact(Degree::One)?, smooth([4.0, 3.0, 0.5])?, smooth([3.0, 2.0, 1.0 / 3.0])?])
 }
 
 /// The slopes of the energy, contact and normal stress errors.
@@ -103,7 +68,8 @@ fn near(what: &str, slope: f64, rate: f64) -> Result<(), String> {
 fn wedge_rates_are(offset: f64) -> Outcome {
     let mut seen = Vec::new();
     for degree in [Degree::One, Degree::Two] {
-        let (ladder, alpha) = wedge(degree)?;
+        let ladder = wedge(degree)?;
+        let alpha = ladder.solution.regularity() - 1.0;
         for slope in slopes(ladder)? {
             near("wedge", slope, alpha + offset)?;
             seen.push(format!("{slope:.2}"));
@@ -113,8 +79,8 @@ fn wedge_rates_are(offset: f64) -> Outcome {
 }
 
 fn energy_rates() -> Outcome {
-    let [p1, ..] = slopes(end_of_contact(Degree::One))?;
-    let [p2, ..] = slopes(end_of_contact(Degree::Two))?;
+    let [p1, ..] = slopes(end_of_contact(Degree::One)?)?;
+    let [p2, ..] = slopes(end_of_contact(Degree::Two)?)?;
     near("P1", p1, 1.0)?;
     near("P2", p2, 1.5)?;
     Ok(format!("energy slopes: P1 {p1:.2}, P2 {p2:.2}"))
@@ -124,7 +90,7 @@ fn energy_rates() -> Outcome {
 pub(super) fn both_sides(scale: f64) -> Outcome {
     let mut least = f64::INFINITY;
     for degree in [Degree::One, Degree::Two] {
-        for ladder in [wedge(degree)?.0, end_of_contact(degree)] {
+        for ladder in [wedge(degree)?, end_of_contact(degree)?] {
             let (_, problem, solution) = ladder.solve(1).map_err(text)?;
             let t = Theorem::new(&problem, &solution, &*ladder.solution).map_err(text)?;
             let (left, right) = (scale * t.left(), t.plain());
@@ -142,7 +108,7 @@ pub(super) fn both_sides(scale: f64) -> Outcome {
 fn nearest(other: impl Fn(&Theorem) -> f64) -> Outcome {
     let mut least = f64::INFINITY;
     for degree in [Degree::One, Degree::Two] {
-        for ladder in [wedge(degree)?.0, end_of_contact(degree)] {
+        for ladder in [wedge(degree)?, end_of_contact(degree)?] {
             let (_, problem, solution) = ladder.solve(1).map_err(text)?;
             let t = Theorem::new(&problem, &solution, &*ladder.solution).map_err(text)?;
             let (projection, other) = (t.projection.energy, other(&t));

@@ -32,6 +32,17 @@ pub struct Fact {
     pub sense: Sense,
 }
 
+impl Sense {
+    /// The relation to zero that says the same.
+    pub fn relation(self) -> &'static str {
+        match self {
+            Sense::Positive => ">",
+            Sense::Nonnegative => ">=",
+            Sense::Zero => "=",
+        }
+    }
+}
+
 impl Fact {
     fn new(polynomial: &Polynomial, signs: Signs) -> Fact {
         let (negated, sense) = match signs {
@@ -69,6 +80,15 @@ pub struct Path {
     pub variables: usize,
     /// How it was reached.
     pub steps: Vec<Step>,
+}
+
+impl Path {
+    /// The names of its variables: those of the unknowns, and `inverse_0`, ... of the inverses.
+    pub fn names(&self, unknowns: &[&str]) -> Vec<String> {
+        let inverses = (unknowns.len()..self.variables).map(|i| i - unknowns.len());
+        let unknowns = unknowns.iter().map(|name| (*name).to_owned());
+        unknowns.chain(inverses.map(|i| format!("inverse_{i}"))).collect()
+    }
 }
 
 /// More paths than this are a mistake in the predicate.

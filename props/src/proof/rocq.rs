@@ -68,12 +68,7 @@ impl Names<'_> {
     }
 
     fn fact(&self, fact: &Fact) -> String {
-        let relation = match fact.sense {
-            Sense::Positive => ">",
-            Sense::Nonnegative => ">=",
-            Sense::Zero => "=",
-        };
-        self.related(&fact.polynomial, relation)
+        self.related(&fact.polynomial, fact.sense.relation())
     }
 
     /// The product of facts and squares without its weight.

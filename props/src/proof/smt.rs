@@ -3,26 +3,20 @@
 
 use std::fmt::Write;
 
-use super::explorer::{Path, Sense, explore};
+use super::explorer::{Path, explore};
 use super::float::problems;
 use crate::statement::Statement;
 
-/// The facts of `path` as a problem in nonlinear real arithmetic. `names` are those of the unknowns; inverses follow as
-/// `inverse_0`, ...
+/// The facts of `path` as a problem in nonlinear real arithmetic. `names` are those of the unknowns.
 pub(super) fn problem(path: &Path, names: &[&str], head: &str) -> String {
-    let mut all: Vec<String> = names.iter().map(|n| (*n).to_owned()).collect();
-    all.extend((names.len()..path.variables).map(|i| format!("inverse_{}", i - names.len())));
+    let all = path.names(names);
     let mut text = format!("{head}(set-logic QF_NRA)\n");
     for name in &all {
         let _ = writeln!(text, "(declare-const {name} Real)");
     }
     for fact in &path.facts {
-        let sense = match fact.sense {
-            Sense::Positive => ">",
-            Sense::Nonnegative => ">=",
-            Sense::Zero => "=",
-        };
-        let _ = writeln!(text, "(assert ({sense} {} 0.0))", fact.polynomial.smt(&all));
+        let (relation, polynomial) = (fact.sense.relation(), fact.polynomial.smt(&all));
+        let _ = writeln!(text, "(assert ({relation} {polynomial} 0.0))");
     }
     text + "(check-sat)\n"
 }

@@ -20,7 +20,7 @@
 use std::fmt::Write;
 
 use super::certificate::Certificate;
-use super::explorer::{Path, Sense};
+use super::explorer::Path;
 use super::symbol::Step;
 use super::{Fate, analyse};
 use crate::Verdict;
@@ -36,7 +36,7 @@ pub fn transcript(statement: &Statement) -> Result<String, String> {
     let mut text = format!("statement {}\nunknowns {variables}\n", statement.name);
     let mut fates = analysis.fates.iter();
     for path in &analysis.paths {
-        let names = names(statement, path);
+        let names = path.names(statement.variables);
         steps(path, &names, &mut text);
         let _ = match path.verdict {
             Verdict::Holds(class) => writeln!(text, "holds {class}"),
@@ -52,12 +52,6 @@ pub fn transcript(statement: &Statement) -> Result<String, String> {
         };
     }
     Ok(text)
-}
-
-fn names(statement: &Statement, path: &Path) -> Vec<String> {
-    let unknowns = statement.variables.len();
-    let inverses = (unknowns..path.variables).map(|i| format!("inverse_{}", i - unknowns));
-    statement.variables.iter().map(|name| (*name).to_owned()).chain(inverses).collect()
 }
 
 fn steps(path: &Path, names: &[String], text: &mut String) {
@@ -77,12 +71,8 @@ fn steps(path: &Path, names: &[String], text: &mut String) {
 
 fn contradiction(path: &Path, certificate: &Certificate, names: &[String], text: &mut String) {
     for fact in &path.facts {
-        let relation = match fact.sense {
-            Sense::Positive => ">",
-            Sense::Nonnegative => ">=",
-            Sense::Zero => "=",
-        };
-        let _ = writeln!(text, "fact {relation} {}", fact.polynomial.text(names));
+        let (relation, polynomial) = (fact.sense.relation(), fact.polynomial.text(names));
+        let _ = writeln!(text, "fact {relation} {polynomial}");
     }
     for term in &certificate.terms {
         let facts: Vec<String> = term.facts.iter().map(usize::to_string).collect();

@@ -22,6 +22,8 @@ use crate::claims::known::Sample;
 use crate::ensure;
 use crate::naive::{Field, Hooke, integral_of_quadratics};
 use crate::numbers::Exact;
+use crate::problems::{cells, diagonals, problem};
+use crate::proof::sampler::Random;
 use crate::verdict::Verdict;
 
 /// a + b x, as a function that knows its degree.
@@ -50,13 +52,12 @@ pub(in crate::claims) struct Draw {
 }
 
 pub(in crate::claims) fn bodies(most: usize) -> impl Strategy<Value = Draw> {
-    let diagonal = prop::sample::select(&[Diagonal::Left, Diagonal::Right, Diagonal::Crossed]);
     let part = |range: std::ops::RangeInclusive<i32>| range.prop_map(|k| f64::from(k) / 16.0);
     let lambda = prop::sample::select(&[0.0, 1.0, 4.0]);
     let data = (part(-16..=16), part(-16..=4), part(-2..=4), part(-4..=4), part(-2..=2));
     let slope =
         prop_oneof![Just([0.0; 2]), (part(-16..=16), part(-4..=4)).prop_map(<[f64; 2]>::from)];
-    (1..=most, 1..=most, diagonal, lambda, data, part(-2..=2), part(0..=8), slope).prop_map(
+    (1..=most, 1..=most, diagonals(), lambda, data, part(-2..=2), part(0..=8), slope).prop_map(
         |(nx, ny, diagonal, lambda, (fx, fy, g0, g1, ux), uy, pressure, slope)| Draw {
             cells: [nx, ny],
             diagonal,
@@ -86,12 +87,9 @@ impl Draw {
             ("left", Condition::Pressure(affine(self.pressure, 0.0))),
             ("bottom", Condition::Contact { gap: affine(self.gap[0], self.gap[1]) }),
         ];
-        Ok(Problem::new(
-            mesh.map_err(text)?,
-            Material::lame(self.lambda, 1.0, Plane::Strain),
-            [0, 1].map(|c| affine(self.load[c], self.slope[c])),
-            conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
-        ))
+        let load = [0, 1].map(|c| affine(self.load[c], self.slope[c]));
+        let material = Material::lame(self.lambda, 1.0, Plane::Strain);
+        Ok(problem(mesh.map_err(text)?, material, load, conditions))
     }
 
     pub(in crate::claims) fn certified_with(
@@ -274,13 +272,10 @@ pub(super) fn raised_by_a_perturbation(draw: &Draw, size: f64, factor: f64) -> V
         let problem = draw.problem()?;
         let solved = solve(&problem, &Method::default(), &Settings::default());
         let (solution, _) = solved.map_err(text)?;
-        let mut state = 7_u64;
-        let mut noise = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            size * ((state >> 33) as f64 / f64::from(1_u32 << 31) - 0.5)
-        };
-        let field: Vec<[f64; 2]> =
-            solution.displacement.iter().map(|u| u.map(|u| u + noise())).collect();
+        let steps = Random::new(7).field(solution.displacement.len()).into_iter();
+        let field: Vec<[f64; 2]> = (solution.displacement.iter().zip(steps))
+            .map(|(u, d)| [0, 1].map(|c| u[c] + size * d[c] / 2.0))
+            .collect();
         let own = certify(&problem, &solution).map_err(text)?;
         let other = certify_field(&problem, &solution, &field).map_err(text)?;
         let apart = distance(&problem, &solution.displacement, &field);
@@ -303,17 +298,18 @@ pub(super) struct Patch {
 }
 
 pub(super) fn patches() -> impl Strategy<Value = Patch> {
-    let diagonal = prop::sample::select(&[Diagonal::Left, Diagonal::Right, Diagonal::Crossed]);
     let lambda = prop::sample::select(&[0.0, 1.0, 4.0]);
     let part = || (-8..=8_i32).prop_map(|k| f64::from(k) / 16.0);
     let all = prop::collection::vec(part(), 12);
-    (1..=3_usize, 1..=3_usize, diagonal, lambda, all).prop_map(|(nx, ny, diagonal, lambda, a)| {
-        let mut u = [0, 1].map(|c| std::array::from_fn(|k| a[6 * c + k]));
-        // sigma_xy = 0 and sigma_yy < 0 where y = 0.
-        (u[1][1], u[0][4]) = (-u[0][2], -2.0 * u[1][3]);
-        u[1][2] -= 16.0;
-        Patch { cells: [nx, ny], diagonal, lambda, u }
-    })
+    (1..=3_usize, 1..=3_usize, diagonals(), lambda, all).prop_map(
+        |(nx, ny, diagonal, lambda, a)| {
+            let mut u = [0, 1].map(|c| std::array::from_fn(|k| a[6 * c + k]));
+            // sigma_xy = 0 and sigma_yy < 0 where y = 0.
+            (u[1][1], u[0][4]) = (-u[0][2], -2.0 * u[1][3]);
+            u[1][2] -= 16.0;
+            Patch { cells: [nx, ny], diagonal, lambda, u }
+        },
+    )
 }
 
 impl Patch {
@@ -325,9 +321,8 @@ impl Patch {
     }
 
     fn certified(&self, degree: Degree) -> Result<Continuous, String> {
-        let [width, height] = self.cells.map(|n| n as f64);
-        let [nx, ny] = self.cells;
-        let mesh = Rectangle { width, height, nx, ny, diagonal: self.diagonal }.mesh();
+        let cells = cells(self.cells, self.diagonal);
+        let (mesh, width) = (cells.mesh(), cells.width);
         let [a, b] = self.u;
         // sigma_xx and sigma_xy of the sides, by their multiples of 1, x, y.
         let l = self.lambda;
@@ -352,12 +347,8 @@ impl Patch {
         let of_divergence = [2.0 * a[3] + b[4], a[4] + 2.0 * b[5]];
         let force =
             |c: usize| affine(-(laplacian[c] + (self.lambda + 1.0) * of_divergence[c]), 0.0);
-        let problem = Problem::new(
-            mesh.map_err(text)?,
-            Material::lame(self.lambda, 1.0, Plane::Strain),
-            [0, 1].map(force),
-            conditions.map(|(name, condition)| (name.to_owned(), condition)).into(),
-        );
+        let material = Material::lame(self.lambda, 1.0, Plane::Strain);
+        let problem = problem(mesh.map_err(text)?, material, [0, 1].map(force), conditions);
         let method = Method { degree, ..Method::default() };
         let (solution, _) = solve(&problem, &method, &Settings::default()).map_err(text)?;
         certify(&problem, &solution).map_err(text)
