@@ -96,9 +96,13 @@ fn runner(cases: u32, round: u32) -> TestRunner {
 /// Under this name the draws are counted of which a predicate says nothing.
 const NOT_MET: &str = "hypothesis not met";
 
-/// So many rounds are drawn at most until some draw met the hypothesis and each class was hit. A class of one draw in ten, and
+/// So many rounds are drawn at most until enough draws met the hypothesis and each class was hit. A class of one draw in ten, and
 /// ten draws a round: it is missed by all of them once in 10^18 seeds; by the first alone, once in three.
 const ROUNDS: u32 = 40;
+
+/// The same for a statement over rationals, and how many draws are enough: few meet a hypothesis of several comparisons.
+const ROUNDS_OF_RATIOS: u32 = 1000;
+const ENOUGH_RATIOS: u32 = 100;
 
 /// Draws `cases` times, runs the predicate, in a scope of exact numbers, and counts the classes; as often again while no draw
 /// met the hypothesis or a class was not hit.
@@ -111,12 +115,26 @@ pub fn hold<D: Debug>(
     classes: &[&'static str],
     predicate: impl Fn(&D) -> Verdict,
 ) -> Result<String, String> {
+    hold_until([ROUNDS, 1], cases, strategy, classes, predicate)
+}
+
+/// The same in at most so many rounds, until so many draws met the hypothesis.
+fn hold_until<D: Debug>(
+    [rounds, enough]: [u32; 2],
+    cases: u32,
+    strategy: impl Strategy<Value = D>,
+    classes: &[&'static str],
+    predicate: impl Fn(&D) -> Verdict,
+) -> Result<String, String> {
     let counts: RefCell<BTreeMap<&'static str, u32>> = RefCell::default();
     let replays = replays();
     let missed = || classes.iter().find(|&&class| !counts.borrow().contains_key(class));
-    let met = || counts.borrow().keys().any(|&class| class != NOT_MET);
+    let met = || -> u32 {
+        let counts = counts.borrow();
+        counts.iter().filter(|(class, _)| **class != NOT_MET).map(|(_, count)| count).sum()
+    };
     let mut drawn = 0;
-    for round in 0..ROUNDS {
+    for round in 0..rounds {
         let runs = Cell::new(0);
         let result = runner(cases, round).run(&strategy, |data| {
             runs.set(runs.get() + 1);
@@ -137,13 +155,13 @@ pub fn hold<D: Debug>(
             Err(TestError::Abort(why)) => return Err(why.to_string()),
             Ok(()) => drawn += cases,
         }
-        if met() && missed().is_none() {
+        if met() >= enough && missed().is_none() {
             break;
         }
     }
     let (met, missed) = (met(), missed());
     let counts = counts.borrow();
-    if !met {
+    if met == 0 {
         return Err(format!("no draw met the hypothesis: {counts:?}"));
     }
     if let Some(class) = missed {
@@ -276,7 +294,8 @@ fn at_ratios(statement: &Statement, values: &[(i64, i64)]) -> Verdict {
 /// As [`hold`].
 pub fn hold_exactly(statement: &Statement) -> Result<String, String> {
     let strategy = ratios(statement.variables.len());
-    hold(DRAWS, strategy, statement.classes, |v| at_ratios(statement, v))
+    let until = [ROUNDS_OF_RATIOS, ENOUGH_RATIOS];
+    hold_until(until, DRAWS, strategy, statement.classes, |v| at_ratios(statement, v))
 }
 
 /// Tests a statement over all finite doubles.

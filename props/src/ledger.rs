@@ -35,7 +35,7 @@ row has **controls**: planted mistakes, which the same check must reject.
 | --- | --- | --- |
 | Rocq | the reals | the statement, written by hand in `props/rocq/paper.v`, is a theorem: neither the predicate nor the engine that found its proof is trusted |
 | proof | polynomials over Q | every comparison forks the path, and each path that fails contradicts itself, by a certificate (a sum of products of facts and squares that is positive and zero): the statement holds over every ordered field, so over the reals |
-| exact | rationals | random data without a tolerance, 500 draws of a statement |
+| exact | rationals | random data without a tolerance, 500 draws of a statement and more until 100 of them meet its hypothesis |
 | doubles | f64 | random finite doubles with edge values and ties, 20,000 draws; or a comparison with exact rationals and a stated bound, or with intervals rounded outwards |
 | Kani | f64, small integers | the bounded model checker has decided a harness for all numbers that it ranges over, by a receipt that is about these very sources |
 | all cases | bits, bytes | each of at most 2^20 cases is run |

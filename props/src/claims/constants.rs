@@ -185,19 +185,6 @@ mod row {
     use super::*;
     use crate::claim::Claim;
     use crate::claims::interpolation;
-    use crate::numbers::Exact;
-
-    /// Lengths of edges that belong to a triangle, and sigma rho_T not below the longest.
-    fn onto_triangles(v: &mut [Exact]) {
-        let one = Exact::from(1);
-        for value in v.iter_mut() {
-            *value = value.abs() + one / Exact::from(7);
-        }
-        let [x, y, z] = [v[0], v[1], v[2]];
-        (v[0], v[1], v[2]) = (y + z, z + x, x + y);
-        let longest = larger(larger(v[0], v[1]), v[2]);
-        v[4] = longest / v[3] + v[4] - one / Exact::from(7);
-    }
 
     /// The row of the constants.
     pub fn claim() -> Claim {
@@ -215,7 +202,7 @@ mod row {
                     proved two_edges_are_as_long_as_the_third[bx, by, cx, cy, p, q, r] about "(11)"
                         hints(|v| vec![v[0] * v[3] - v[1] * v[2]]);
                     proved + tested shape_regularity_bounds_edge_and_diameter_by_the_area[a, b, c, rho, sigma]
-                        about "Lemma 3.2", "(11)" prepared(onto_triangles);
+                        about "Lemma 3.2", "(11)";
                     proved the_constant_of_11_depends_on_shape_and_material_alone[diameter, length, area, sigma, lambda, mu]
                         about "Lemma 3.2", "(11)";
                     proved lemma_3_2_holds_with_constants_without_h[n, a, s, contact, gamma0, limit, c, alpha, most]

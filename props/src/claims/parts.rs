@@ -312,14 +312,6 @@ fn the_bound_11_holds() -> Outcome {
     })
 }
 
-/// Puts a unit vector with a cosine that is not negative at a place of the data.
-fn put_unit(v: &mut [Exact], at: usize) {
-    // A tangent between 0 and 1: a cosine that is not negative.
-    let t = v[at].abs();
-    let t = if t > Exact::from(1) { Exact::from(1) / t } else { t };
-    [v[at], v[at + 1]] = t.on_circle();
-}
-
 // Materials.
 
 /// A bar of two materials held at its sides: the stress along it is the pressure in both, and each part has no shear.
@@ -377,22 +369,19 @@ pub fn claim() -> Claim {
         single: None,
         checks: [
             statements! {
-                proved traction_of_a_shape_is_d_sigma_n[gx, gy, vx, vy, nx, ny, dx, dy, lambda, mu]
-                    prepared(|v| put_unit(v, 4));
+                proved traction_of_a_shape_is_d_sigma_n[gx, gy, vx, vy, nx, ny, dx, dy, lambda, mu];
                 proved traction_along_any_direction_is_bounded_by_the_energy[xx, xy, yx, yy, nx, ny, dx, dy, lambda, mu]
                     hints(|v| across_and_strains(take(v)).to_vec());
                 proved traction_along_a_turning_direction_is_bounded_by_its_factor[a, b, s1, r, c, s]
-                    about "Lemma 3.2", "(11)" hints(|v| squared(take(v)).to_vec()) prepared(|v| put_unit(v, 4));
-                proved the_turning_factor_is_attained[a, c, s] prepared(|v| put_unit(v, 1));
+                    about "Lemma 3.2", "(11)" hints(|v| squared(take(v)).to_vec());
+                proved the_turning_factor_is_attained[a, c, s];
                 proved traction_of_p1_needs_no_factor[a, b, c, s] about "Lemma 3.2", "(11)"
-                    hints(|v| { let [a, b, c, s] = take(v); vec![a - (a * c + b * s), b * c - a * s] })
-                    prepared(|v| put_unit(v, 2));
+                    hints(|v| { let [a, b, c, s] = take(v); vec![a - (a * c + b * s), b * c - a * s] });
                 proved a_bar_of_two_materials_has_one_pressure[p, lambda, mu, other, nu];
                 proved means_by_hats_keep_integral_and_bounds[s, t, v, w, m];
                 refuted control_shear_modulus_for_the_stiffness[xx, yy, dx, dy, lambda, mu]
                     fails "along * along <= (dx * dx + dy * dy) * mu * energy_density(stress, g)";
-                refuted control_no_factor_for_a_turning_direction[a, b, s1, r, c, s] fails "along <= whole"
-                    prepared(|v| put_unit(v, 4));
+                refuted control_no_factor_for_a_turning_direction[a, b, s1, r, c, s] fails "along <= whole";
             },
             vec![
                 exact!("functionals_along_directions_are_their_definitions_and_with_n_the_papers" => functionals_are_their_definitions()),

@@ -295,18 +295,6 @@ mod row {
     use super::*;
     use crate::claim::{Claim, Outcome, model_checked};
     use crate::draws;
-    use crate::numbers::Exact;
-
-    /// Some of the data that violate (2) are moved onto it, the others stay: penetration where sigma_n < 0 becomes contact,
-    /// tension at a gap becomes no force where gamma > 1.
-    fn onto_equation_5(v: &mut [Exact]) {
-        let (zero, one) = (Exact::from(0), Exact::from(1));
-        if v[0] > v[1] && v[2] < zero {
-            v[0] = v[1];
-        } else if v[0] <= v[1] && v[2] > zero && v[3] > one {
-            v[2] = zero;
-        }
-    }
 
     /// u > 0 with s = -\[u - s\]+ in doubles: why Proposition 2.1 is stated over R and scaled for doubles.
     fn kept_counterexample() -> Outcome {
@@ -340,12 +328,11 @@ mod row {
                 statements! {
                     proved + tested conditions_2_are_equation_5[u_n, g, sigma_n, gamma]
                         : "contact", "gap", "touching without force", "neither holds"
-                        about "(2)", "Proposition 2.1", "(5)" prepared(onto_equation_5);
+                        about "(2)", "Proposition 2.1", "(5)";
                     proved + tested contact_functions_are_their_definitions[u_n, g, sigma_n, gamma]: "pressed", "open"
                         about "(5)", "P_gamma, A_gamma";
                     proved + tested violation_is_zero_exactly_where_2_holds[u_n, g, sigma_n, gamma]
-                        : "contact", "gap", "touching without force", "neither holds" about "(2)"
-                        prepared(onto_equation_5);
+                        : "contact", "gap", "touching without force", "neither holds" about "(2)";
                     proved scaled_conditions_are_the_scaled_equation[u, s]
                         : "contact", "gap", "touching without force", "neither holds";
                     refuted_in_doubles scaled_conditions_are_the_scaled_equation[u, s] fails "conditions_2 == equation";
@@ -381,11 +368,9 @@ mod row {
             single: None,
             checks: statements! {
                 proved + tested equation_5_does_not_depend_on_gamma[u_n, g, sigma_n, gamma, other]
-                    : "contact", "gap", "touching without force", "neither holds" about "Remark 2.2"
-                    prepared(onto_equation_5);
+                    : "contact", "gap", "touching without force", "neither holds" about "Remark 2.2";
                 proved conditions_2_are_equation_5[u_n, g, sigma_n, gamma]
-                    : "contact", "gap", "touching without force", "neither holds" about "Remark 2.2"
-                    prepared(onto_equation_5);
+                    : "contact", "gap", "touching without force", "neither holds" about "Remark 2.2";
                 refuted control_gamma_of_any_sign[u_n, g, sigma_n, gamma] fails "conditions_2 == equation_5";
                 refuted control_gamma_may_be_zero[u_n, g, sigma_n, gamma] fails "division by zero";
             },

@@ -154,60 +154,6 @@ mod row {
     use crate::draws;
     use crate::numbers::Exact;
 
-    /// u_n = g where the force is not zero, and the other signs.
-    fn onto_contact(x: &mut [Exact]) {
-        let zero = Exact::from(0);
-        x[3] = -x[3].abs();
-        x[4] = -x[4].abs();
-        if x[1] > x[2] {
-            x.swap(1, 2);
-        }
-        if x[0] > x[2] {
-            x[0] = x[2];
-        } else {
-            x[3] = zero;
-        }
-    }
-
-    fn onto_the_gap(x: &mut [Exact]) {
-        x[3] = x[3].abs() + Exact::from(1);
-        x[0] = x[1] - x[3] - x[0].abs();
-        x[2] = -x[2].abs();
-    }
-
-    fn onto_the_pressure(x: &mut [Exact]) {
-        x[3] = x[3].abs() + Exact::from(1);
-        x[2] = -x[3] - x[2].abs();
-        x[0] = x[1] - x[0].abs();
-    }
-
-    /// r and omega no larger than they may be.
-    fn onto_the_upper_end(x: &mut [Exact]) {
-        for c in [3, 4] {
-            x[c] = -x[c].abs();
-        }
-        for c in [0, 1] {
-            if x[c] > x[2] {
-                x[c] = x[2];
-            }
-        }
-        let (r, omega) = (-x[7] * x[4], x[7] * (x[2] - x[1]));
-        x[5] = r - x[5].abs();
-        x[6] = omega - x[6].abs();
-    }
-
-    fn onto_the_inside(x: &mut [Exact]) {
-        x[2] = x[2].abs() + Exact::from(1);
-    }
-
-    fn onto_the_end(x: &mut [Exact]) {
-        for x in &mut *x {
-            *x = x.abs();
-        }
-        x[3] += x[0];
-        x[1] += Exact::from(2) * x[2] * x[3];
-    }
-
     /// The numbers of balls are around those of rationals, `outside` of them by that much, and by no more than rounding.
     fn around(draw: &Draw, degree: Degree, outside: f64) -> Verdict {
         let Ok((_, _, certified)) = draw.certified_with(degree) else {
@@ -307,19 +253,14 @@ mod row {
                 statements! {
                     proved + tested the_mean_of_two_stresses_splits[s, q, t] about "the error bound";
                     proved + tested contact_adds_two_terms_that_are_not_negative[u_n, v_n, g, sigma_n, tau_n]
-                        : "contact", "no force" about "the error bound" prepared(onto_contact);
-                    proved + tested little_force_where_there_is_a_gap[v_n, g, sigma_n, d] about "the error bound"
-                        prepared(onto_the_gap);
-                    proved + tested little_opening_where_there_is_pressure[u_n, g, tau_n, p] about "the error bound"
-                        prepared(onto_the_pressure);
-                    proved + tested what_is_missed_is_largest_inside[x, eta, k, m] about "the error bound"
-                        prepared(onto_the_inside);
-                    proved + tested what_is_missed_is_largest_at_the_end[x, eta, k, m] about "the error bound"
-                        prepared(onto_the_end);
+                        : "contact", "no force" about "the error bound";
+                    proved + tested little_force_where_there_is_a_gap[v_n, g, sigma_n, d] about "the error bound";
+                    proved + tested little_opening_where_there_is_pressure[u_n, g, tau_n, p] about "the error bound";
+                    proved + tested what_is_missed_is_largest_inside[x, eta, k, m] about "the error bound";
+                    proved + tested what_is_missed_is_largest_at_the_end[x, eta, k, m] about "the error bound";
                     proved + tested a_dual_pair_gives_the_force[l, a_v_w, s, q, t, x, r, u_n, v_n, g, s_o]
                         about "the error bound";
-                    proved + tested contact_adds_to_the_upper_end_at_most_a_and_b[u_n, v_n, g, sigma_n, tau_n, r, omega, k]
-                        prepared(onto_the_upper_end);
+                    proved + tested contact_adds_to_the_upper_end_at_most_a_and_b[u_n, v_n, g, sigma_n, tau_n, r, omega, k];
                     refuted control_the_traction_turned[l, a_v_w, s, q, t, x, r, u_n, v_n, g, s_o]
                         fails "force == near - (s - (q + t) / two) * x + r * (g - u) + so";
                     refuted control_an_eighth_of_the_distance[s, q, t]

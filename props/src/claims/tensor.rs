@@ -332,12 +332,6 @@ pub fn control_half_the_trace_of_the_acoustic_tensor<S: Ordered>(v: [S; 9]) -> V
     })
 }
 
-/// A that is A A^T of what is drawn.
-fn positive(v: &mut [Exact]) {
-    let c = square(take(&v[..6]));
-    v[..6].copy_from_slice(&c);
-}
-
 /// A rational root: half the difference and the shear are the legs of a right-angled triangle.
 fn with_a_root(v: &mut [Exact]) {
     let (p, q, two) = (v[0], v[1], Exact::from(2));
@@ -361,9 +355,8 @@ pub fn checks() -> Vec<Check> {
         proved + tested shapes_of_any_tensor_are_their_definitions[c11, c12, c16, c22, c26, c66, gx, gy, hx, hy, nx, ny, dx, dy];
         proved + tested the_acoustic_tensor_is_the_energy_of_a_strain_along_two_directions[c11, c12, c16, c22, c26, c66, nx, ny, dx, dy];
         tested normal_stress_is_bounded_by_the_energy_of_any_tensor[c11, c12, c16, c22, c26, c66, xx, yy, xy, nx, ny]
-            about "Lemma 3.2", "(11)" prepared(positive);
-        tested traction_along_a_direction_is_bounded_by_the_energy_of_any_tensor[c11, c12, c16, c22, c26, c66, xx, yy, xy, nx, ny, dx, dy]
-            prepared(positive);
+            about "Lemma 3.2", "(11)";
+        tested traction_along_a_direction_is_bounded_by_the_energy_of_any_tensor[c11, c12, c16, c22, c26, c66, xx, yy, xy, nx, ny, dx, dy];
         proved + tested a_strain_has_this_energy_without_its_part_along_two_directions[c11, c12, c16, c22, c26, c66, xx, yy, xy, nx, ny, dx, dy]
             about "Lemma 3.2", "(11)";
         proved + tested an_energy_that_is_not_negative_bounds_the_traction[w, energy, z] about "Lemma 3.2", "(11)";

@@ -49,17 +49,6 @@ mod row {
     use super::*;
     use crate::claim::Claim;
     use crate::claims::lemma_3_1::inequality_3_at_affine_solutions;
-    use crate::numbers::Exact;
-
-    /// u_n = g where the force is not zero.
-    fn onto_contact(v: &mut [Exact]) {
-        v[2] = -v[2].abs();
-        if v[0] > v[1] {
-            v[0] = v[1];
-        } else {
-            v[2] = Exact::from(0);
-        }
-    }
 
     /// The row of (3).
     pub fn claim() -> Claim {
@@ -75,9 +64,9 @@ mod row {
             checks: [
                 statements! {
                     proved + tested conditions_2_give_the_sign_of_3[u_n, g, sigma_n, v_n]: "contact", "no force"
-                        about "(3)" prepared(onto_contact);
+                        about "(3)";
                     proved + tested the_sign_of_3_gives_conditions_2[u_n, g, sigma_n]: "contact", "no force"
-                        about "(3)" prepared(onto_contact);
+                        about "(3)";
                     refuted control_sign_of_3_without_complementarity[u_n, g, sigma_n, v_n]
                         fails "s * (v - u) >= zero";
                     refuted control_sign_of_3_for_every_v[u_n, g, sigma_n, v_n] fails "s * (v - u) >= zero";

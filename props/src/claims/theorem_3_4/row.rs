@@ -26,29 +26,6 @@ fn errata_points() -> Outcome {
     })
 }
 
-/// (5) at the exact solution: u <= 0 where sigma = 0, u = g where sigma < 0.
-fn onto_contact(v: &mut [Exact]) {
-    let zero = Exact::from(0);
-    let gap = v[1];
-    if v[2] > gap {
-        v[2] = gap;
-        v[3] = -v[3].abs();
-    } else {
-        v[3] = zero;
-    }
-}
-
-fn onto_17(v: &mut [Exact]) {
-    let zero = Exact::from(0);
-    v[1] = -v[1].abs();
-    v[2] = -v[2].abs();
-    if v[3] > zero {
-        v[1] = zero;
-    } else {
-        v[2] = zero;
-    }
-}
-
 /// W on its equation: collinear e and eta, c = e h, W = |e - h|, and r, t within their bounds.
 fn onto_raw_facts(v: &mut [Exact]) {
     let one = Exact::from(1);
@@ -61,27 +38,6 @@ fn onto_raw_facts(v: &mut [Exact]) {
     v[2] = (v[0] - sign * v[1]).abs();
     v[5] = v[7] * v[2] / (one + v[5].abs());
     v[6] = v[5] * v[4] - v[6].abs();
-}
-
-fn onto_bound(v: &mut [Exact]) {
-    let (one, two) = (Exact::from(1), Exact::from(2));
-    for value in v.iter_mut() {
-        *value = value.abs();
-    }
-    v[5] /= one + v[5];
-    // Small enough on the left: E and Z from H, S and R.
-    v[0] = v[1].min(v[0]);
-    v[2] = v[4].min(v[2]) / two;
-}
-
-trait Min {
-    fn min(self, other: Self) -> Self;
-}
-
-impl Min for Exact {
-    fn min(self, other: Exact) -> Exact {
-        if self <= other { self } else { other }
-    }
 }
 
 /// The row of Theorem 3.4.
@@ -100,20 +56,19 @@ pub fn claim() -> Claim {
                 proved + tested error_identity_holds_at_a_point[gamma, g, u, su, uh, sh, v, sv]: "pressed", "open"
                     about "Theorem 3.4";
                 proved + tested z_times_the_difference_of_p_is_at_most_minus_gamma_z_squared[gamma, g, u, su, uh, sh]
-                    : "pressed", "open" about "Theorem 3.4" prepared(onto_contact);
+                    : "pressed", "open" about "Theorem 3.4";
                 proved + tested p0_of_w_splits[gamma, g, u, su, uh, sh, v, sv] about "Theorem 3.4";
                 proved + tested raw_facts_give_the_inequality_between_norms[e, h, w, c, s, r, t, k]
                     about "Theorem 3.4" prepared(onto_raw_facts);
                 proved young_steps_hold[e, h, z, s, r, k];
-                proved + tested theorem_3_4_holds_with_its_constant[e, h, z, s, r, k] about "Theorem 3.4", "(13)"
-                    prepared(onto_bound);
+                proved + tested theorem_3_4_holds_with_its_constant[e, h, z, s, r, k] about "Theorem 3.4", "(13)";
                 proved corollary_3_6_holds_with_its_constant[x, s, r, w, e, h, k] about "Corollary 3.6";
                 proved + tested step_14_holds[gamma, uh, sh, v, sv]: "pressed", "open" about "(14)";
                 proved + tested step_15_holds[gamma, u, su, uh, sh, v]: "pressed", "open" about "(15)";
                 proved + tested step_16_holds[z, d, gamma, beta] about "(16)"
                     hints(|v| vec![v[2] * v[0] - v[3] * v[1]]);
                 proved + tested step_17_holds_with_the_factor_gamma[gamma, u, su, uh, sh, sv]: "pressed", "open"
-                    about "(17)" prepared(onto_17);
+                    about "(17)";
                 proved + tested step_18_holds_with_the_factor_gamma[z, d, gamma, beta] about "(18)";
                 proved step_19_holds_with_its_constants[a, s, r, w, e, h, k] about "(19)";
                 proved step_20_is_the_sum_of_17_18_and_19[t, z, first, second, s, e, h, c, beta] about "(20)";
