@@ -54,7 +54,7 @@ pub struct Proof {
 /// The bound that a certificate is said to prove.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Claim {
-    /// As in [`Proof`].
+    /// The shares of the triangles, as in [`Proof`].
     pub shares: Vec<f64>,
     /// |u - v|_a is at most this, with the lifts.
     pub bound: f64,

@@ -66,17 +66,17 @@ fn component([x, y]: [f64; 2]) -> String {
     }
 }
 
-/// So many free motions are told one by one.
-const TOLD: usize = 4;
+/// The number of free motions that a message lists.
+const LISTED: usize = 4;
 
 fn listed(motions: &[FreeMotion]) -> String {
     let said = |motion: &FreeMotion| format!("{motion}: {}", motion.remedy());
-    let told: Vec<String> = motions.iter().take(TOLD).map(said).collect();
-    let more = match motions.len().saturating_sub(TOLD) {
+    let list: Vec<String> = motions.iter().take(LISTED).map(said).collect();
+    let more = match motions.len().saturating_sub(LISTED) {
         0 => String::new(),
         more => format!("; nor {more} more"),
     };
-    told.join("; nor the ") + &more
+    list.join("; nor the ") + &more
 }
 
 fn driven(motions: &[FreeMotion], drive: Option<f64>) -> String {

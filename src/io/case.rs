@@ -81,7 +81,7 @@ pub struct Units {
     pub force: String,
 }
 
-/// What a number measures. Forces, and moments as energies, are those of the whole body if its thickness is known, else
+/// The quantity that a number measures. Forces, and moments as energies, are those of the whole body if its thickness is known, else
 /// per length across the plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {

@@ -169,7 +169,7 @@ impl<C: Centre> MidRad<C> {
         self.radius
     }
 
-    /// The same ball with a radius that is larger by `by`.
+    /// Enlarges the radius by `by`.
     #[inline]
     pub fn widened(self, by: f64) -> Self {
         MidRad { radius: up(self.radius + by), ..self }

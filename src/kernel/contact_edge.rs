@@ -121,7 +121,7 @@ pub fn traction_stiffness<S: Scalar>(
     }
 }
 
-/// What an edge on Gamma_C adds to kappa_T / gamma0 of its triangle: c_p A_nnnn h_T |E| / |T|, so that with the sum kappa_T of
+/// The share of an edge on Gamma_C in kappa_T / gamma0 of its triangle: c_p A_nnnn h_T |E| / |T|, so that with the sum kappa_T of
 /// its edges |gamma^{1/2} sigma_n(v)|^2 on them is at most kappa_T a_T(v, v), the explicit form of (11). `stiffness` is A_nnnn,
 /// lambda + 2 mu where A is isotropic; for other components of sigma n it is the largest eigenvalue of the acoustic tensor.
 pub fn coercivity_constant<E, S, const N: usize, const M: usize>(

@@ -1,6 +1,6 @@
 //! The verified core: what method (8) computes at one point, on one triangle and on one contact edge.
 //!
-//! Pure functions of plain data, generic over the number type ([`Scalar`]), so that the very code that solves a
+//! It is made of pure functions of plain data, generic over the number type ([`Scalar`]), so that the very code that solves a
 //! user's problem in doubles can be run over exact rationals, over symbols and with its rounding enclosed. Sign tests are its only
 //! branches; it allocates nothing, reads nothing and has no panic.
 //! Vectors and matrices are nalgebra's, with the dimension as a parameter where the formula is that of any dimension.

@@ -44,7 +44,7 @@ enum Law<S> {
     Tensor {
         /// C11, C12, C16, C22, C26, C66
         c: [S; 6],
-        /// What sigma_xx, sigma_yy and sigma_xy count in sigma_zz.
+        /// The factors of sigma_xx, sigma_yy and sigma_xy in sigma_zz.
         across: [S; 3],
     },
 }

@@ -40,7 +40,7 @@ pub enum Gamma0 {
 pub enum ContactQuadrature {
     /// Cut at the roots of P: no quadrature error.
     Exact,
-    /// That many Gauss points on each edge.
+    /// A Gauss rule with so many points on each edge.
     Gauss(usize),
 }
 
@@ -106,7 +106,7 @@ impl Gamma0 {
 }
 
 impl ContactQuadrature {
-    /// That many Gauss points on each edge, from 1 to [`MOST_GAUSS_POINTS`].
+    /// The Gauss rule with so many points on each edge, from 1 to [`MOST_GAUSS_POINTS`].
     ///
     /// # Errors
     /// [`DataError::Value`].

@@ -10,7 +10,7 @@ use crate::fem::solvability::Play;
 pub enum Verdict {
     /// The exact solution of (8) is within [`Settings::proof`](super::Settings::proof) of it, rounding included.
     Proved,
-    /// That is not proved, for this reason.
+    /// No such distance is proved, for this reason.
     NotProved(String),
 }
 

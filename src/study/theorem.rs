@@ -65,12 +65,12 @@ impl Theorem {
         a_priori::plain(self.kappa, &self.interpolant)
     }
 
-    /// That of Theorem 9.3 for the interpolant.
+    /// The right side of Theorem 9.3 for the interpolant.
     pub fn sharp(&self) -> f64 {
         a_priori::sharp(self.kappa, &self.interpolant)
     }
 
-    /// That of Theorem 9.4 for the projection.
+    /// The right side of Theorem 9.4 for the projection.
     pub fn projected(&self) -> f64 {
         a_priori::projected(self.kappa, &self.projection)
     }
