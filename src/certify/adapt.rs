@@ -10,6 +10,7 @@
 //! Every level has a certificate of its own, for the problem on its own mesh: nothing that is proved rests on the levels
 //! before. The body is the polygon of the first mesh: the middle of a straight edge lies on it, but for rounding.
 
+#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -38,7 +39,8 @@ pub struct Target {
 }
 
 /// The result on one mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
 pub struct AdaptedLevel {
     /// Degrees of freedom: twice the nodes.
@@ -52,7 +54,7 @@ pub struct AdaptedLevel {
     /// The bound over |v|_a.
     pub relative: f64,
     /// Half the width of what the force lies between over its middle, if a force is the target.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
     pub force: Option<f64>,
 }
 

@@ -14,6 +14,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector2;
+#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
 use super::Asked;
@@ -115,7 +116,8 @@ impl Name {
 }
 
 /// A stretch of a contact boundary, with what the true solution has there at most.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
 pub struct Zone {
     /// The boundary.
@@ -127,18 +129,19 @@ pub struct Zone {
     /// The places of both, in the undeformed body.
     pub ends: [[f64; 2]; 2],
     /// The bounded quantity.
-    #[serde(flatten)]
+    #[cfg_attr(feature = "files", serde(flatten))]
     pub limit: Limit,
 }
 
 /// The quantity that is bounded on a [`Zone`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 pub enum Limit {
     /// The contact force int |sigma_n| is at most this (per unit of thickness).
-    #[serde(rename = "force_at_most")]
+    #[cfg_attr(feature = "files", serde(rename = "force_at_most"))]
     Force(f64),
     /// The integral of the opening int (g - u_n) is at most this.
-    #[serde(rename = "opening_at_most")]
+    #[cfg_attr(feature = "files", serde(rename = "opening_at_most"))]
     Opening(f64),
 }
 

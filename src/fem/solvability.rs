@@ -9,6 +9,7 @@
 //! the solutions are u and a polyhedron, of which the displacement of least norm is taken.
 
 use nalgebra::Vector2;
+#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
 use super::contact_face::ContactFace;
@@ -47,20 +48,21 @@ pub struct Slides {
 
 /// How far a body may move along a motion that neither supports nor what presses stops, from the displacement that is given,
 /// which is one of several solutions.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
 pub struct Play {
     /// The centre of a rotation; left out for a translation.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
     pub about: Option<[f64; 2]>,
     /// The direction of a translation, a unit vector; left out for a rotation.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
     pub along: Option<[f64; 2]>,
     /// The distance, or the angle counter-clockwise, that it may go back, at most 0; left out where nothing ends it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
     pub least: Option<f64>,
     /// The distance or angle that it may go on; left out where nothing ends it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
     pub most: Option<f64>,
 }
 

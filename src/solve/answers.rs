@@ -20,6 +20,7 @@
 
 use std::collections::BTreeMap;
 
+#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
 use nalgebra::Vector2;
@@ -33,8 +34,8 @@ use crate::kernel::DoubleDouble;
 use crate::kernel::positive_part;
 
 /// The quantities of one part of Gamma_C, in the units of the case.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize), serde(default))]
 #[non_exhaustive]
 pub struct ContactBoundary {
     /// Its name.
@@ -52,27 +53,30 @@ pub struct ContactBoundary {
     /// The largest recovered pressure.
     pub peak_pressure: f64,
     /// Where that is, in the undeformed body; NaN in a result that does not say so.
-    #[serde(default = "unknown_place")]
+    #[cfg_attr(feature = "files", serde(default = "unknown_place"))]
     pub peak_at: [f64; 2],
     /// The largest u_n - g: how far the body reaches into the obstacle; negative if it nowhere touches it, NaN in a result
     /// that does not say so.
-    #[serde(default = "unknown")]
+    #[cfg_attr(feature = "files", serde(default = "unknown"))]
     pub penetration: f64,
     /// Where that is, in the undeformed body; NaN in a result that does not say so.
-    #[serde(default = "unknown_place")]
+    #[cfg_attr(feature = "files", serde(default = "unknown_place"))]
     pub penetration_at: [f64; 2],
 }
 
+#[cfg(feature = "files")]
 fn unknown() -> f64 {
     f64::NAN
 }
 
+#[cfg(feature = "files")]
 fn unknown_place() -> [f64; 2] {
     [f64::NAN; 2]
 }
 
 /// a(u, u) = loads + supports + contact: what the strains hold is twice the work of the three on u.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
 pub struct EnergyBalance {
     /// a(u, u), twice the strain energy.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
 use super::balls::{field, length, product, root, strain_energy};
@@ -17,7 +18,8 @@ use crate::kernel::ball::{PreciseBall, up};
 pub type Range = [f64; 2];
 
 /// Intervals that contain what the exact solution of (8) has.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
 pub struct Intervals {
     /// a(u, u)
@@ -41,7 +43,8 @@ impl Intervals {
 }
 
 /// Intervals of a contact boundary's quantities.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
 pub struct ContactIntervals {
     /// Its name.

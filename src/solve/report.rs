@@ -1,5 +1,6 @@
 //! How a solution was found, and what is proved of it.
 
+#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
 use super::enclosure::{Enclosure, Unproved};
@@ -50,8 +51,8 @@ impl Verdict {
 }
 
 /// The routes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize), serde(rename_all = "lowercase"))]
 pub enum RouteName {
     /// The body factored once, Newton's method on the contact functionals.
     Condensed,
@@ -60,13 +61,14 @@ pub enum RouteName {
 }
 
 /// How a solve ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 pub enum Status {
     /// The residual is within the tolerance.
-    #[serde(rename = "converged")]
+    #[cfg_attr(feature = "files", serde(rename = "converged"))]
     Converged,
     /// The tolerance asks for more than rounding allows.
-    #[serde(rename = "converged to rounding")]
+    #[cfg_attr(feature = "files", serde(rename = "converged to rounding"))]
     ConvergedToRounding,
 }
 
@@ -92,7 +94,8 @@ impl NewtonReport {
 }
 
 /// By which route the solution was found, and how far it can be trusted.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 pub struct MethodReport {
     /// The route.
     pub route: RouteName,
@@ -102,7 +105,10 @@ pub struct MethodReport {
     pub condition: f64,
     /// The last correction of the displacement in the energy norm, relative to the displacement: an estimate of the error
     /// that rounding and iteration leave; infinite, and left out of result.json, where the steps ended before there was one.
-    #[serde(default = "no_estimate", skip_serializing_if = "is_no_estimate")]
+    #[cfg_attr(
+        feature = "files",
+        serde(default = "no_estimate", skip_serializing_if = "is_no_estimate")
+    )]
     pub forward_error: f64,
     /// How many threads worked.
     pub threads: usize,
@@ -111,10 +117,12 @@ pub struct MethodReport {
     pub slides: usize,
 }
 
+#[cfg(feature = "files")]
 fn no_estimate() -> f64 {
     f64::INFINITY
 }
 
+#[cfg(feature = "files")]
 fn is_no_estimate(error: &f64) -> bool {
     *error == no_estimate()
 }

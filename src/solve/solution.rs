@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
 use super::answers::{self, ContactBoundary, EnergyBalance};
@@ -112,7 +113,8 @@ pub struct ContactValues {
 }
 
 /// Scalars of a solution, in the units of the case.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
 pub struct Quantities {
     /// a(u, u)
@@ -132,7 +134,7 @@ pub struct Quantities {
     /// The force of each displacement boundary on the body.
     pub reactions: BTreeMap<String, [f64; 2]>,
     /// The moment of each of these about the origin, counter-clockwise.
-    #[serde(skip)]
+    #[cfg_attr(feature = "files", serde(skip))]
     pub reaction_moments: BTreeMap<String, f64>,
 }
 

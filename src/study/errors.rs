@@ -9,6 +9,7 @@
 //! edges also at the roots of P(v^h).
 
 use nalgebra::Vector2;
+#[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
 use super::exact::ExactSolution;
@@ -28,7 +29,8 @@ use crate::solve::Solution;
 pub const POINTS: usize = 10;
 
 /// The distances, each a norm.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 pub struct Errors {
     /// a(e, e)^(1/2)
     pub energy: f64,
@@ -41,7 +43,7 @@ pub struct Errors {
     /// |gamma^(1/2) sigma_n(e)| on Gamma_C
     pub normal_stress: f64,
     /// |gamma^(-1/2) (P(u) - P(v^h))| on Gamma_C
-    #[serde(skip)]
+    #[cfg_attr(feature = "files", serde(skip))]
     pub operator: f64,
 }
 
