@@ -22,10 +22,18 @@ use super::times::{Stopwatch, Times};
 use super::{Settings, SolveError};
 use crate::memory;
 
-/// The Newton steps that a prediction counts on; half of 2,000 bodies at random take 9 or fewer, nine of ten 20 or fewer. Of 40
-/// strips, beams and squares that both routes were timed on, the one with fewer multiplications took at most 1.25 times as long as
-/// the other.
+/// The Newton steps that a prediction counts on.
 const STEPS: f64 = 12.0;
+
+/// Multiplications that the assembled route makes beside those of the factorisation, for each stored entry of the factor:
+/// assembly, substitutions, small blocks.
+const PER_ENTRY: f64 = 12.0;
+
+/// Multiplications of a dense factorisation that cost as much as one of the sparse one: only edges in contact take part,
+/// about half of them and so an eighth of the work, and the rest runs at twice the speed or more. Of some thirty strips,
+/// beams, squares and graded squares that both routes were timed on, it picks the faster one or one that took 1.1 times as
+/// long.
+const DENSE: f64 = 16.0;
 
 /// Solves the system by a given route.
 ///
@@ -44,7 +52,8 @@ pub fn by(
 pub struct Strategy<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
     reach: Reach,
-    /// The multiplications with an addition that each route is predicted to take, condensed and assembled.
+    /// The multiplications with an addition that each route is predicted to take, condensed and assembled; those of dense
+    /// factorisations count less.
     predicted: [f64; 2],
     /// The size that residuals are relative to.
     reference: f64,
@@ -60,9 +69,9 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
         let unknowns: Vec<Vec<usize>> =
             (0..system.d.contact.len()).map(|e| system.unknowns(e)).collect();
         let reach = Reach::new(structure, &unknowns, system.nodes());
-        let factor = structure.operations();
+        let factor = structure.operations() + PER_ENTRY * structure.stored_entries() as f64;
         let q = reach.functionals() as f64;
-        let dense = q * q * q / 6.0 + 4.0 * q * q;
+        let dense = q * q * q / 6.0 / DENSE + 4.0 * q * q;
         let condensed = factor + reach.operations(structure) + STEPS * dense;
         let predicted = [condensed, STEPS * factor];
         let reference = accuracy::reference(system.d);
