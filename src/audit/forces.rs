@@ -481,7 +481,7 @@ impl Certificate {
         proof: &Proof,
         evidence: &Evidence,
         sums: Beside<S>,
-    ) -> Result<Intervals, WrongPair> {
+    ) -> Result<Enclosed, WrongPair> {
         let mean = Mean::new(state, proof, self.lift());
         if evidence.of.len() != self.edges.len() {
             let (what, found) = ("boundaries of edges", evidence.of.len());
@@ -496,7 +496,7 @@ impl Certificate {
 }
 
 /// w0, and what forces lie between by liftings and by dual pairs.
-type Intervals = (Option<Cover>, Vec<Result<[f64; 2], WrongLifting>>, Vec<[f64; 2]>);
+type Enclosed = (Option<Cover>, Vec<Result<[f64; 2], WrongLifting>>, Vec<[f64; 2]>);
 
 impl<'a, S: Staged> Forces<'a, S> {
     /// With M.

@@ -837,34 +837,34 @@ mod tests {
 
     /// A double with its size and the number of its roundings, by the rules of the module's head.
     #[derive(Clone, Copy, Debug, PartialEq)]
-    struct Term {
+    struct Rounded {
         value: f64,
         size: f64,
         count: u32,
     }
 
-    impl From<i32> for Term {
-        fn from(value: i32) -> Term {
-            Term::exactly(f64::from(value))
+    impl From<i32> for Rounded {
+        fn from(value: i32) -> Rounded {
+            Rounded::exactly(f64::from(value))
         }
     }
 
-    impl Neg for Term {
-        type Output = Term;
+    impl Neg for Rounded {
+        type Output = Rounded;
 
-        fn neg(self) -> Term {
-            Term { value: -self.value, ..self }
+        fn neg(self) -> Rounded {
+            Rounded { value: -self.value, ..self }
         }
     }
 
     macro_rules! term {
         ($operator:ident $function:ident, $a:ident $b:ident $value:expr, $size:expr, $count:expr) => {
-            impl $operator for Term {
-                type Output = Term;
+            impl $operator for Rounded {
+                type Output = Rounded;
 
-                fn $function(self, other: Term) -> Term {
+                fn $function(self, other: Rounded) -> Rounded {
                     let ($a, $b) = (self, other);
-                    Term { value: $value, size: $size, count: $count + 1 }
+                    Rounded { value: $value, size: $size, count: $count + 1 }
                 }
             }
         };
@@ -875,22 +875,26 @@ mod tests {
     term!(Div div, a b a.value / b.value, a.size * b.size / (b.value * b.value),
         [a.count, b.count].iter().sum::<u32>());
 
-    crate::kernel::entry_of_nalgebra!(Term);
+    crate::kernel::entry_of_nalgebra!(Rounded);
 
-    impl Scalar for Term {
-        fn split(self, _: impl FnOnce(Term) -> Term, positive: impl FnOnce(Term) -> Term) -> Term {
+    impl Scalar for Rounded {
+        fn split(
+            self,
+            _: impl FnOnce(Rounded) -> Rounded,
+            positive: impl FnOnce(Rounded) -> Rounded,
+        ) -> Rounded {
             positive(self)
         }
     }
 
-    impl Enclosing for Term {
-        fn exactly(value: f64) -> Term {
-            Term { value, size: value.abs(), count: 0 }
+    impl Enclosing for Rounded {
+        fn exactly(value: f64) -> Rounded {
+            Rounded { value, size: value.abs(), count: 0 }
         }
 
-        fn sqrt(self) -> Term {
+        fn sqrt(self) -> Rounded {
             let root = self.value.sqrt();
-            Term { value: root, size: self.size / root, count: self.count + 1 }
+            Rounded { value: root, size: self.size / root, count: self.count + 1 }
         }
 
         fn upper(self) -> f64 {
@@ -906,17 +910,18 @@ mod tests {
     fn sizes(k: i32, material: Material<f64>, bulges: bool) -> ([f64; 2], u32) {
         let law = RoundedLaw::new(&material);
         let ground = Ground::new(&law, &balls(&triangle(k))).unwrap();
-        let given = |x: f64| Term { count: OF_RADIUS, ..Term::exactly(x) };
+        let given = |x: f64| Rounded { count: OF_RADIUS, ..Rounded::exactly(x) };
         let t = Triangle { vertices: ground.triangle.vertices.map(|v| v.map(given)) };
         let mut nodal = vectors(k).map(|v| v.map(given));
         nodal[0] = Vector2::zeros();
         let bulges = bulges.then(|| vectors(k + 5).map(|v| v.map(given)));
-        let of = |term: Material<Term>| Affine::of_displacement(&t, &nodal, bulges.as_ref(), &term);
+        let of =
+            |term: Material<Rounded>| Affine::of_displacement(&t, &nodal, bulges.as_ref(), &term);
         let sigma = of(piece(material).material());
-        let forces = forces(k).map(|ends| ends.map(|f| f.map(Term::exactly)));
+        let forces = forces(k).map(|ends| ends.map(|f| f.map(Rounded::exactly)));
         let loads = Loads { forces, body: [Vector2::zeros(); 3] };
         let tau = Composite::new(&Frame::new(&t), &loads).distance_from(&sigma);
-        let square = |l: f64| Term { count: OF_RADIUS, ..Term::exactly(l) };
+        let square = |l: f64| Rounded { count: OF_RADIUS, ..Rounded::exactly(l) };
         let squares = Squares {
             bulk: given(law.squares.bulk),
             shear: given(law.squares.shear),
@@ -925,13 +930,13 @@ mod tests {
         let (mut length, mut count) = (0.0, 0);
         let root = t.double_area().sqrt();
         for (k, number) in parts(&squares, &tau).into_iter().enumerate() {
-            let factor = Term { count: 1, ..Term::exactly(FACTORS[k / 3]) };
+            let factor = Rounded { count: 1, ..Rounded::exactly(FACTORS[k / 3]) };
             let number = number * (root * given(law.roots[k % 3]) * factor);
             length += number.size * number.size;
             count = count.max(number.count);
         }
         let largest =
-            |of: &[Vector2<Term>]| of.iter().flatten().map(|x| x.size).fold(0.0, f64::max);
+            |of: &[Vector2<Rounded>]| of.iter().flatten().map(|x| x.size).fold(0.0, f64::max);
         let force = largest(forces.as_flattened());
         let moved = largest(&nodal).max(bulges.map_or(0.0, |bulges| largest(&bulges)));
         let [per_force, per_stress] = ground.sizes();
@@ -939,7 +944,7 @@ mod tests {
         let flat = composite(1, false);
         let normals = [0, 1, 2].map(|i| t.scaled_normal(i));
         let energy = strain_energy(&squares, (&nodal, bulges), &normals)
-            / (t.double_area() * Term::from(24));
+            / (t.double_area() * Rounded::from(24));
         let squares = if bulges.is_none() { 8.5 } else { 201.0 };
         let of_energy = squares * law.energy * ground.skew * ground.ratio * moved * moved;
         let ratios =

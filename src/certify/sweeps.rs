@@ -70,7 +70,7 @@ pub(super) fn improve(
 
 /// An unknown of a triangle as an unknown of a star.
 #[derive(Clone, Copy)]
-struct Place {
+struct StarUnknown {
     triangle: usize,
     unknown: usize,
     in_star: usize,
@@ -82,7 +82,7 @@ struct Place {
 /// edge at it.
 struct Star {
     /// Triangle by triangle.
-    places: Vec<Place>,
+    places: Vec<StarUnknown>,
     own: Vec<usize>,
     edges: Vec<usize>,
     /// The lower half of the factor of the star's system, row by row; none where the unknowns are not independent.
@@ -124,7 +124,7 @@ impl Sweeps {
             for (local, &point) in piece.vertices.iter().enumerate() {
                 let Star { places, own, edges, .. } = &mut stars[point];
                 let at_point = own.iter().enumerate();
-                places.extend(at_point.map(|(in_star, &k)| Place {
+                places.extend(at_point.map(|(in_star, &k)| StarUnknown {
                     triangle,
                     unknown: 3 * local + k,
                     in_star,
@@ -142,7 +142,7 @@ impl Sweeps {
                     }
                     let is_left = state.topology.owners[e][0].is_some_and(|o| o.piece == triangle);
                     let sign = if is_left { 1.0 } else { -1.0 };
-                    places.push(Place { triangle, unknown: 9 + side, in_star, sign });
+                    places.push(StarUnknown { triangle, unknown: 9 + side, in_star, sign });
                 }
             }
         }
@@ -171,11 +171,11 @@ impl Sweeps {
         }
         x.clear();
         x.resize(star.unknowns(), 0.0);
-        for &Place { triangle, unknown, in_star, sign } in &star.places {
+        for &StarUnknown { triangle, unknown, in_star, sign } in &star.places {
             x[in_star] -= sign * energies[triangle].1[unknown];
         }
         substitute(&star.factor, x);
-        for &Place { triangle, unknown, in_star, sign } in &star.places {
+        for &StarUnknown { triangle, unknown, in_star, sign } in &star.places {
             let (number, gradient) = &mut energies[triangle];
             let ScaledHessian { hessian, scale } = &hessians[*number];
             let value = x[in_star] * sign * scale;

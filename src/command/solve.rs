@@ -41,13 +41,13 @@ pub fn run(
     Ok(if results.falls_short() { Done { code: SHORT, ..done } } else { done })
 }
 
-type Solution = (Results, Vec<PathBuf>);
+type Written = (Results, Vec<PathBuf>);
 
 fn solve(
     arguments: &CaseArguments,
     options: &SolveOptions,
     quiet: bool,
-) -> Result<Solution, Failure> {
+) -> Result<Written, Failure> {
     let extra = Extra { certificate: options.certificate, report: options.report };
     let phases = Phases::start(quiet);
     phases.enter("reading the case and its mesh");
@@ -107,7 +107,7 @@ fn solve_by_fenicsx(
     CaseArguments { file, settings }: &CaseArguments,
     options: &SolveOptions,
     quiet: bool,
-) -> Result<Solution, Failure> {
+) -> Result<Written, Failure> {
     if let Some(setting) = settings.first() {
         return Err(Failure::wrong(format!(
             "--set {setting}: the engine fenicsx reads the case file itself; write the key into a case file"

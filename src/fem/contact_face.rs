@@ -104,11 +104,11 @@ impl<S: Scalar> Functionals<S> {
 }
 
 /// Triangle, number of the edge, n, n~ where it is not n, material and gamma.
-type Given<'a, S> =
+type FaceData<'a, S> =
     (&'a Triangle<S>, usize, Vector2<S>, Option<&'a [Vector2<S>]>, &'a Material<S>, S);
 
 fn functionals<E: Element<N, M>, const N: usize, const M: usize, S: Scalar>(
-    (triangle, i, n, directions, material, gamma): Given<S>,
+    (triangle, i, n, directions, material, gamma): FaceData<S>,
 ) -> ContactEdge<S, N, M> {
     match directions {
         None => ContactEdge::new::<E>(triangle, i, n, material, gamma),

@@ -356,9 +356,9 @@ mod tests {
         Mesh::new(vertices, triangles, []).unwrap()
     }
 
-    type Held = dyn Fn([f64; 2]) -> [bool; 2];
+    type Prescribed = dyn Fn([f64; 2]) -> [bool; 2];
 
-    fn free(mesh: &Mesh, degree: Degree, held: &Held) -> Vec<FreeMotion> {
+    fn free(mesh: &Mesh, degree: Degree, held: &Prescribed) -> Vec<FreeMotion> {
         let space = Space::new(mesh, degree);
         let directions = |node: usize| {
             let axes = held(space.nodes()[node]).into_iter().zip([[1.0, 0.0], [0.0, 1.0]]);
@@ -379,7 +379,7 @@ mod tests {
         motions
     }
 
-    fn said(mesh: &Mesh, held: &Held) -> Vec<String> {
+    fn said(mesh: &Mesh, held: &Prescribed) -> Vec<String> {
         let words = |m: &FreeMotion| format!("{m}: {}", m.remedy());
         let [linear, quadratic] = [Degree::One, Degree::Two].map(|degree| free(mesh, degree, held));
         assert_eq!(linear.len(), quadratic.len());
@@ -404,7 +404,7 @@ mod tests {
 
     #[test]
     fn place_and_size_of_the_body_do_not_matter() {
-        let held: [(&Held, usize); 3] =
+        let held: [(&Prescribed, usize); 3] =
             [(&|_| [false; 2], 3), (&|_| [false, true], 1), (&|_| [true; 2], 0)];
         for scale in [1e-150, 1e-3, 1.0, 1e150] {
             for offset in [0.0, 1e10] {

@@ -249,7 +249,7 @@ mod tests {
 
     #[test]
     fn words_say_what_one_sees() {
-        type Change = fn(&mut Scene);
+        type Edit = fn(&mut Scene);
         let whole: &[&str] = &[
             "Block",
             "linear triangles",
@@ -273,7 +273,7 @@ mod tests {
             "arc length along the boundary (mm)",
             "border of two materials",
         ];
-        let changes: [(Change, &[&str], &[&str]); 9] = [
+        let changes: [(Edit, &[&str], &[&str]); 9] = [
             (|_| {}, whole, &["border of two materials"]),
             (
                 |s| {

@@ -50,7 +50,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The arrays of the element `name`.
-    pub(super) fn arrays(&self, name: &str) -> Vec<DataArray<'a>> {
+    pub(super) fn arrays(&self, name: &str) -> Vec<ArrayText<'a>> {
         let Some(from) = self.text.find(&format!("<{name}")) else { return Vec::new() };
         let Some((section, _)) = self.text[from..].split_once(&format!("</{name}>")) else {
             return Vec::new();
@@ -60,7 +60,7 @@ impl<'a> Reader<'a> {
             // An empty array closes itself.
             let is_empty = attributes.ends_with('/');
             let text = if is_empty { "" } else { rest.split("</DataArray").next()? };
-            Some(DataArray { attributes, text: text.trim() })
+            Some(ArrayText { attributes, text: text.trim() })
         };
         section.split("<DataArray").skip(1).filter_map(array).collect()
     }
@@ -70,11 +70,11 @@ impl<'a> Reader<'a> {
         let places = places.first().ok_or("it has no <Points>")?;
         let mut vectors = self.arrays("PointData");
         vectors.retain(|array| (2..=3).contains(&array.components()));
-        let is_named = |array: &&DataArray| matches!(array.name(), Some("displacement" | "u"));
+        let is_named = |array: &&ArrayText| matches!(array.name(), Some("displacement" | "u"));
         let field = match (vectors.iter().find(is_named), vectors.as_slice()) {
             (Some(field), _) | (None, [field]) => field,
             _ => {
-                let names = quote::names(vectors.iter().filter_map(DataArray::name));
+                let names = quote::names(vectors.iter().filter_map(ArrayText::name));
                 return Err(format!(
                     "its vectors on points are [{names}]; expected one called displacement or u, or just one"
                 ));
@@ -144,7 +144,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The numbers of an array, the components of `count` points or cells.
-    pub(super) fn numbers(&self, array: &DataArray, count: usize) -> Result<Vec<f64>, String> {
+    pub(super) fn numbers(&self, array: &ArrayText, count: usize) -> Result<Vec<f64>, String> {
         let name = quote::cut(array.name().unwrap_or("Points"));
         match attribute(array.attributes, "format") {
             Some("ascii") | None => {
@@ -243,12 +243,12 @@ fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
 }
 
 /// One array of a file: its attributes and its text.
-pub(super) struct DataArray<'a> {
+pub(super) struct ArrayText<'a> {
     attributes: &'a str,
     text: &'a str,
 }
 
-impl<'a> DataArray<'a> {
+impl<'a> ArrayText<'a> {
     fn name(&self) -> Option<&'a str> {
         attribute(self.attributes, "Name")
     }

@@ -12,7 +12,6 @@ use proptest::prelude::*;
 use signorini::certify::proof::{Certificate, Curved, Edge, Piece, Role};
 use signorini::kernel::{Ball, Enclosing, Material, Plane, PreciseBall};
 
-use super::refusals::supported;
 use crate::bodies::whole;
 use crate::ensure;
 use crate::naive::{Field, Hooke, Line, integral_of_affine};
@@ -401,6 +400,45 @@ pub(super) fn to_double(x: Exact) -> f64 {
 
 pub(super) const CLASSES: [&str; 3] =
     ["exact data", "exact data, v quadratic", "data that oscillate"];
+
+/// A certificate held along (1, 1) alone at the top and along (1, -1) at the left side, so that v . d and the parts of tau N are
+/// doubles still; tau's traction across is the one that is given.
+pub(super) fn supported(draw: &Draw) -> Certificate {
+    // v is known as balls, which a margin keeps off the obstacle.
+    let mut certificate = Draw { gap: [1, draw.gap[1].max(0)], ..draw.clone() }.turned();
+    certificate.prescribed.fill([None; 2]);
+    let v = certificate.displacement.clone();
+    for (e, edge) in certificate.edges.iter_mut().enumerate() {
+        let [p, q] = edge.ends.map(|k| certificate.vertices[k]);
+        let left = p[0] == 0.0 && q[0] == 0.0;
+        let length = if left { p[1] - q[1] } else { 1.0 };
+        let (d, traction) = match edge.role {
+            // The cells are one wide.
+            Role::Held(_, force) => ([1.0, 1.0], force),
+            Role::Loaded(traction) if left => ([1.0, -1.0], traction),
+            _ => continue,
+        };
+        let along = |f: [f64; 2]| f[0] * d[0] + f[1] * d[1];
+        edge.role = Role::Supported {
+            along: d,
+            force: traction.map(|t| length * along(t) / 2.0),
+            traction: traction.map(|t| (d[0] * t[1] - d[1] * t[0]) / 2.0),
+        };
+        for k in edge.ends {
+            let before = certificate.frames.insert(k, d);
+            if before.is_some_and(|before| before != d) || certificate.prescribed[k][1].is_some() {
+                certificate.frames.remove(&k);
+                certificate.prescribed[k] = v[k].map(Some);
+            } else {
+                certificate.prescribed[k] = [Some(along(v[k])), None];
+            }
+        }
+        if let Some(curved) = &mut certificate.curved {
+            curved.data[e] = [along(curved.bulges[e]), 0.0];
+        }
+    }
+    certificate
+}
 
 /// The checker against the definitions where bodies are held along directions; `work` is the share of the work of what is given
 /// beside them that is counted.
