@@ -25,10 +25,6 @@ use crate::memory;
 /// The Newton steps that a prediction counts on.
 const STEPS: f64 = 12.0;
 
-/// Multiplications that the assembled route makes beside those of the factorisation, for each stored entry of the factor:
-/// assembly, substitutions, small blocks.
-const PER_ENTRY: f64 = 12.0;
-
 /// Multiplications of a dense factorisation that cost as much as one of the sparse one: only edges in contact take part,
 /// about half of them and so an eighth of the work, and the rest runs at twice the speed or more. Of some thirty strips,
 /// beams, squares and graded squares that both routes were timed on, it picks the faster one or one that took 1.1 times as
@@ -69,7 +65,7 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
         let unknowns: Vec<Vec<usize>> =
             (0..system.d.contact.len()).map(|e| system.unknowns(e)).collect();
         let reach = Reach::new(structure, &unknowns, system.nodes());
-        let factor = structure.operations() + PER_ENTRY * structure.stored_entries() as f64;
+        let factor = structure.operations();
         let q = reach.functionals() as f64;
         let dense = q * q * q / 6.0 / DENSE + 4.0 * q * q;
         let condensed = factor + reach.operations(structure) + STEPS * dense;
