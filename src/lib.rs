@@ -60,7 +60,7 @@
 //!
 //! # What is stable
 //!
-//! What these pages show. Modules that they do not show are the inside of the solver: tests, benches and the claims reach them,
+//! The items that these pages show. Modules that they do not show are the inside of the solver: tests, benches and the claims reach them,
 //! and they may change with any version.
 //!
 //! # Features

@@ -4,7 +4,7 @@
 //! user's problem in doubles can be run over exact rationals, over symbols and with its rounding enclosed. Sign tests are its only
 //! branches; it allocates nothing, reads nothing and has no panic.
 //! Vectors and matrices are nalgebra's, with the dimension as a parameter where the formula is that of any dimension.
-//! What is numbered and not a vector stays an array: barycentric coordinates, the values of all shape functions, the nodes
+//! Numbered quantities that are no vectors stay arrays: barycentric coordinates, the values of all shape functions, the nodes
 //! of an element.
 //!
 //! | module | in the paper |

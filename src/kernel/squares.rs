@@ -25,12 +25,12 @@ pub struct Squares<S> {
 }
 
 impl<S: Scalar> Squares<S> {
-    /// Those of lambda and mu.
+    /// The squares of an isotropic law.
     pub(crate) fn isotropic(lambda: S, mu: S) -> Self {
         Squares { bulk: lambda + mu, shear: mu, beyond: None }
     }
 
-    /// Those of C11, C12, C16, C22, C26, C66.
+    /// The squares of a law with the entries C11, C12, C16, C22, C26, C66.
     pub(crate) fn of_tensor([xx, xy, xz, yy, yz, zz]: [S; 6]) -> Self {
         let (two, four) = (S::from(2), S::from(4));
         let twice = xy + xy;

@@ -157,9 +157,9 @@ pub(crate) fn recovered_pressure(d: &Discretization, p: &[Vec<DoubleDouble>]) ->
 /// The hat functions of an edge's nodes.
 #[derive(Clone, Copy)]
 enum Hats {
-    /// Those of its ends.
+    /// One for each end.
     Whole,
-    /// Those of its ends and its middle.
+    /// One for each end and one for the middle.
     Halves,
 }
 
