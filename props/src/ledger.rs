@@ -41,7 +41,7 @@ row has **controls**: planted mistakes, which the same check must reject.
 | all cases | bits, bytes | each of at most 2^20 cases is run |
 | draws | f64, integers | a harness without a receipt: run on random draws, **and no more is known** |
 
-`cargo install --locked kani-verifier && cargo kani setup` installs Kani, `cargo kani` at the root runs every harness (212 s by the receipts, and compiling; on
+`cargo install --locked kani-verifier && cargo kani setup` installs Kani, `cargo kani` at the root runs every harness (minutes on
 two busy cores, 1 GiB): a harness that passes holds for all numbers that it ranges over, and its false twin fails.
 
 Receipts are in `props/receipts`; each has a hash of what it is about, and a test fails when another thing stands there now. The
