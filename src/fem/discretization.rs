@@ -94,6 +94,7 @@ impl<'a> Discretization<'a> {
         for &material in problem.material.distinct() {
             material::stable(material)?;
         }
+        problem.mesh.check_apart(problem.conditions.keys().map(String::as_str))?;
         let coercivity = Coercivity::new(problem, degree)?;
         let gamma = gamma(&coercivity).into();
         let gamma0 = coercivity.gamma0(gamma);

@@ -31,6 +31,7 @@ pub mod mesh;
 pub mod moments;
 #[doc(hidden)]
 pub mod obstacle;
+mod plane_sweep;
 #[doc(hidden)]
 pub mod problem;
 #[doc(hidden)]

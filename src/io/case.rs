@@ -68,6 +68,8 @@ pub struct Case {
     pub exact: Option<ExactCase>,
     /// The text that it was read from, with a comment for each setting laid over it.
     pub text: String,
+    /// What was decided when the mesh was read, in sentences for people.
+    pub remarks: Vec<String>,
     /// The files that all this was read from.
     pub sources: Vec<PathBuf>,
 }
@@ -208,7 +210,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
     let units = root.optional_section("units", read_units)?;
     let thickness = root.optional_section("body", read_thickness)?;
     let folder = file.parent().unwrap_or(Path::new(""));
-    let Meshed { mesh, structured, perturbation, file: mesh_file } =
+    let Meshed { mesh, structured, perturbation, file: mesh_file, remarks } =
         read_mesh(root, given, folder)?;
     let table = root.required_section("material", &format!("{} in it", body::EXPECTED))?;
     let (material, materials) = read_materials(&table, &mesh)?;
@@ -236,6 +238,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
         probes,
         exact: solution.map(|solution| ExactCase { solution, kinds, structured, perturbation }),
         text: String::new(),
+        remarks,
         sources: std::iter::once(file.to_owned()).chain(mesh_file).collect(),
     })
 }

@@ -264,11 +264,13 @@ const NO_ERRORS: &str = "the errors are not given: near its singular point the e
 
 /// The largest stresses with the names of the physical surfaces that they are in.
 fn stress_peaks(case: &Case, solution: &Solution) -> Option<StressPeaks> {
-    let surfaces = case.problem.mesh.surfaces();
+    let mesh = &case.problem.mesh;
+    let surfaces = || case.materials.iter().flat_map(|material| &material.surfaces);
     let peak = |extreme: Extreme| {
-        let inside =
-            |(_, triangles): &(&String, &Vec<usize>)| triangles.contains(&extreme.triangle);
-        let surface = surfaces.iter().find(inside).map(|(name, _)| name.clone());
+        let inside = |name: &&String| {
+            mesh.surface(name).is_ok_and(|triangles| triangles.contains(&extreme.triangle))
+        };
+        let surface = surfaces().find(inside).cloned();
         StressPeak { value: extreme.value, at: extreme.at, surface }
     };
     solution.largest_stresses(&case.problem).map(|largest| StressPeaks {
