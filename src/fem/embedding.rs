@@ -59,13 +59,7 @@ impl Mesh {
 /// # Errors
 /// [`MeshError::Hanging`], [`MeshError::Near`], [`MeshError::Overlapping`], [`MeshError::JoinedAtVertex`].
 fn check(mesh: &Mesh) -> Result<(), MeshError> {
-    let outline = SearchableOutline::new(mesh);
-    let (near, fault) = outline.search();
-    // What nearly touches often crosses too, and is better called by its name: it comes first.
-    near.into_iter().try_for_each(|[e, f]| outline.check_vertex(e, f))?;
-    if let Err(fault) = fault {
-        return Err(outline.named(fault));
-    }
+    SearchableOutline::new(mesh).check()?;
     check_joints(mesh)
 }
 
@@ -113,36 +107,49 @@ impl<'m> SearchableOutline<'m> {
         self.ends[e].map(|v| self.place(v))
     }
 
-    /// Pairs of an edge and an edge whose first vertex may be near to it, in order; and the first fault of the outline. An edge is
-    /// near a vertex if it meets the square around that of [`TOUCHING`] times the shortest edge there: if it crosses one of its sides or
-    /// has an end inside.
-    fn search(&self) -> (Vec<[usize; 2]>, Result<(), Fault>) {
+    /// Checks each vertex against the edges near it, and the outline as a whole. What nearly touches often crosses too, and is
+    /// better called by its name: it comes first.
+    fn check(&self) -> Result<(), MeshError> {
+        let mut near = Near { outline: self, pairs: Vec::new(), found: 0, error: None };
+        let fault = self.search(&mut near);
+        if let Err(Fault::Crossing([e, f]) | Fault::Covered { edge: e, below: Some(f) }) = fault {
+            // The sweep ended before it could ask about these.
+            for [e, f] in [[e, f], [f, e]] {
+                self.ends[f].iter().all(|&vertex| near.add(vertex, e));
+            }
+        }
+        near.check();
+        match (near.error, fault) {
+            (Some(error), _) => Err(error),
+            (None, Err(fault)) => Err(self.named(fault)),
+            (None, Ok(())) => Ok(()),
+        }
+    }
+
+    /// Finds the edges near each vertex, and the first fault of the outline. An edge is near a vertex if it meets the square
+    /// around that of [`TOUCHING`] times the shortest edge there: if it crosses one of its sides or has an end inside.
+    fn search(&self, near: &mut Near) -> Result<(), Fault> {
         // A little more than that, for the sake of rounding.
         let reach = |v: usize| 1.001 * TOUCHING * self.shortest[v];
-        let mut near: Vec<[usize; 2]> = Vec::new();
-        let mut add = |vertex: usize, e: usize| {
-            let begin = self.at[&vertex].iter().filter(|&&f| self.ends[f][0] == vertex);
-            near.extend(begin.filter(|&&f| f != e).map(|&f| [e, f]));
-        };
         let vertices: Vec<usize> = self.at.keys().copied().collect();
         let points = vertices.iter().map(|&v| Bounds::around([self.place(v).into()]));
         let tree = Tree::new(points.collect());
         for &v in &vertices {
+            let mut goes_on = true;
             tree.meeting(Bounds::around([self.place(v).into()]).widened(reach(v)), |i| {
-                if vertices[i] != v {
-                    self.at[&vertices[i]].iter().for_each(|&e| add(v, e));
+                if vertices[i] != v && goes_on {
+                    goes_on = self.at[&vertices[i]].iter().all(|&e| near.add(v, e));
                 }
             });
+            if !goes_on {
+                return Ok(());
+            }
         }
-        let mut found = Ok(());
         for (axis, body_on_left) in [(0, true), (1, false)] {
             // Adding 0.0 makes -0 and 0 the same place.
-            let place = |[x, y]: &[f64; 2]| {
-                if axis == 0 {
-                    Vector2::new(x + 0.0, y + 0.0)
-                } else {
-                    Vector2::new(y + 0.0, x + 0.0)
-                }
+            let place = |[x, y]: &[f64; 2]| match axis {
+                0 => Vector2::new(x + 0.0, y + 0.0),
+                _ => Vector2::new(y + 0.0, x + 0.0),
             };
             let places: Vec<Vector2<f64>> = self.mesh.vertices().iter().map(place).collect();
             let question = |&vertex: &usize| {
@@ -151,17 +158,9 @@ impl<'m> SearchableOutline<'m> {
             };
             let questions: Vec<Question> = vertices.iter().flat_map(question).collect();
             let edges = Edges { places: &places, ends: &self.ends, body_on_left };
-            found = found.and_then(|()| sweep(&edges, &questions, &mut add));
+            sweep(&edges, &questions, |vertex, e| near.add(vertex, e))?;
         }
-        // The sweep ended before it could ask about these.
-        if let Err(Fault::Crossing([e, f]) | Fault::Covered { edge: e, below: Some(f) }) = found {
-            for [e, f] in [[e, f], [f, e]] {
-                self.ends[f].iter().for_each(|&vertex| add(vertex, e));
-            }
-        }
-        near.sort_unstable();
-        near.dedup();
-        (near, found)
+        Ok(())
     }
 
     /// The error that a fault of the outline is.
@@ -260,6 +259,41 @@ impl<'m> SearchableOutline<'m> {
     fn is_in(&self, t: usize, p: Vector2<f64>, is_within: impl Fn(f64) -> bool) -> bool {
         let corners = self.mesh.triangles()[t].map(|v| self.place(v));
         (0..3).all(|i| is_within(turn(corners[i], corners[(i + 1) % 3], p)))
+    }
+}
+
+/// Pairs of an edge and an edge whose first vertex is near to it, to be checked in their order, some at a time: of vertices that are
+/// near each other there may be many, and one pair that is wrong is enough.
+struct Near<'o, 'm> {
+    outline: &'o SearchableOutline<'m>,
+    pairs: Vec<[usize; 2]>,
+    /// How many there have been.
+    found: usize,
+    error: Option<MeshError>,
+}
+
+impl Near<'_, '_> {
+    /// Takes note that an edge is near a vertex. Returns whether the search is to go on.
+    fn add(&mut self, vertex: usize, e: usize) -> bool {
+        // More than there are in most meshes.
+        const AT_A_TIME: usize = 16;
+        let outline = self.outline;
+        let begin = outline.at[&vertex].iter().filter(|&&f| outline.ends[f][0] == vertex);
+        self.pairs.extend(begin.filter(|&&f| f != e).map(|&f| [e, f]));
+        if self.pairs.len() > AT_A_TIME * outline.ends.len() {
+            self.check();
+        }
+        self.error.is_none()
+    }
+
+    /// Checks those at hand.
+    fn check(&mut self) {
+        let mut pairs = std::mem::take(&mut self.pairs);
+        self.found += pairs.len();
+        pairs.sort_unstable();
+        pairs.dedup();
+        let wrong = pairs.into_iter().find_map(|[e, f]| self.outline.check_vertex(e, f).err());
+        self.error = self.error.take().or(wrong);
     }
 }
 
@@ -409,9 +443,10 @@ mod tests {
         for (vertices, triangles) in [slender(500), comb(200)] {
             let mesh = Mesh::new(vertices, triangles, []).unwrap();
             let outline = SearchableOutline::new(&mesh);
-            let (near, fault) = outline.search();
-            assert_eq!(fault, Ok(()));
-            let (found, edges) = (near.len(), outline.ends.len());
+            let mut near = Near { outline: &outline, pairs: Vec::new(), found: 0, error: None };
+            assert_eq!(outline.search(&mut near), Ok(()));
+            near.check();
+            let (found, edges) = (near.found, outline.ends.len());
             assert!(found < 8 * edges, "{found} pairs of {edges} edges");
         }
     }

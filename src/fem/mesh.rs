@@ -176,6 +176,11 @@ impl Mesh {
         }
     }
 
+    /// The names of points, in alphabetical order.
+    pub fn point_names(&self) -> impl Iterator<Item = &str> {
+        self.topology.points.keys().map(String::as_str)
+    }
+
     /// The vertices.
     pub fn vertices(&self) -> &[[f64; 2]] {
         &self.vertices

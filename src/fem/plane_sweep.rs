@@ -35,11 +35,12 @@ pub(super) enum Fault {
     Covered { edge: usize, below: Option<usize> },
 }
 
-/// Sweeps until there is a fault; tells of each edge that a question asks for, the vertex of the question and the edge.
+/// Sweeps until there is a fault; tells of each edge that a question asks for, the vertex of the question and the edge, until
+/// the answer is not to go on.
 pub(super) fn sweep(
     edges: &Edges,
     questions: &[Question],
-    mut near: impl FnMut(usize, usize),
+    mut near: impl FnMut(usize, usize) -> bool,
 ) -> Result<(), Fault> {
     let mut sweep = Sweep::new(edges);
     let mut questions: Vec<&Question> = questions.iter().collect();
@@ -48,7 +49,9 @@ pub(super) fn sweep(
     for rank in 0..sweep.vertices.len() {
         let x = edges.places[sweep.vertices[rank]].x;
         while let Some(question) = asked.next_if(|question| question.x < x) {
-            sweep.answer(question, &mut near);
+            if !sweep.answer(question, &mut near) {
+                return Ok(());
+            }
         }
         sweep.pass(rank)?;
     }
@@ -168,14 +171,17 @@ impl<'a> Sweep<'a> {
         Ok(())
     }
 
-    fn answer(&self, question: &Question, near: &mut impl FnMut(usize, usize)) {
+    fn answer(&self, question: &Question, near: &mut impl FnMut(usize, usize) -> bool) -> bool {
         let &Question { vertex, x, between: [low, high] } = question;
         let [low, high] = [low, high].map(|y| Vector2::new(x, y));
         let mut at = self.column.first_not(|e| self.side(e, low) > 0.0);
         while let Some(e) = self.column.get(at).filter(|&e| self.side(e, high) >= 0.0) {
-            near(vertex, e);
+            if !near(vertex, e) {
+                return false;
+            }
             at = self.column.next(at);
         }
+        true
     }
 }
 

@@ -29,7 +29,7 @@ use self::source::Source;
 use self::table::{Table, Value};
 use super::input::{self, Failure, FileError, MOST_OF_A_CASE, Position};
 use crate::certify::{Asked, Target};
-use crate::fem::{Mesh, Perturbation, Problem, Structured};
+use crate::fem::{Mesh, Perturbation, Problem, SharedFunction, Structured};
 use crate::memory;
 use crate::quote;
 use crate::solve::{Method, Settings};
@@ -127,6 +127,11 @@ pub struct ExactCase {
 }
 
 impl Case {
+    /// Returns whether the case itself asks for a certificate: it has quantities in \[certify\], which nothing else proves.
+    pub fn asks_for_certificate(&self) -> bool {
+        !self.asked.forces.is_empty()
+    }
+
     /// The case in this file, its mesh made or read.
     ///
     /// # Errors
@@ -159,15 +164,21 @@ impl Case {
     /// # Errors
     /// As [`Case::read`]; for a mistake in a setting, the place is that setting.
     pub fn parse(file: &Path, text: &str, settings: &[String]) -> Result<Case, FileError> {
-        parse(Source { file, text, settings }, None)
+        parse(Source { file, text, settings, functions: &[] }, None)
     }
 
-    /// The case with this text, which has no \[mesh\], on this mesh.
+    /// The case with this text, which has no \[mesh\], on this mesh. Where the text has `"@0"`, `"@1"`, .. in place of an expression,
+    /// these `functions` stand.
     ///
     /// # Errors
     /// As [`Case::parse`].
-    pub fn on_mesh(file: &Path, text: &str, mesh: Mesh) -> Result<Case, FileError> {
-        parse(Source { file, text, settings: &[] }, Some(mesh))
+    pub fn on_mesh(
+        file: &Path,
+        text: &str,
+        mesh: Mesh,
+        functions: &[SharedFunction],
+    ) -> Result<Case, FileError> {
+        parse(Source { file, text, settings: &[], functions }, Some(mesh))
     }
 }
 

@@ -83,7 +83,8 @@ pub fn write(
     if !picture.is_empty() {
         output.stage(PICTURE, picture.as_bytes())?;
     }
-    if let (Some(continuous), true) = (continuous, extra.certificate) {
+    if let (Some(continuous), true) = (continuous, extra.certificate || case.asks_for_certificate())
+    {
         stage_certificate(&mut output, &case.title, continuous)?;
     }
     results.seconds.write = start.elapsed().as_secs_f64();
@@ -250,7 +251,8 @@ pub fn results(
     let remarks: Vec<String> =
         untouched.filter_map(|part| nearest(case, solution, &part.boundary)).collect();
     results.remarks.extend(remarks);
-    if let (Some(Err(error)), true) = (&solved.certified, extra.certificate) {
+    let is_asked = extra.certificate || case.asks_for_certificate();
+    if let (Some(Err(error)), true) = (&solved.certified, is_asked) {
         results.missing.push(format!("certificate: {error}"));
     }
     if let Some(Adaptation { reason: Some(reason), .. }) = &solved.adaptation {

@@ -350,7 +350,7 @@ fn wrong_arguments_end_with_exit_code_2_and_what_was_probably_meant() {
         "tip: a case is solved by 'signorini solve CASE.toml'",
         "'--set method.degree=2'",
         "'--json'",
-        "tip: the commands are solve, check, sweep",
+        "tip: the commands are new, check, solve",
         "'--out DIR'",
         "tip: one case at a time",
     ];

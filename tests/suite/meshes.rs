@@ -229,8 +229,8 @@ fn curves_that_are_no_boundaries_are_errors_only_where_they_are_used() {
 
 #[test]
 fn a_point_is_one_vertex() {
-    assert_eq!(error_with("points", "point.5.displacement = [0, \"free\"]\n").as_str(), "read");
-    let error = error_with("points", "point.p.displacement = [0, \"free\"]\n");
+    assert_eq!(error_with("points", "[point.5]\ndisplacement = [0, \"free\"]\n").as_str(), "read");
+    let error = error_with("points", "[point.p]\ndisplacement = [0, \"free\"]\n");
     assert_eq!(error, "[point.p]: 2 points have the name 'p'; expected one");
 }
 
