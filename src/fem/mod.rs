@@ -32,6 +32,7 @@ pub mod moments;
 #[doc(hidden)]
 pub mod obstacle;
 pub mod piece;
+mod plane_sweep;
 #[doc(hidden)]
 pub mod problem;
 #[doc(hidden)]

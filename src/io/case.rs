@@ -29,7 +29,7 @@ use self::source::Source;
 use self::table::{Table, Value};
 use super::input::{self, Failure, FileError, MOST_OF_A_CASE, Position};
 use crate::certify::{Asked, Target};
-use crate::fem::{Mesh, Perturbation, Problem, Structured};
+use crate::fem::{Mesh, Perturbation, Problem, SharedFunction, Structured};
 use crate::memory;
 use crate::quote;
 use crate::solve::{Method, Settings};
@@ -68,6 +68,8 @@ pub struct Case {
     pub exact: Option<ExactCase>,
     /// The text that it was read from, with a comment for each setting laid over it.
     pub text: String,
+    /// What was decided when the mesh was read, in sentences for people.
+    pub remarks: Vec<String>,
     /// The files that all this was read from.
     pub sources: Vec<PathBuf>,
 }
@@ -125,6 +127,11 @@ pub struct ExactCase {
 }
 
 impl Case {
+    /// Returns whether the case itself asks for a certificate: it has quantities in \[certify\], which nothing else proves.
+    pub fn asks_for_certificate(&self) -> bool {
+        !self.asked.forces.is_empty()
+    }
+
     /// The case in this file, its mesh made or read.
     ///
     /// # Errors
@@ -157,15 +164,21 @@ impl Case {
     /// # Errors
     /// As [`Case::read`]; for a mistake in a setting, the place is that setting.
     pub fn parse(file: &Path, text: &str, settings: &[String]) -> Result<Case, FileError> {
-        parse(Source { file, text, settings }, None)
+        parse(Source { file, text, settings, functions: &[] }, None)
     }
 
-    /// The case with this text, which has no \[mesh\], on this mesh.
+    /// The case with this text, which has no \[mesh\], on this mesh. Where the text has `"@0"`, `"@1"`, .. in place of an expression,
+    /// these `functions` stand.
     ///
     /// # Errors
     /// As [`Case::parse`].
-    pub fn on_mesh(file: &Path, text: &str, mesh: Mesh) -> Result<Case, FileError> {
-        parse(Source { file, text, settings: &[] }, Some(mesh))
+    pub fn on_mesh(
+        file: &Path,
+        text: &str,
+        mesh: Mesh,
+        functions: &[SharedFunction],
+    ) -> Result<Case, FileError> {
+        parse(Source { file, text, settings: &[], functions }, Some(mesh))
     }
 }
 
@@ -208,7 +221,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
     let units = root.optional_section("units", read_units)?;
     let thickness = root.optional_section("body", read_thickness)?;
     let folder = file.parent().unwrap_or(Path::new(""));
-    let Meshed { mesh, structured, perturbation, file: mesh_file } =
+    let Meshed { mesh, structured, perturbation, file: mesh_file, remarks } =
         read_mesh(root, given, folder)?;
     let table = root.required_section("material", &format!("{} in it", body::EXPECTED))?;
     let (material, materials) = read_materials(&table, &mesh)?;
@@ -236,6 +249,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
         probes,
         exact: solution.map(|solution| ExactCase { solution, kinds, structured, perturbation }),
         text: String::new(),
+        remarks,
         sources: std::iter::once(file.to_owned()).chain(mesh_file).collect(),
     })
 }

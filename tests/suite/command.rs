@@ -184,6 +184,12 @@ fn check_reports_and_writes_nothing() {
         text(&output.stdout),
         "Block
   mesh         32 P1 triangles, 50 unknowns, 4 contact edges, h = 0.3536
+  boundaries   bottom: contact, initial gap 0, length 1
+               top: displacement prescribed, length 1
+               left: nothing is prescribed, length 1
+               right: nothing is prescribed, length 1
+  body         total load (0, 1)
+  held         by its supports
   prescribed   10 of the unknowns
   coercivity   gamma0 = 0.05893 (limit 0.1179 at the edge (0, 0)-(0.25, 0)), kappa = 0.5 < 1: coercive
   quadrature   exact: contact edges are cut at the roots of P
@@ -344,7 +350,7 @@ fn wrong_arguments_end_with_exit_code_2_and_what_was_probably_meant() {
         "tip: a case is solved by 'signorini solve CASE.toml'",
         "'--set method.degree=2'",
         "'--json'",
-        "tip: the commands are solve, check, sweep",
+        "tip: the commands are new, check, solve",
         "'--out DIR'",
         "tip: one case at a time",
     ];

@@ -8,7 +8,7 @@ use super::exact::read_kind;
 use super::table::{Spot, Table, Value};
 use crate::fem::{Condition, Mesh, Obstacle, PointSupport, SharedFunction, Side};
 use crate::io::input::FileError;
-use crate::quote::names;
+use crate::quote::{names, quoted};
 use crate::study::Exact;
 use crate::study::exact::Kind;
 
@@ -40,9 +40,11 @@ pub(super) fn read_boundaries(
         }
         let condition = match solution {
             None => {
-                let length: f64 = edges.iter().map(|&e| mesh.length_and_normal(e).0).sum();
-                let area = length * thickness.unwrap_or(1.0);
-                read_condition(&all.subsection(key)?, &obstacles, area)?
+                let force = |force: [f64; 2]| {
+                    let per_thickness = force.map(|force| force / thickness.unwrap_or(1.0));
+                    Condition::force(per_thickness, mesh, key).map_err(|error| at.mesh(error))
+                };
+                read_condition(&all.subsection(key)?, &obstacles, force)?
             }
             Some(solution) => {
                 let kind = read_kind(&all.require(key, "a kind")?)?;
@@ -52,6 +54,7 @@ pub(super) fn read_boundaries(
         };
         conditions.insert(key.to_owned(), condition);
     }
+    mesh.check_apart(conditions.keys().map(String::as_str)).map_err(|error| all.at.mesh(error))?;
     if !conditions.values().any(Condition::is_contact) {
         return Err(all.at.found("no contact", expected));
     }
@@ -61,8 +64,10 @@ pub(super) fn read_boundaries(
     match obstacles.iter().find(|(name, _)| !is_used(name)) {
         None => Ok((conditions, kinds)),
         Some((name, (at, _))) => {
-            let expected =
-                format!("one, such as [boundary.bottom] contact = {{ obstacle = \"{name}\" }}");
+            let expected = format!(
+                "one, such as [boundary.bottom] contact = {{ obstacle = {} }}",
+                quoted(name, '"')
+            );
             Err(at.found("no boundary in contact with it", &expected))
         }
     }
@@ -71,17 +76,29 @@ pub(super) fn read_boundaries(
 const CONDITIONS: [&str; 7] =
     ["displacement", "traction", "pressure", "normal", "tangential", "contact", "force"];
 
-/// The condition on a boundary that has this area.
-fn read_condition(table: &Table, obstacles: &Obstacles, area: f64) -> Result<Condition, FileError> {
-    table.only(&CONDITIONS)?;
+/// The condition on a boundary on which a whole force is what `force` says.
+fn read_condition(
+    table: &Table,
+    obstacles: &Obstacles,
+    force: impl Fn([f64; 2]) -> Result<Condition, FileError>,
+) -> Result<Condition, FileError> {
+    table.only(&[&CONDITIONS[..], &["where"]].concat())?;
     let value = |key| table.require(key, "a value");
     Ok(match table.given(&CONDITIONS)[..] {
-        ["force"] => {
-            Condition::Traction(value("force")?.vector()?.map(|force| constant(force / area)))
-        }
+        ["force"] => force(value("force")?.vector()?)?,
         ["displacement"] => Condition::Displacement(components(&value("displacement")?)?),
         ["traction"] => Condition::Traction(value("traction")?.functions()?),
-        ["displacement", "traction"] => read_mixed(table)?,
+        ["displacement", "traction"] => {
+            let traction = value("traction")?;
+            read_mixed(table, &traction, traction.functions()?)?
+        }
+        ["displacement", "force"] => {
+            let of_force = value("force")?;
+            match force(of_force.vector()?)? {
+                Condition::Traction(traction) => read_mixed(table, &of_force, traction)?,
+                other => other,
+            }
+        }
         ["pressure"] => Condition::Pressure(value("pressure")?.function()?),
         ["normal"] | ["tangential"] | ["normal", "tangential"] => Condition::Support {
             normal: table.optional("normal", Value::function)?,
@@ -111,15 +128,18 @@ fn component(value: &Value) -> Result<Option<SharedFunction>, FileError> {
     }
 }
 
-/// A displacement in one component, a traction in the other: what is given in the first must be 0 in the second.
-fn read_mixed(table: &Table) -> Result<Condition, FileError> {
-    let [displacement, traction] = ["displacement", "traction"].map(|k| table.require(k, "a list"));
-    let (displacement, of_traction) = (components(&displacement?)?, traction?);
-    let traction = of_traction.functions()?;
+/// A displacement in one component, a traction or a force in the other, which is `given`: what is given in the first must be 0 in the
+/// second.
+fn read_mixed(
+    table: &Table,
+    given: &Value,
+    traction: [SharedFunction; 2],
+) -> Result<Condition, FileError> {
+    let displacement = components(&table.require("displacement", "a list")?)?;
     for c in 0..2 {
         let acts = traction[c].degree() != Some(0) || traction[c].at([0.0; 2]) != 0.0;
         if displacement[c].is_some() && acts {
-            return Err(of_traction.pair()?[c].wrong(&format!(
+            return Err(given.pair()?[c].wrong(&format!(
                 "0: the displacement is given in this component, so its traction is the reaction ({})",
                 table.at.name
             )));
