@@ -57,7 +57,7 @@ pub fn run(
     } else {
         FAILED
     };
-    Ok(Done { code, ..summarised(&summary::swept(&sweep.title, &sweep.table(), &written), quiet) })
+    Ok(Done { code, ..summarised(&summary::swept(&sweep, &written), quiet) })
 }
 
 /// The exit code of a run with these results.

@@ -9,6 +9,7 @@ use super::contact_line::{self, Coercivity, Gamma};
 use super::data::DataError;
 use super::dense::inner;
 use super::element::Degree;
+use super::held;
 use super::loads::{self, LoadVector};
 use super::material;
 use super::problem::Problem;
@@ -110,6 +111,7 @@ impl<'a> Discretization<'a> {
         let LoadVector { in_doubles: load, in_balls: enclosed_load } =
             loads::assemble_twice(problem, &space)?;
         let contact = contact_line::assemble(problem, &space, gamma)?;
+        held::check(&constraints, &space, &contact)?;
         let (parts, motions) = constraints.free_motions(&space);
         let mut slides = None;
         if !motions.is_empty() {

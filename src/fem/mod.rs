@@ -18,6 +18,7 @@ mod function;
 #[doc(hidden)]
 pub mod graded_quadrature;
 mod groups;
+mod held;
 #[doc(hidden)]
 pub mod korn;
 pub mod loads;

@@ -10,7 +10,7 @@ use super::fields::stage_fields;
 use super::files::{NotFinite, Output};
 use super::input::Failure;
 use super::picture::draw;
-use super::remarks::{nearest, remarks};
+use super::remarks::{Words, remarks};
 use super::report;
 use super::result::{
     Adaptation, Certificates, Choices, ContinuousCertificate, DiscreteCertificate, GammaChoice,
@@ -189,7 +189,9 @@ pub fn results(
         }
         None => None,
     };
-    let mut remarks = remarks(case, solution);
+    let known = solved.adaptation.as_ref().filter(|adaptation| adaptation.met);
+    let known_force = known.and_then(|adaptation| adaptation.force.clone());
+    let mut remarks = remarks(&case.problem, solution, &Words { known_force, ..case.words() });
     let errors = errors.filter(Errors::is_finite);
     if case.exact.is_some() && errors.is_none() {
         remarks.push(NO_ERRORS.to_owned());
@@ -246,10 +248,6 @@ pub fn results(
             write: 0.0,
         },
     };
-    let untouched = results.contact.iter().filter(|part| !results.is_in_contact(part));
-    let remarks: Vec<String> =
-        untouched.filter_map(|part| nearest(case, solution, &part.boundary)).collect();
-    results.remarks.extend(remarks);
     if let (Some(Err(error)), true) = (&solved.certified, extra.certificate) {
         results.missing.push(format!("certificate: {error}"));
     }

@@ -170,20 +170,10 @@ pub struct Adaptation {
     pub levels: Vec<AdaptedLevel>,
 }
 
-/// A contact force below this share of all forces is rounding.
-const NO_FORCE: f64 = 1e-10;
-
 impl Results {
-    /// The sum of the magnitudes of contact forces and reactions.
-    pub(crate) fn all_forces(&self) -> f64 {
-        let contact: f64 = self.contact.iter().map(|part| part.force.abs()).sum();
-        let reactions = self.quantities.reactions.values().map(|[x, y]| x.hypot(*y));
-        contact.max(self.quantities.contact_force.abs()) + reactions.sum::<f64>()
-    }
-
     /// Returns whether a boundary carries more than rounding.
     pub(crate) fn is_in_contact(&self, part: &ContactBoundary) -> bool {
-        part.force > NO_FORCE * self.all_forces()
+        self.quantities.presses(part, &self.contact)
     }
 
     /// Returns whether the solution is not proved, or something else that was asked for could not be had.

@@ -10,6 +10,7 @@ use super::result::{
     Adaptation, ContinuousCertificate, DiscreteCertificate, GammaChoice, MeshSizes, NewtonHistory,
     Results, Seconds, StressPeak,
 };
+use super::sweep::Sweep;
 use super::{Case, numbers};
 use crate::certify::Continuous;
 use crate::certify::adapt::AdaptedLevel;
@@ -60,14 +61,12 @@ pub(crate) fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
     reactions(r, &shown, verbose, &mut lines);
     let largest = shown.number(r.quantities.max_displacement, Measure::Length);
     lines.line("displacement", format!("up to {largest}"));
-    for remark in r.remarks.iter().cloned().chain(r.play.iter().map(|play| free(play, &shown))) {
+    for remark in remarks(r) {
         lines.line("remark", remark);
     }
     let certificates = r.certificate.as_ref();
-    if let Some(discrete) = certificates.and_then(|c| c.discrete.as_ref()) {
-        lines.line("proved", enclosed(discrete));
-    }
-    if let Some(continuous) = certificates.and_then(|c| c.continuous.as_ref()) {
+    let continuous = certificates.and_then(|c| c.continuous.as_ref());
+    if let Some(continuous) = continuous {
         distance(continuous, &mut lines);
     }
     if let Some(adapt) = &r.adapt {
@@ -84,7 +83,21 @@ pub(crate) fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
         );
     }
     how_it_was_solved(r, &shown, verbose, &mut lines);
+    if let Some(discrete) = certificates.and_then(|c| c.discrete.as_ref()) {
+        if verbose {
+            lines.line("proved", enclosed(discrete));
+        }
+        let how_far =
+            if continuous.is_none() { "; how far the mesh is off: --certificate" } else { "" };
+        lines.line("solved", solved_exactly(discrete) + how_far);
+    }
     lines.0
+}
+
+/// All remarks on a result, those on motions that nothing stops included.
+pub fn remarks(r: &Results) -> Vec<String> {
+    let shown = QuantityFormat::of(r);
+    r.remarks.iter().cloned().chain(r.play.iter().map(|play| free(play, &shown))).collect()
 }
 
 /// The format of quantities: each with its unit, those per unit of thickness times the thickness.
@@ -97,7 +110,7 @@ struct QuantityFormat {
 
 impl QuantityFormat {
     fn of(r: &Results) -> QuantityFormat {
-        let no_force = (1e-10 * r.all_forces()).max(rounding(r));
+        let no_force = (1e-10 * r.quantities.all_forces(&r.contact)).max(rounding(r));
         QuantityFormat { units: r.units.clone(), thickness: r.thickness, no_force }
     }
 
@@ -374,6 +387,29 @@ pub fn audited(audit: &Audit, case: Option<(&Path, Option<&str>)>) -> String {
     lines.under(&header.title)
 }
 
+/// The most digits that a double has.
+const MOST_DIGITS: f64 = 15.0;
+
+/// Says how many digits of the discrete solution are proved.
+fn solved_exactly(certificate: &DiscreteCertificate) -> String {
+    let sliding = if certificate.unique { "" } else { ", but for sliding" };
+    let digits = match (certificate.radius, certificate.relative) {
+        (None, _) => {
+            let reason = certificate.reason.as_deref().unwrap_or_default();
+            return format!("for this mesh, how exactly is not proved: {reason}");
+        }
+        (Some(_), Some(relative)) if relative > 0.0 => (-relative.log10()).floor().min(MOST_DIGITS),
+        _ => return format!("exactly for this mesh{sliding}, rounding included"),
+    };
+    match digits {
+        digits if digits >= 1.0 => {
+            let digits = count(digits as usize, "digit");
+            format!("exactly for this mesh{sliding}, to {digits}, rounding included")
+        }
+        _ => format!("for this mesh{sliding}, to less than a digit, rounding included"),
+    }
+}
+
 /// Says how far the solution can be from the exact solution of the discrete equations (8), and whether there is one.
 fn enclosed(certificate: &DiscreteCertificate) -> String {
     let reason = certificate.reason.as_deref().unwrap_or_default();
@@ -462,8 +498,8 @@ pub fn checked(case: &Case, outline: &Outline) -> String {
             ContactQuadrature::Gauss(n) => format!("{n} Gauss points on each contact edge"),
         },
     );
-    if let Some(overlap) = super::remarks::overlap(case) {
-        lines.line("remark", overlap);
+    for remark in super::remarks::before(&case.problem, case.method.degree, &case.words()) {
+        lines.line("remark", remark);
     }
     lines.under(&case.title)
 }
@@ -473,8 +509,11 @@ pub fn studied(case: &Case, studies: &[Study], files: &[PathBuf]) -> String {
     format!("{}\n\n{}\nwritten: {}\n", quote::line(&case.title), tables.join("\n"), written(files))
 }
 
-pub fn swept(title: &str, table: &str, files: &[PathBuf]) -> String {
-    format!("{}\n\n{table}\nwritten: {}\n", quote::line(title), written(files))
+pub fn swept(sweep: &Sweep, files: &[PathBuf]) -> String {
+    let (title, table) = (quote::line(&sweep.title), sweep.table());
+    let remarks = sweep.remarks();
+    let remarks = if remarks.is_empty() { remarks } else { format!("\n{remarks}") };
+    format!("{title}\n\n{table}{remarks}\nwritten: {}\n", written(files))
 }
 
 fn sizes(mesh: &MeshSizes) -> String {
@@ -551,7 +590,7 @@ fn free(play: &Play, shown: &QuantityFormat) -> String {
         (Some(least), Some(most)) => format!("from {} to {}", end(least), end(most)),
     };
     format!(
-        "the body can still {motion}, {range}: no support and no obstacle that it presses on stops it. The displacement given is the one of least norm; in reality friction would decide"
+        "the body can still {motion}, {range}: no support and no obstacle that it presses on stops it. One displacement of many is shown, the smallest; in reality friction would decide"
     )
 }
 

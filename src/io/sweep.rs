@@ -16,11 +16,15 @@ use super::numbers::short;
 use super::outputs::{self, Extra};
 use super::result::Results;
 use super::run;
+use super::summary;
 use crate::quote;
 use crate::solve::Solution;
 
 /// The most runs of a sweep: more are a mistake of the person who asks for them.
 pub const MOST_RUNS: usize = 10_000;
+
+/// The most remarks below the table.
+const MOST_REMARKS: usize = 20;
 
 /// A key of the case file and the values that it takes, such as `method.gamma0=1e-3,1e-2`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -204,6 +208,7 @@ fn cells(r: &Results, shown: NumberFormat) -> Vec<(String, String)> {
         ("max_displacement", Some(shown(q.max_displacement))),
         ("energy", Some(shown(q.energy * thickness))),
         ("energy_error", r.errors.as_ref().map(|errors| shown(errors.energy))),
+        ("remarks", Some(summary::remarks(r).len().to_string())),
     ];
     let brief = brief.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?)));
     let mut cells: Vec<(String, String)> = brief.collect();
@@ -289,6 +294,29 @@ impl Sweep {
             cells.collect::<String>() + status + "\n"
         };
         lines.iter().map(line).collect()
+    }
+
+    /// The remarks on the runs, a line each: those that several runs share once, with the numbers of these; empty if there are none.
+    pub fn remarks(&self) -> String {
+        let mut remarks: Vec<(String, Vec<String>)> = Vec::new();
+        for (i, results) in (1..).zip(&self.results) {
+            for text in results.iter().flat_map(summary::remarks) {
+                let run = format!("{i}");
+                match remarks.iter_mut().find(|(other, _)| *other == text) {
+                    Some((_, runs)) => runs.push(run),
+                    None => remarks.push((text, vec![run])),
+                }
+            }
+        }
+        let line = |(text, runs): &(String, Vec<String>)| {
+            let of = quote::names(runs.iter().map(String::as_str));
+            format!("remark on row {of}: {}\n", quote::unbroken(text))
+        };
+        let rest = remarks.len().saturating_sub(MOST_REMARKS);
+        let more =
+            format!("and {rest} more remarks: solve the row alone, or --files, shows them\n");
+        let shown: String = remarks.iter().take(MOST_REMARKS).map(line).collect();
+        if rest > 0 { shown + &more } else { shown }
     }
 
     /// The text of sweep.csv: each number the shortest decimal that reads back to the same double.

@@ -92,6 +92,10 @@ impl Unproved {
     }
 }
 
+/// A body whose energy norm is below this is at rest: the energies that [`solve`](super::solve) does not refuse are above 1e-270, and
+/// a slender body may have as little of it as this.
+const LEAST_NORM: f64 = 1e-150;
+
 /// Encloses the solution of (8) around the displacement `u`, in balls throughout: as [`Verifier::enclose`]. A factor of A that is
 /// at hand saves making one; nothing depends on its being right.
 ///
@@ -336,9 +340,10 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
 }
 
 impl Enclosure {
-    /// Returns whether the relative radius is at most `proof`.
+    /// Returns whether the relative radius is at most `proof`. A body at rest has no energy to compare with: its radius is to be
+    /// that of rounding alone.
     pub(crate) fn is_within(&self, proof: f64) -> bool {
-        self.radius == 0.0 || self.relative.is_some_and(|relative| relative <= proof)
+        self.radius < LEAST_NORM || self.relative.is_some_and(|relative| relative <= proof)
     }
 }
 

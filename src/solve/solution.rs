@@ -60,6 +60,8 @@ pub struct Solution {
     pub balance: EnergyBalance,
     /// The largest principal strain, in magnitude, of the mean strain on a triangle.
     pub largest_strain: f64,
+    /// Where that is: the middle of the triangle, in the undeformed body.
+    pub largest_strain_at: [f64; 2],
 }
 
 /// gamma0 and the coercivity number.
@@ -138,6 +140,23 @@ pub struct Quantities {
     pub reaction_moments: BTreeMap<String, f64>,
 }
 
+/// A contact force below this share of all forces is rounding.
+const NO_FORCE: f64 = 1e-10;
+
+impl Quantities {
+    /// The sum of the magnitudes of the reactions and of the forces on all parts of Gamma_C.
+    pub(crate) fn all_forces(&self, boundaries: &[ContactBoundary]) -> f64 {
+        let contact: f64 = boundaries.iter().map(|part| part.force.abs()).sum();
+        let reactions = self.reactions.values().map(|[x, y]| x.hypot(*y));
+        contact.max(self.contact_force.abs()) + reactions.sum::<f64>()
+    }
+
+    /// Returns whether one of the parts of Gamma_C carries more than rounding.
+    pub(crate) fn presses(&self, part: &ContactBoundary, boundaries: &[ContactBoundary]) -> bool {
+        part.force > NO_FORCE * self.all_forces(boundaries)
+    }
+}
+
 impl Solution {
     /// Evaluates all reported quantities of a displacement.
     pub fn new(d: &Discretization, evaluated: Evaluated, report: Report) -> Self {
@@ -145,6 +164,7 @@ impl Solution {
         let quantities = quantities(d, &evaluated);
         let Evaluated { u, p, residual } = evaluated;
         let recovered = answers::recovered_pressure(d, &p);
+        let (largest_strain, largest_strain_at) = answers::largest_strain(d, &u);
         let with_material =
             || stress.iter().enumerate().map(|(t, &s)| (d.problem.material.of(t), s));
         Solution {
@@ -156,7 +176,8 @@ impl Solution {
             stress: with_material().map(|(m, s)| (s, m.stress_zz(s))).collect(),
             contact: contact_values(d, &u, &p, &recovered),
             boundaries: answers::contact_boundaries(d, &u, &p, &recovered),
-            largest_strain: answers::largest_strain(d, &u),
+            largest_strain,
+            largest_strain_at,
             balance: answers::energy_balance(d, &u, &p, &residual, quantities.energy),
             gamma: GammaReport::new(d),
             newton: report.newton,
