@@ -16,6 +16,7 @@ use std::process::ExitCode;
 use clap::CommandFactory;
 use signorini::io::Failure;
 use signorini::io::input::reason;
+use signorini::io::sweep::Extent;
 use signorini::io::{Case, summary};
 use signorini::{quote, solve as library};
 
@@ -56,8 +57,9 @@ pub fn run() -> ExitCode {
             certify::certify(case, displacement, out.as_deref(), quiet)
         }
         Task::Check { case } => check(case, quiet),
-        Task::Sweep { case, axes, files, out } => {
-            sweep::run(case, axes, *files, out.as_deref(), quiet)
+        Task::Sweep { case, axes, files, jobs, out } => {
+            let extent = Extent { files: *files, jobs: usize::from(*jobs) };
+            sweep::run(case, axes, extent, out.as_deref(), quiet)
         }
         Task::Convergence { case, study, out } => study::run(case, study, out.as_deref(), quiet),
         Task::Completions { shell } => Ok(completions(*shell)),

@@ -251,6 +251,7 @@ pub fn results(
     if let (Some(Err(error)), true) = (&solved.certified, extra.certificate) {
         results.missing.push(format!("certificate: {error}"));
     }
+    results.of_thickness(case.thickness.unwrap_or(1.0));
     if let Some(Adaptation { reason: Some(reason), .. }) = &solved.adaptation {
         results.missing.push(format!("mesh that meets the target of [adapt]: {reason}"));
     }

@@ -16,7 +16,7 @@ use crate::certify::Continuous;
 use crate::certify::adapt::AdaptedLevel;
 use crate::fem::solvability::Play;
 use crate::quote;
-use crate::solve::{ContactQuadrature, MethodReport, Outline, RouteName, Status};
+use crate::solve::{ContactBoundary, ContactQuadrature, MethodReport, Outline, RouteName, Status};
 
 /// Lines of a name and a text; one without a name goes on with what the one before it is about.
 #[derive(Default)]
@@ -100,7 +100,7 @@ pub fn remarks(r: &Results) -> Vec<String> {
     r.remarks.iter().cloned().chain(r.play.iter().map(|play| free(play, &shown))).collect()
 }
 
-/// The format of quantities: each with its unit, those per unit of thickness times the thickness.
+/// The format of quantities: each with its unit.
 struct QuantityFormat {
     units: Option<Units>,
     thickness: Option<f64>,
@@ -114,10 +114,6 @@ impl QuantityFormat {
         QuantityFormat { units: r.units.clone(), thickness: r.thickness, no_force }
     }
 
-    fn whole(&self, per_thickness: f64) -> f64 {
-        per_thickness * self.thickness.unwrap_or(1.0)
-    }
-
     fn with_unit(&self, shown: String, measure: Measure) -> String {
         match &self.units {
             Some(units) => format!("{shown} {}", units.of(measure, self.thickness)),
@@ -126,13 +122,12 @@ impl QuantityFormat {
     }
 
     fn number(&self, x: f64, measure: Measure) -> String {
-        let per_thickness = matches!(measure, Measure::Force | Measure::Moment);
-        self.with_unit(short(if per_thickness { self.whole(x) } else { x }), measure)
+        self.with_unit(short(x), measure)
     }
 
     /// The components of a force, without the unit.
     fn components(&self, f: [f64; 2]) -> String {
-        vector(f.map(|c| if c.abs() > self.no_force { self.whole(c) } else { 0.0 }))
+        vector(f.map(|c| if c.abs() > self.no_force { c } else { 0.0 }))
     }
 }
 
@@ -147,10 +142,23 @@ fn moduli(material: &MaterialEcho) -> String {
     }
 }
 
-/// The force, per unit of thickness, that is one rounding error of the displacement times the stiffest modulus.
+fn stiffest(r: &Results) -> f64 {
+    r.materials.iter().fold(0.0, |most: f64, of| most.max(of.stiffest()))
+}
+
+/// The force that is one rounding error of the displacement times the stiffest modulus.
 fn rounding(r: &Results) -> f64 {
-    let stiffest = r.materials.iter().fold(0.0, |most: f64, of| most.max(of.stiffest()));
-    f64::EPSILON * stiffest * r.quantities.max_displacement
+    let thickness = r.thickness.unwrap_or(1.0);
+    f64::EPSILON * stiffest(r) * r.quantities.max_displacement * thickness
+}
+
+/// The number of roundings that a stress of a triangle is made of, or more.
+const ROUNDINGS: f64 = 16.0;
+
+/// Returns whether a stress is no larger than what rounding the displacement makes of a body without strain.
+pub(super) fn is_no_stress(r: &Results, stress: f64) -> bool {
+    let strain = ROUNDINGS * f64::EPSILON * r.quantities.max_displacement / r.mesh.h_max;
+    stress.abs() <= strain * stiffest(r)
 }
 
 fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines) {
@@ -163,7 +171,9 @@ fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines
         let peak = shown.number(q.peak_pressure, Measure::Stress);
         lines.line("contact", format!("force {force}, length {length}, peak pressure {peak}"));
     }
-    for (i, part) in r.contact.iter().enumerate() {
+    let mut parts: Vec<&ContactBoundary> = r.contact.iter().collect();
+    parts.sort_by(|a, b| quote::natural(&a.boundary, &b.boundary));
+    for (i, part) in parts.into_iter().enumerate() {
         let name = if i == 0 { "contact" } else { "" };
         let boundary = quote::cut(&part.boundary);
         if !r.is_in_contact(part) {
@@ -185,7 +195,7 @@ fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines
             Some((ends, rigorous)) => format!(
                 ", {} {}; components {components}",
                 if rigorous { "proved" } else { "with a reservation" },
-                between(ends.map(|end| shown.whole(end)))
+                between(ends)
             ),
             None => format!(" {components}"),
         };
@@ -224,7 +234,8 @@ fn stress(r: &Results, shown: &QuantityFormat, lines: &mut Lines) {
             Some(surface) if r.materials.len() > 1 => format!(" in {}", quote::cut(surface)),
             _ => String::new(),
         };
-        format!("{} at {}{surface}", shown.number(peak.value, Measure::Stress), vector(peak.at))
+        let stress = if is_no_stress(r, peak.value) { 0.0 } else { peak.value };
+        format!("{} at {}{surface}", shown.number(stress, Measure::Stress), vector(peak.at))
     };
     lines.line("stress", format!("von Mises up to {}", value(&stress.von_mises)));
     let [low, high] = [&stress.principal_min, &stress.principal_max].map(value);
@@ -232,7 +243,9 @@ fn stress(r: &Results, shown: &QuantityFormat, lines: &mut Lines) {
 }
 
 fn reactions(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines) {
-    for (i, (boundary, reaction)) in r.quantities.reactions.iter().enumerate() {
+    let mut reactions: Vec<(&String, &[f64; 2])> = r.quantities.reactions.iter().collect();
+    reactions.sort_by(|a, b| quote::natural(a.0, b.0));
+    for (i, (boundary, reaction)) in reactions.into_iter().enumerate() {
         let name = if i == 0 { "reactions" } else { "" };
         let moment = r.reaction_moments.get(boundary).filter(|_| verbose);
         let moment = moment
@@ -265,9 +278,10 @@ fn how_it_was_solved(r: &Results, shown: &QuantityFormat, verbose: bool, lines: 
         lines.line("accuracy", accuracy(method));
     }
     if verbose {
-        let [energy, work] =
-            [r.quantities.energy, r.quantities.work].map(|e| shown.number(e, Measure::Moment));
-        lines.line("energy", format!("a(u,u) = {energy}, L(u) = {work}"));
+        let [elastic, energy, work] =
+            [r.quantities.energy / 2.0, r.quantities.energy, r.quantities.work]
+                .map(|e| shown.number(e, Measure::Moment));
+        lines.line("energy", format!("elastic energy {elastic}, a(u,u) = {energy}, L(u) = {work}"));
     }
     if let Some(balance) = &r.balance {
         let parts = [balance.loads, balance.supports, balance.contact];

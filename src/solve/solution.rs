@@ -119,8 +119,12 @@ pub struct ContactValues {
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
 pub struct Quantities {
-    /// a(u, u)
+    /// a(u, u), twice the elastic energy.
+    #[cfg_attr(feature = "files", serde(rename = "a_uu", alias = "energy"))]
     pub energy: f64,
+    /// The elastic energy, a(u, u) / 2; 0 in a result that does not say so.
+    #[cfg_attr(feature = "files", serde(default))]
+    pub elastic_energy: f64,
     /// L(u)
     pub work: f64,
     /// The largest Euclidean norm of u over the nodes.
@@ -266,8 +270,10 @@ fn contact_values(
 }
 
 fn quantities(d: &Discretization, Evaluated { u, p, residual }: &Evaluated) -> Quantities {
+    let energy = d.strain_energy(u);
     let mut q = Quantities {
-        energy: d.strain_energy(u),
+        energy,
+        elastic_energy: energy / 2.0,
         work: inner(&d.load, u),
         max_displacement: u.iter().fold(0.0, |max, v| f64::max(max, v[0].hypot(v[1]))),
         contact_force: 0.0,
