@@ -3,9 +3,10 @@
 //! grows as the mesh is refined.
 
 use super::constraints::{Constraints, from_frame};
-use super::contact_face::ContactFace;
+use super::contact_line::ContactLine;
 use super::data::DataError;
 use super::mesh::NO_ANGLE;
+use super::piece::Stretch;
 use super::space::Space;
 use super::tree::Bounds;
 
@@ -19,14 +20,15 @@ const NO_DEPTH: f64 = 1e-9;
 pub(super) fn check(
     constraints: &Constraints,
     space: &Space,
-    contact: &[ContactFace],
+    line: &ContactLine,
 ) -> Result<(), DataError> {
     let size = Bounds::around(space.mesh().vertices().iter().copied()).size();
-    for face in contact {
-        for (a, node) in space.mesh().ends(face.edge).into_iter().enumerate() {
-            let [x, y]: [f64; 2] = face.directions[a].into();
+    for piece in line.pieces().filter(|piece| piece.stretches.len() == 1) {
+        let Stretch { edge, boundary, .. } = piece.first();
+        for (node, at) in space.mesh().ends(*edge).into_iter().zip(&piece.nodes) {
+            let [x, y]: [f64; 2] = at.direction.into();
             let Some([u, v]) = held_along(constraints, node, [x, y]) else { continue };
-            let depth = u * x + v * y - face.gap[a];
+            let depth = u * x + v * y - at.gap;
             if depth > NO_DEPTH * size {
                 let holds = |(_, held): &(&String, &Vec<super::constraints::Held>)| {
                     held.iter().any(|held| held.node == node)
@@ -35,7 +37,7 @@ pub(super) fn check(
                 let [x, y] = space.nodes()[node];
                 return Err(DataError::HeldInside {
                     support: support.map_or(String::new(), |(name, _)| name.clone()),
-                    boundary: face.boundary.to_string(),
+                    boundary: boundary.to_string(),
                     x,
                     y,
                     depth,

@@ -6,7 +6,7 @@ use super::{NO_LENGTH, Words, named_obstacle, obstacle_of, place, size};
 use crate::fem::boundary_normals::SMOOTH;
 use crate::fem::mesh::ROUNDED;
 use crate::fem::rigid::Parts;
-use crate::fem::{BoundaryEdge, Degree, Mesh, Problem, Space, contact_line};
+use crate::fem::{BoundaryEdge, ContactLine, Degree, Mesh, Problem, Space};
 use crate::io::numbers::short;
 use crate::kernel::Material;
 use crate::quote;
@@ -108,18 +108,18 @@ fn locking_ratio(material: &Material<f64>) -> Option<String> {
 /// Says where the body is deepest in its obstacle before it is loaded, if it is.
 pub(super) fn overlap(problem: &Problem, words: &Words) -> Option<String> {
     let space = Space::new(&problem.mesh, Degree::One);
-    let line = contact_line::assemble(problem, &space, 1.0).ok()?;
+    let line = ContactLine::new(problem, &space).ok()?;
     let points =
-        line.iter().flat_map(|e| e.gap.iter().zip(&e.places).map(move |(g, x)| (*g, *x, e)));
+        line.pieces().flat_map(|piece| piece.nodes.iter().map(move |n| (n.gap, n.place, piece)));
     let least = points.min_by(|a, b| a.0.total_cmp(&b.0));
-    let (gap, deepest, edge) = least.filter(|p| p.0 < -NO_LENGTH * size(problem))?;
-    let question = match named_obstacle(problem, &edge.boundary) {
+    let (gap, deepest, piece) = least.filter(|p| p.0 < -NO_LENGTH * size(problem))?;
+    let question = match named_obstacle(problem, &piece.first().boundary) {
         Some(_) => ": is it in the right place, and is the body on the right side of it?",
         None => "",
     };
     Some(format!(
         "the body overlaps {} by {} at {} before loading{question}",
-        obstacle_of(problem, &edge.boundary),
+        obstacle_of(problem, &piece.first().boundary),
         words.length(-gap),
         place(deepest)
     ))

@@ -100,6 +100,7 @@ pub(super) fn beside_the_line(
             let least = rounding.max(INSIDE * u[0].hypot(u[1])).max(DEEPER * part.penetration);
             (before >= -rounding && -after > least).then_some(-after)
         };
+        let own: BTreeSet<(usize, usize)> = edges.iter().map(|e| (e.triangle, e.local)).collect();
         let of_obstacle = problem.obstacle_of(name).is_some();
         let mut worst: Option<(f64, usize)> = None;
         for &edge in mesh.outline() {
@@ -117,7 +118,9 @@ pub(super) fn beside_the_line(
                     m.x * normal[0] + m.y * normal[1] > 0.8
                 })
             };
-            if edges.contains(&edge) || !(of_obstacle || beside && straight_on()) {
+            if own.contains(&(edge.triangle, edge.local))
+                || !(of_obstacle || beside && straight_on())
+            {
                 continue;
             }
             for node in ends.into_iter().filter(|node| !on_line.contains(node)) {

@@ -3,9 +3,8 @@
 use std::ops::Range;
 
 use super::{Known, NO_LENGTH, Words, place, size};
-use crate::fem::contact_line;
-use crate::fem::element::value_at;
-use crate::fem::{Condition, ContactFace, Problem, Space};
+use crate::fem::piece::PieceGeometry;
+use crate::fem::{Condition, ContactLine, Degree, Problem, Space};
 use crate::quote;
 use crate::solve::solution::ContactEdgeValues;
 use crate::solve::{ContactBoundary, Solution};
@@ -225,9 +224,10 @@ pub(super) fn gaps(problem: &Problem, known: Known, words: &Words) -> Vec<String
         Known::Solution(solution) => solution.degree,
     };
     let space = Space::new(&problem.mesh, degree);
-    let Ok(line) = contact_line::assemble(problem, &space, 1.0) else { return Vec::new() };
-    let by_boundary = line.chunk_by(|a, b| a.boundary == b.boundary);
-    by_boundary.filter_map(|edges| gap(problem, known, words, edges)).collect()
+    let Ok(line) = ContactLine::new(problem, &space) else { return Vec::new() };
+    let pieces: Vec<&PieceGeometry> = line.pieces().collect();
+    let by_boundary = pieces.chunk_by(|a, b| a.first().boundary == b.first().boundary);
+    by_boundary.filter_map(|pieces| gap(problem, (known, degree), words, pieces)).collect()
 }
 
 /// A place on an edge with the gap there and its interpolant.
@@ -243,27 +243,35 @@ impl Interpolated {
     }
 }
 
-fn gap(problem: &Problem, known: Known, words: &Words, edges: &[ContactFace]) -> Option<String> {
-    let name = &*edges[0].boundary;
+fn gap(
+    problem: &Problem,
+    (known, degree): (Known, Degree),
+    words: &Words,
+    pieces: &[&PieceGeometry],
+) -> Option<String> {
+    let name = &*pieces[0].first().boundary;
     let gap_at = |x: [f64; 2]| match problem.conditions.get(name)? {
         Condition::Contact { gap } => Some(gap.at(x)).filter(|gap| gap.is_finite()),
         Condition::Obstacle(_, obstacle) => Some(obstacle.closest(x, String::new).ok()?.gap),
         _ => None,
     };
     let motion = match known {
-        Known::Data(_) => edges.iter().flat_map(|e| &e.gap).fold(0.0, |most: f64, g| most.max(-g)),
+        Known::Data(_) => {
+            pieces.iter().flat_map(|piece| piece.gaps()).fold(0.0, |most: f64, g| most.max(-g))
+        }
         Known::Solution(solution) => {
             let of_line = solution.contact.iter().filter(|edge| &*edge.boundary == name);
             of_line.flat_map(|edge| &edge.points).fold(0.0, |most: f64, p| most.max(p.u_n.abs()))
         }
     };
     let mut worst: Option<Interpolated> = None;
-    for edge in edges.iter().filter(|edge| !edge.curved) {
-        let [a, b] = problem.mesh.places_of_ends(edge.edge);
+    for piece in pieces.iter().filter(|piece| !piece.curved && piece.stretches.len() == 1) {
+        let [a, b] = problem.mesh.places_of_ends(piece.first().edge);
+        let gaps: Vec<f64> = piece.gaps().collect();
         for s in BETWEEN_NODES {
             let at = [0, 1].map(|c| a[c] + s * (b[c] - a[c]));
             let Some(gap) = gap_at(at) else { continue };
-            let found = Interpolated { at, gap, interpolant: value_at(&edge.gap, s) };
+            let found = Interpolated { at, gap, interpolant: degree.value_at(&gaps, s) };
             // A gap that the motion does not close does not matter.
             let closes = found.gap.min(found.interpolant) <= motion;
             if closes && worst.as_ref().is_none_or(|worst| found.off() > worst.off()) {
