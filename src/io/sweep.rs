@@ -430,16 +430,23 @@ impl Sweep {
         )
     }
 
-    /// The key that varies the curves of sweep.svg, and the number in its value of each run: the last key with a number that
-    /// differs from run to run.
+    /// The key along the curves of sweep.svg, and the number in its value of each run: the first number that differs from run to
+    /// run, of the key of which it takes the most values.
     fn abscissa(&self) -> Option<(usize, Vec<f64>)> {
-        (0..self.keys.len()).rev().find_map(|key| {
+        let varying = |key: usize| {
             let of_runs: Vec<Vec<f64>> = self.values.iter().map(|run| numbers(&run[key])).collect();
             let entries = of_runs.iter().map(Vec::len).min()?;
             let entry =
                 (0..entries).find(|&e| of_runs.iter().any(|run| run[e] != of_runs[0][e]))?;
-            Some((key, of_runs.iter().map(|run| run[entry]).collect()))
-        })
+            Some((key, of_runs.iter().map(|run| run[entry]).collect::<Vec<f64>>()))
+        };
+        let distinct = |(_, numbers): &(usize, Vec<f64>)| {
+            let mut sorted = numbers.clone();
+            sorted.sort_by(f64::total_cmp);
+            sorted.dedup();
+            sorted.len()
+        };
+        (0..self.keys.len()).filter_map(varying).max_by_key(distinct)
     }
 
     /// Force and peak over what varies, a curve for each combination of the other keys; `None` where no number varies.

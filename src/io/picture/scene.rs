@@ -213,6 +213,22 @@ impl Scene {
     }
 }
 
+/// Takes the wave out of a pressure of quadratic triangles that rises and falls from node to node: each value inside a stretch of
+/// contact becomes the mean of itself and of the mean of its neighbours.
+fn smooth(part: &mut [ContactSample]) {
+    let before = part.to_vec();
+    for (i, sample) in part.iter_mut().enumerate() {
+        let is_other = |other: &&ContactSample| other.arc != before[i].arc;
+        let neighbours =
+            [before[..i].iter().rev().find(is_other), before[i..].iter().find(is_other)];
+        if let [Some(a), Some(b)] = neighbours
+            && a.pressure.min(b.pressure).min(sample.pressure) > 0.0
+        {
+            sample.pressure = sample.pressure / 2.0 + (a.pressure + b.pressure) / 4.0;
+        }
+    }
+}
+
 /// The edges between triangles of different materials.
 fn interfaces(case: &Case) -> Vec<BoundaryEdge> {
     let (mesh, materials) = (&case.problem.mesh, &case.problem.material);
@@ -264,6 +280,9 @@ fn contact_surfaces(case: &Case, s: &Solution, results: &Results) -> Vec<Contact
             ),
             name,
         });
+    }
+    if s.degree == Degree::Two {
+        surfaces.iter_mut().flat_map(|surface| &mut surface.parts).for_each(|part| smooth(part));
     }
     surfaces.sort_by(|a, b| quote::natural(&a.name, &b.name));
     surfaces
