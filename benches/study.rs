@@ -233,6 +233,7 @@ fn sweep_figure(title: &str, x_label: &str, norms: &[Norm], sweeps: &[Sweep]) ->
     Figure {
         title: title.to_owned(),
         x_label: x_label.to_owned(),
+        logarithmic: true,
         panels: norms
             .iter()
             .map(|(name, of)| Panel {
@@ -645,7 +646,7 @@ fn adaptivity(text: &mut String, figures: &Path, samples: &[Sample]) -> Result<(
         .map(|(title, lines)| Panel { title: title.to_owned(), lines, slopes: Vec::new() })
         .collect();
     let title = "Adapted meshes".to_owned();
-    let drawn = Figure { title, x_label: "unknowns".to_owned(), panels, styles };
+    let drawn = Figure { title, x_label: "unknowns".to_owned(), logarithmic: true, panels, styles };
     fs::write(figures.join("adapted.svg"), plot::figure(&drawn)?)?;
     text.push_str("\n![error and bound over the unknowns](figures/adapted.svg)\n");
     Ok(())

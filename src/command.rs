@@ -18,6 +18,7 @@ use clap::CommandFactory;
 use signorini::fem::DataError;
 use signorini::io::Failure;
 use signorini::io::input::reason;
+use signorini::io::sweep::Extent;
 use signorini::io::{Case, checked};
 use signorini::solve::SolveError;
 use signorini::{quote, solve as library};
@@ -61,8 +62,9 @@ pub fn run() -> ExitCode {
         }
         Task::Check { case } => check(case, quiet),
         Task::New { mesh, out } => new::run(mesh, out.as_deref(), quiet),
-        Task::Sweep { case, axes, files, out } => {
-            sweep::run(case, axes, *files, out.as_deref(), quiet)
+        Task::Sweep { case, axes, files, jobs, out } => {
+            let extent = Extent { files: *files, jobs: usize::from(*jobs) };
+            sweep::run(case, axes, extent, out.as_deref(), quiet)
         }
         Task::Convergence { case, study, out } => study::run(case, study, out.as_deref(), quiet),
         Task::Completions { shell } => Ok(completions(*shell)),

@@ -4,6 +4,7 @@
 //! Names, titles and paths come from files that anybody may have written. A terminal obeys control characters, and some
 //! characters that are not control characters turn the direction of the text round: both are shown as `\u{..}`.
 
+use std::cmp::Ordering;
 use std::path::Path;
 
 /// The most characters of a word; more are cut.
@@ -145,6 +146,22 @@ pub fn names<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
     shown.join(", ")
 }
 
+/// The order of names in which the numbers in them count as numbers: wall 2 comes before wall 10.
+pub fn natural(a: &str, b: &str) -> Ordering {
+    let key = |text: &str| {
+        let parts = text.as_bytes().chunk_by(|a, b| a.is_ascii_digit() == b.is_ascii_digit());
+        let part = |part: &[u8]| {
+            // A number by its length without zeros before it, then by its digits.
+            let zeros = part.iter().take_while(|&&c| c == b'0').count();
+            let digits = part.first().is_some_and(u8::is_ascii_digit);
+            let length = if digits { part.len() - zeros } else { 0 };
+            (!digits, length, part[if digits { zeros } else { 0 }..].to_vec())
+        };
+        parts.map(part).collect::<Vec<_>>()
+    };
+    key(a).cmp(&key(b)).then_with(|| a.cmp(b))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -188,6 +205,16 @@ mod tests {
             assert_eq!(number(x).parse(), Ok(x));
             assert!(number(x).len() < 25);
         }
+    }
+
+    #[test]
+    fn numbers_in_names_count_as_numbers() {
+        let mut names = ["wall 10", "wall 2", "1", "11", "2", "wall", "10", "a02", "a1", "a2"];
+        names.sort_by(|a, b| natural(a, b));
+        let expected = ["1", "2", "10", "11", "a1", "a02", "a2", "wall", "wall 2", "wall 10"];
+        assert_eq!(names, expected);
+        names.sort_unstable();
+        assert_ne!(names, expected, "control");
     }
 
     #[test]

@@ -65,7 +65,8 @@ class Method(_Method, total=False):
 
 
 class Quantities(TypedDict):
-    energy: float
+    a_uu: float
+    elastic_energy: float
     work: float
     max_displacement: float
     contact_force: float

@@ -1,6 +1,7 @@
 //! The command line: tasks and options. The help and shell completions are made from it.
 
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -10,7 +11,12 @@ use signorini::io::sweep::ParameterAxis;
 
 /// Unilateral (Signorini) contact in linear elasticity by Nitsche's method.
 #[derive(Parser)]
-#[command(name = "signorini", version, arg_required_else_help = true, after_help = EXIT_CODES)]
+#[command(
+    name = "signorini",
+    version,
+    arg_required_else_help = true,
+    after_help = format!("{SCOPE}\n\n{EXIT_CODES}")
+)]
 pub struct Arguments {
     #[command(subcommand)]
     pub task: Task,
@@ -21,6 +27,12 @@ pub struct Arguments {
     #[arg(long, global = true, conflicts_with = "quiet")]
     pub verbose: bool,
 }
+
+const SCOPE: &str = "Linear elastic, small displacements and rotations, plane strain or plane stress. Contact is with rigid obstacles, \
+                     without friction: they push and never pull; gap and direction are those of the undeformed body.\n\
+                     Not computed: 3D, axisymmetry, large displacements or sliding, contact of two deformable bodies, friction, \
+                     plasticity and other nonlinear materials, dynamics, thermal strain.\n\
+                     docs/case.md of the sources lists the keys of a case file.";
 
 const EXIT_CODES: &str = "Exit codes: 0 solved and proved; 1 no result: it could not be computed or written, or a certificate was not accepted; \
                           2 the case or the arguments are wrong, and nothing is written; 3 results are written, but they are not \
@@ -71,6 +83,9 @@ impl Arguments {
 #[derive(Subcommand)]
 pub enum Task {
     /// Solve a case; write solution.vtu, contact.vtu, contact.csv, picture.svg and result.json
+    #[command(after_help = "Examples:\n  signorini solve cases/bracket.toml --report\n  \
+                            signorini solve cases/disk.toml --within \"force contact 2 %\"\n  \
+                            signorini solve cases/disk.toml --set material.young=2000 --set method.degree=2")]
     Solve {
         #[command(flatten)]
         case: CaseArguments,
@@ -78,6 +93,9 @@ pub enum Task {
         options: SolveOptions,
     },
     /// Verify a certificate from scratch, without the solver
+    #[command(
+        after_help = "Example: signorini audit out/block/certificate.json --case cases/block.toml"
+    )]
     Audit {
         /// The file certificate.json, with certificate.bin beside it
         #[arg(value_hint = ValueHint::FilePath)]
@@ -112,22 +130,31 @@ pub enum Task {
         out: Option<PathBuf>,
     },
     /// Read a case and list its boundaries with condition, length, load and gap, whether the body is held, the size of the mesh and
-    /// the limit of gamma0, without solving or writing anything
+    /// the limit of gamma0, and what is doubtful, without solving or writing anything
+    #[command(after_help = "Example: signorini check cases/disk.toml")]
     Check {
         #[command(flatten)]
         case: CaseArguments,
     },
-    /// Solve a case for each combination of values of some keys; print a table and write it to sweep.csv
+    /// Solve a case for each combination of values of some keys; print a table, write it to sweep.csv and draw it in sweep.svg
+    #[command(
+        after_help = "Examples:\n  signorini sweep cases/disk.toml --set 'boundary.top.displacement=[0,-0.001:-0.015:8]'\n  \
+                            signorini sweep cases/disk.toml --set material.young=1000:3000:5 --set method.degree=1,2 --jobs 2"
+    )]
     Sweep {
         /// The case file (TOML), or - for standard input
         #[arg(value_hint = ValueHint::FilePath)]
         case: PathBuf,
-        /// A key of the case file and its values, such as method.gamma0=1e-3,1e-2; may be repeated
+        /// A key of the case file and its values, such as method.gamma0=1e-3,1e-2, or from:to:count, such as
+        /// material.young=1000:3000:5, also as an entry of a list; may be repeated
         #[arg(long = "set", value_name = "KEY=VALUE,VALUE,...", required = true)]
         axes: Vec<ParameterAxis>,
         /// Also write the files of each run, into folders 1, 2, ..., and sweep.pvd for ParaView
         #[arg(long)]
         files: bool,
+        /// Solve so many runs at the same time, each with memory of its own
+        #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+        jobs: u16,
         /// The folder to write to [default: out/ and the name of the case]
         #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
         out: Option<PathBuf>,
@@ -173,6 +200,10 @@ pub struct SolveOptions {
     /// `signorini audit`; takes about as long again as the solution
     #[arg(long)]
     pub certificate: bool,
+    /// Refine the mesh until the error is proved to be at most this: "5 %" of the energy norm, or "force NAME 2 %" of the contact
+    /// force of a boundary. Sets adapt.target of the case
+    #[arg(long, value_name = "TARGET")]
+    pub within: Option<Within>,
     /// Write report.html, too: picture, numbers, what is proved and the case, in one file to send to a colleague
     #[arg(long)]
     pub report: bool,
@@ -185,6 +216,36 @@ pub struct SolveOptions {
     /// The folder of the reference implementation, reference/ of the sources [default: beside this program]
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub reference: Option<PathBuf>,
+}
+
+/// The target of an adaptive solve.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Within {
+    /// The same as a key of the case file with its value.
+    pub setting: String,
+}
+
+impl FromStr for Within {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Within, String> {
+        let share = |text: &str| {
+            let number = text.trim().strip_suffix('%')?.trim();
+            let is_share = number.parse::<f64>().is_ok_and(|x| x > 0.0 && x.is_finite());
+            is_share.then(|| format!("\"{number} %\""))
+        };
+        let of_force = |text: &str| {
+            let named = text.trim().strip_prefix("force ")?.trim();
+            let at = named.trim_end_matches(['%', ' ']).rfind(' ')?;
+            let (name, within) = (named[..at].trim(), share(&named[at..])?);
+            let name = name.replace('\\', "\\\\").replace('"', "\\\"");
+            Some(format!("{{ force = \"{name}\", within = {within} }}"))
+        };
+        match share(text).or_else(|| of_force(text)) {
+            Some(target) => Ok(Within { setting: format!("adapt.target={target}") }),
+            None => Err("expected a share of the energy norm, such as \"5 %\", or of the contact force of a boundary, such as \"force bottom 2 %\"".to_owned()),
+        }
+    }
 }
 
 /// The scope of a convergence study; empty lists stand for the case's own degree and mesh.
@@ -205,4 +266,29 @@ pub struct StudyOptions {
 pub enum Engine {
     Signorini,
     Fenicsx,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_target_is_a_share_of_the_energy_norm_or_of_a_force() {
+        for (text, setting) in [
+            ("5 %", r#"adapt.target="5 %""#),
+            ("0.5%", r#"adapt.target="0.5 %""#),
+            ("force bottom 2 %", r#"adapt.target={ force = "bottom", within = "2 %" }"#),
+            (
+                "force the left \"foot\" 2%",
+                r#"adapt.target={ force = "the left \"foot\"", within = "2 %" }"#,
+            ),
+        ] {
+            assert_eq!(text.parse(), Ok(Within { setting: setting.to_owned() }), "{text}");
+        }
+        for text in
+            ["5", "-1 %", "0 %", "x %", "force bottom", "force 2 %", "forces bottom 2 %", ""]
+        {
+            assert!(text.parse::<Within>().is_err(), "{text}");
+        }
+    }
 }

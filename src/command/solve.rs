@@ -22,6 +22,14 @@ pub fn run(
     quiet: bool,
     verbose: bool,
 ) -> Result<Done, Failure> {
+    if let (Engine::Fenicsx, Some(_)) = (options.engine, &options.within) {
+        return Err(Failure::wrong(
+            "--within: the engine fenicsx refines no mesh; expected the engine signorini",
+        ));
+    }
+    let within = options.within.iter().map(|within| within.setting.clone());
+    let settings = case.settings.iter().cloned().chain(within).collect();
+    let case = &CaseArguments { file: case.file.clone(), settings };
     let (results, files) = match (options.engine, options.ranks) {
         (Engine::Fenicsx, _) => solve_by_fenicsx(case, options, quiet)?,
         (Engine::Signorini, None) => solve(case, options, quiet)?,

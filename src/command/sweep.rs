@@ -7,7 +7,7 @@ use signorini::io::Failure;
 use signorini::io::files::spare;
 use signorini::io::result::Results;
 use signorini::io::summary;
-use signorini::io::sweep::{self, ParameterAxis, Sweep};
+use signorini::io::sweep::{self, Extent, ParameterAxis, Sweep};
 
 use super::progress::Phases;
 use super::{Done, FAILED, SHORT, WRONG, folder, read_text, summarised};
@@ -18,14 +18,14 @@ const BETWEEN_TABLES: Duration = Duration::from_secs(1);
 pub fn run(
     file: &Path,
     axes: &[ParameterAxis],
-    files: bool,
+    extent: Extent,
     out: Option<&Path>,
     quiet: bool,
 ) -> Result<Done, Failure> {
     let runs = sweep::count(axes)?;
     let folder = folder(file, out);
     let (file, text) = read_text(file)?;
-    spare(&folder, &[sweep::FILE], std::slice::from_ref(&file))?;
+    spare(&folder, &[sweep::FILE, sweep::CURVES], std::slice::from_ref(&file))?;
     let phases = Phases::start(quiet);
     let enter = |done| phases.enter(format!("{done} of {runs} runs"));
     enter(0);
@@ -40,7 +40,7 @@ pub fn run(
         }
         Ok(())
     };
-    let sweep = sweep::run(&file, &text, axes, &folder, files, done)?;
+    let sweep = sweep::run(&file, &text, axes, &folder, extent, done)?;
     drop(phases);
     let codes: Vec<u8> = sweep.results.iter().map(code).collect();
     if codes.iter().all(|code| *code == WRONG)
@@ -57,7 +57,7 @@ pub fn run(
     } else {
         FAILED
     };
-    Ok(Done { code, ..summarised(&summary::swept(&sweep.title, &sweep.table(), &written), quiet) })
+    Ok(Done { code, ..summarised(&summary::swept(&sweep, &written), quiet) })
 }
 
 /// The exit code of a run with these results.

@@ -49,6 +49,11 @@ pub enum DataError {
         key(obstacle), number(*x), number(*y), quoted(boundary, '\''), number(direction[0]), number(direction[1])
     )]
     WrongSide { obstacle: String, boundary: String, x: f64, y: f64, direction: [f64; 2] },
+    #[error(
+        "{} holds ({}, {}) by {} inside the obstacle of {}, which must keep it out: no displacement of finite energy does both, and forces would grow as the mesh is refined; expected a support that moves this point no further than to the obstacle, a gap that leaves it room, or a contact boundary that ends before it",
+        quoted(support, '\''), number(*x), number(*y), number(*depth), quoted(boundary, '\'')
+    )]
+    HeldInside { support: String, boundary: String, x: f64, y: f64, depth: f64 },
     #[error("the material is none: {0}")]
     Material(#[from] MaterialError),
     #[error("{what} is {found}; expected {expected}")]

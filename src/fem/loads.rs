@@ -131,6 +131,16 @@ pub struct Resultants {
     pub boundaries: BTreeMap<String, [f64; 2]>,
 }
 
+impl Resultants {
+    /// The resultants on a body of this thickness.
+    #[must_use]
+    pub fn times(mut self, thickness: f64) -> Self {
+        let forces = self.boundaries.values_mut().chain([&mut self.body]);
+        forces.flatten().for_each(|f| *f *= thickness);
+        self
+    }
+}
+
 /// The resultants of the loads of a problem.
 ///
 /// # Errors

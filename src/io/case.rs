@@ -5,6 +5,7 @@
 //! that is not known is an error, and so is a list of the wrong length, a number that is NaN or infinite, and a boundary with
 //! more than one of displacement, traction and contact.
 
+mod beyond;
 mod body;
 mod boundary;
 mod exact;
@@ -28,6 +29,7 @@ use self::method::{read_method, read_quantities, read_settings, read_target};
 use self::source::Source;
 use self::table::{Table, Value};
 use super::input::{self, Failure, FileError, MOST_OF_A_CASE, Position};
+use super::remarks::Words;
 use crate::certify::{Asked, Target};
 use crate::fem::{Mesh, Perturbation, Problem, SharedFunction, Structured};
 use crate::memory;
@@ -179,6 +181,16 @@ impl Case {
         functions: &[SharedFunction],
     ) -> Result<Case, FileError> {
         parse(Source { file, text, settings: &[], functions }, Some(mesh))
+    }
+}
+
+impl Case {
+    /// The words of its remarks.
+    pub(super) fn words(&self) -> Words {
+        let unit = |units: &Units| {
+            [Measure::Length, Measure::Stress].map(|measure| units.of(measure, self.thickness))
+        };
+        Words { units: self.units.as_ref().map(unit), known_force: None }
     }
 }
 

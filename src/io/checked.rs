@@ -4,9 +4,9 @@
 use super::case::{Case, Measure};
 use super::result::{GammaChoice, MeshSizes};
 use super::summary::{self, Lines, QuantityFormat};
-use crate::fem::contact_line;
+use crate::fem::contact_line::ContactLine;
 use crate::fem::loads::{self, Resultants};
-use crate::fem::{BoundaryEdge, Condition, ContactFace, Degree, Mesh, Space};
+use crate::fem::{BoundaryEdge, Condition, Degree, Mesh, Space};
 use crate::quote::{self, quoted};
 use crate::solve::{ContactQuadrature, Outline};
 
@@ -30,7 +30,8 @@ pub fn checked(case: &Case, outline: &Outline) -> String {
             ContactQuadrature::Gauss(n) => format!("{n} Gauss points on each contact edge"),
         },
     );
-    for remark in case.remarks.iter().cloned().chain(super::remarks::overlap(case)) {
+    let before = super::remarks::before(&case.problem, case.method.degree, &case.words());
+    for remark in case.remarks.iter().cloned().chain(before) {
         lines.line("remark", remark);
     }
     lines.under(&case.title)
@@ -61,7 +62,8 @@ fn boundaries(case: &Case, lines: &mut Lines) {
     let space = Space::new(mesh, Degree::One);
     // What they cannot say is an error of the case, which is reported as such.
     let loads = loads::resultants(problem, &space).unwrap_or_default();
-    let contact = contact_line::assemble(problem, &space, 1.0).unwrap_or_default();
+    let loads = loads.times(case.thickness.unwrap_or(1.0));
+    let contact = ContactLine::new(problem, &space).ok();
     let largest = loads.boundaries.values().chain([&loads.body]).flatten();
     let no_force = 1e-10 * largest.fold(0.0, |most: f64, f| most.max(f.abs()));
     let shown = QuantityFormat { units: case.units.clone(), thickness: case.thickness, no_force };
@@ -71,7 +73,7 @@ fn boundaries(case: &Case, lines: &mut Lines) {
         named.iter().partition(|name| problem.conditions.contains_key(**name));
     let said = |name: &str| {
         let said = match problem.conditions.get(name) {
-            Some(condition) => of_condition(condition, name, &loads, &contact, &shown),
+            Some(condition) => of_condition(condition, name, &loads, contact.as_ref(), &shown),
             None => "nothing is prescribed".to_owned(),
         };
         format!("{}: {said}{}", quote::cut(name), length(mesh, name, &shown))
@@ -123,7 +125,7 @@ fn of_condition(
     condition: &Condition,
     name: &str,
     loads: &Resultants,
-    contact: &[ContactFace],
+    contact: Option<&ContactLine>,
     shown: &QuantityFormat,
 ) -> String {
     let load = || {
@@ -162,9 +164,10 @@ fn of_condition(
 }
 
 /// The least and the largest initial gap of a contact boundary, and where the least is.
-fn gap(name: &str, contact: &[ContactFace], shown: &QuantityFormat) -> String {
-    let faces = contact.iter().filter(|face| &*face.boundary == name);
-    let gaps = faces.flat_map(|face| face.gap.iter().copied().zip(face.places.iter().copied()));
+fn gap(name: &str, contact: Option<&ContactLine>, shown: &QuantityFormat) -> String {
+    let pieces = contact.into_iter().flat_map(ContactLine::pieces);
+    let of_boundary = pieces.filter(|piece| &*piece.first().boundary == name);
+    let gaps = of_boundary.flat_map(|piece| piece.nodes.iter().map(|node| (node.gap, node.place)));
     let gaps: Vec<(f64, [f64; 2])> = gaps.collect();
     let least = gaps.iter().min_by(|a, b| a.0.total_cmp(&b.0));
     let largest = gaps.iter().max_by(|a, b| a.0.total_cmp(&b.0));

@@ -190,6 +190,7 @@ pub fn plot(title: &str, studies: &[Study]) -> Figure {
     Figure {
         title: title.to_owned(),
         x_label: "h".to_owned(),
+        logarithmic: true,
         panels: panels.map(|(name, of)| panel(name, of, studies)).into(),
         styles: studies
             .iter()

@@ -10,7 +10,7 @@ use super::fields::stage_fields;
 use super::files::{NotFinite, Output};
 use super::input::Failure;
 use super::picture::draw;
-use super::remarks::{nearest, remarks};
+use super::remarks::{Words, remarks};
 use super::report;
 use super::result::{
     Adaptation, Certificates, Choices, ContinuousCertificate, DiscreteCertificate, GammaChoice,
@@ -186,7 +186,11 @@ pub fn results(
     }
     let errors =
         case.exact.as_ref().map(|exact| Errors::of(solution, &case.problem, &*exact.solution));
-    let mut remarks = remarks(case, solution);
+    let known = solved.adaptation.as_ref().filter(|adaptation| adaptation.met);
+    let known_force = known.and_then(|adaptation| adaptation.force.clone());
+    let words = Words { known_force, ..case.words() };
+    let mut remarks: Vec<String> = case.remarks.clone();
+    remarks.extend(self::remarks(&case.problem, solution, &words));
     let errors = errors.filter(Errors::is_finite);
     if case.exact.is_some() && errors.is_none() {
         remarks.push(NO_ERRORS.to_owned());
@@ -243,14 +247,11 @@ pub fn results(
             write: 0.0,
         },
     };
-    let untouched = results.contact.iter().filter(|part| !results.is_in_contact(part));
-    let remarks: Vec<String> =
-        untouched.filter_map(|part| nearest(case, solution, &part.boundary)).collect();
-    results.remarks.extend(remarks);
     let is_asked = extra.certificate || case.asks_for_certificate();
     if let (Some(Err(error)), true) = (&solved.certified, is_asked) {
         results.missing.push(format!("certificate: {error}"));
     }
+    results.of_thickness(case.thickness.unwrap_or(1.0));
     if let Some(Adaptation { reason: Some(reason), .. }) = &solved.adaptation {
         results.missing.push(format!("mesh that meets the target of [adapt]: {reason}"));
     }

@@ -14,23 +14,25 @@ mod body;
 mod cells;
 mod contact;
 mod draw;
+mod loads;
 mod panel;
 pub mod plot;
 mod scene;
 
 use svg::Node;
-use svg::node::element::Group;
+use svg::node::element::{Circle, Group};
 
 use super::case::Case;
 use super::files::{NotFinite, check_finite};
 use super::result::Results;
 use crate::solve::Solution;
 use body::{BAR, Colours, body, colour_bar, definitions, outlines};
-use contact::{ContactLine, hatched, obstacle, pressure, tags};
+use contact::{ContactLine, arrow, hatched, obstacle, pressure, tags};
 use draw::{
     DARK, GREY, LEGEND_LINE, PageMap, PathData, Point, SAMPLE, clean, fitting, legend, page,
-    red_area, stroke, text,
+    red_area, stroke, text, wrapped,
 };
+use loads::{FORCE, MOTION};
 use scene::Scene;
 
 /// The page around the drawing.
@@ -66,6 +68,26 @@ fn picture(scene: &Scene) -> Result<String, NotFinite> {
     if obstacle.is_some() {
         entries.push((hatched([SAMPLE.map(|[x, y]| [x, y - 3.0]).to_vec()]), "rigid obstacle"));
     }
+    let on_page = |v: usize| deformed.get(v).copied();
+    let supports = loads::drawn_supports(scene, &deformed);
+    if supports.is_some() {
+        let held = hatched([SAMPLE.map(|[x, y]| [x * 0.5, y - 3.0]).to_vec()]);
+        let roller = Circle::new().set("cx", 24).set("cy", -4.5).set("r", 3.2);
+        let roller = roller.set("fill", "white").set("stroke", DARK);
+        entries.push((held.map(|held| held.add(roller)), "held, in one direction"));
+    }
+    let forces = loads::arrows(scene, &deformed, false);
+    if forces.is_some() {
+        entries.push((Some(pointed(FORCE)), "load"));
+    }
+    let motions = loads::arrows(scene, &deformed, true);
+    if motions.is_some() {
+        entries.push((Some(pointed(MOTION)), "prescribed displacement"));
+    }
+    let cross = scene.most_stressed.and_then(on_page).map(loads::cross);
+    if cross.is_some() {
+        entries.push((Some(loads::cross([15.0, -4.5])), "largest von Mises stress"));
+    }
     entries.push(match pressure {
         Some(_) => (Some(pressed()), "contact pressure"),
         None => (None, "no contact pressure"),
@@ -83,7 +105,11 @@ fn picture(scene: &Scene) -> Result<String, NotFinite> {
         .add(body(scene, &deformed, &colours))
         .add(outlines(scene, &deformed, &frame))
         .add(colour_bar(&colours, unit, [MARGIN + frame.width + GAP, HEADER], frame.height));
-    [obstacle, pressure].into_iter().flatten().for_each(|group| document.append(group));
+    let drawn = [obstacle, supports, pressure, motions, forces, cross];
+    drawn.into_iter().flatten().for_each(|group| document.append(group));
+    let length = scene.units.as_ref().map(|[_, length]| &**length);
+    let scale_at = [MARGIN + frame.width, HEADER + frame.height + 10.0];
+    document.append(loads::scale_bar(&frame, length, scale_at));
     if scene.contact.len() > 1 {
         document.append(tags(&lines, scene.contact.len()));
     }
@@ -108,9 +134,29 @@ fn headline(scene: &Scene, room: f64) -> Group {
     // Bold letters are wider.
     let large = fitting(&title, 24.0 / 0.8, room) * 0.8;
     let small = fitting(&subtitle, 14.0, room);
-    Group::new()
-        .add(text(title, [MARGIN, 44.0]).set("font-size", large).set("font-weight", "bold"))
-        .add(text(subtitle, [MARGIN, 68.0]).set("font-size", small).set("fill", GREY))
+    let mut group = Group::new();
+    if large < SMALLEST_TITLE {
+        // Two smaller lines in the place of a large one.
+        let lines = wrapped(&title, SMALLEST_TITLE / 0.8, room, 2);
+        for (line, y) in lines.into_iter().zip([28.0, 48.0]) {
+            let line = text(line, [MARGIN, y]).set("font-size", SMALLEST_TITLE);
+            group.append(line.set("font-weight", "bold"));
+        }
+    } else {
+        group
+            .append(text(title, [MARGIN, 44.0]).set("font-size", large).set("font-weight", "bold"));
+    }
+    group.add(text(subtitle, [MARGIN, 68.0]).set("font-size", small).set("fill", GREY))
+}
+
+/// A title is written in two lines rather than with smaller letters.
+const SMALLEST_TITLE: f64 = 15.0;
+
+/// The sample of an arrow.
+fn pointed(colour: &str) -> Group {
+    let mut path = PathData::default();
+    arrow(SAMPLE[0], SAMPLE[1], &mut path);
+    Group::new().add(stroke(path, colour, 1.6))
 }
 
 /// The sample of a line.
@@ -167,7 +213,15 @@ mod tests {
             stretch: None,
             interfaces: Vec::new(),
             outline: mesh.outline().iter().map(|&edge| mesh.ends(edge)).collect(),
-            contact: vec![ContactSurface { name: "floor".into(), parts: vec![part], zones: None }],
+            contact: vec![ContactSurface {
+                name: "floor".into(),
+                rigid: true,
+                parts: vec![part],
+                zones: None,
+            }],
+            supports: Vec::new(),
+            loads: Vec::new(),
+            most_stressed: None,
             displacement,
         }
     }

@@ -1,14 +1,18 @@
-//! Remarks beside the numbers of a result: on data that are probably mistaken, and on boundaries that touch nothing.
+//! Remarks beside the numbers of a result: on data that are probably mistaken, on what the mesh does not resolve, on motions
+//! that are too large for the theory, and on boundaries that touch nothing. Each says where, gives both numbers, and what to
+//! change.
 
-use super::case::Case;
+mod model;
+mod motion;
+mod resolution;
+
 use super::numbers::short;
-use crate::fem::ContactLine;
 use crate::fem::contact_line::Gamma;
 use crate::fem::tree::Bounds;
-use crate::fem::{Degree, Space};
+use crate::fem::{Degree, Problem};
 use crate::quote;
-use crate::solve::Solution;
 use crate::solve::solution::ContactValues;
+use crate::solve::{ContactBoundary, Solution};
 
 /// Strains above this are more than small-strain theory is for.
 const LARGE_STRAIN: f64 = 0.05;
@@ -16,97 +20,148 @@ const LARGE_STRAIN: f64 = 0.05;
 /// Displacements above this share of the body's size likewise.
 const LARGE_DISPLACEMENT: f64 = 0.1;
 
-/// Overlaps below this share of the body's size are rounding: mesh files have nine digits or more.
-const NO_OVERLAP: f64 = 1e-9;
+/// Lengths below this share of the body's size are rounding: mesh files have nine digits or more.
+const NO_LENGTH: f64 = 1e-9;
 
 /// A triangle whose limit of gamma0 is this many times below the median of the line spoils the line.
 const SLIVER: f64 = 8.0;
 
-/// Remarks that a reader should know before the numbers are used.
-pub(super) fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
-    let mut remarks = case.remarks.clone();
-    let coercivity = solution.gamma.coercivity;
-    let uniform = matches!(solution.gamma.gamma, Gamma::Uniform(_));
-    if uniform && coercivity.constant > SLIVER * coercivity.typical {
-        let [[a, b], [c, d]] = coercivity.limiting_edge;
-        remarks.push(format!(
-            "the triangle at the contact edge from ({}, {}) to ({}, {}) sets gamma0 for the whole line, {:.0} times below what half of its triangles allow; method.kappa = 0.5 lets each edge have its own",
-            short(a, 3), short(b, 3), short(c, 3), short(d, 3), coercivity.constant / coercivity.typical
-        ));
+/// Units for labels, and what is known beside the solution.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Words {
+    /// The units of lengths and of stresses, if the case has any.
+    pub(super) units: Option<[String; 2]>,
+    /// The contact boundary whose force is proved to be as near to the true one as was asked for.
+    pub(super) known_force: Option<String>,
+}
+
+impl Solution {
+    /// Remarks that a reader should know before the numbers are used: what the mesh does not resolve, motions that are too large
+    /// for the theory, data that are probably mistaken.
+    pub fn remarks(&self, problem: &Problem) -> Vec<String> {
+        remarks(problem, self, &Words::default())
     }
-    let length = length_unit(case);
+}
+
+/// As [`Solution::remarks`], with units.
+pub(super) fn remarks(problem: &Problem, solution: &Solution, words: &Words) -> Vec<String> {
+    let mut remarks = Vec::new();
+    remarks.extend(model::separate_bodies(problem, Some(solution)));
+    remarks.extend(resolution::short_stretches(solution, words));
+    remarks.extend(resolution::gaps(problem, Known::Solution(solution), words));
+    remarks.extend(motion::off_the_obstacle(problem, solution, words));
+    remarks.extend(motion::beside_the_line(problem, solution, words));
+    remarks.extend(model::locking(problem, solution.degree));
+    remarks.extend(model::unbounded_peaks(problem, solution, words));
+    remarks.extend(sliver(solution));
     let strain = solution.largest_strain;
     if strain > LARGE_STRAIN {
         remarks.push(format!(
-            "the largest strain is {} %: strains are taken to be small (below {} %); check load, modulus and units",
+            "the largest strain is {} %, at {}: strains are taken to be small (below {} %); check load, modulus and units",
             short(100.0 * strain, 3),
+            place(solution.largest_strain_at),
             short(100.0 * LARGE_STRAIN, 3)
         ));
     }
-    remarks.extend(overlap(case));
-    let size = size(case);
-    let largest = solution.quantities.max_displacement;
+    remarks.extend(model::overlap(problem, words));
+    let (largest, size) = (solution.quantities.max_displacement, size(problem));
     if largest > LARGE_DISPLACEMENT * size {
         remarks.push(format!(
-            "the largest displacement is {}{length}, the body is {}{length} long: displacements are taken to be small; check load, modulus and units",
-            short(largest, 3),
-            short(size, 3)
+            "the largest displacement is {}, the body is {} long: displacements are taken to be small; check load, modulus and units",
+            words.length(largest),
+            words.length(size)
         ));
     }
+    let boundaries = &solution.boundaries;
+    let is_open = |part: &&ContactBoundary| !solution.quantities.presses(part, boundaries);
+    let open = boundaries.iter().filter(is_open);
+    remarks.extend(open.filter_map(|part| nearest(problem, solution, words, &part.boundary)));
     remarks
 }
 
-/// The longer side of the box around the body.
-fn size(case: &Case) -> f64 {
-    Bounds::around(case.problem.mesh.vertices().iter().copied()).size()
+/// The remarks that need no solution.
+pub(super) fn before(problem: &Problem, degree: Degree, words: &Words) -> Vec<String> {
+    let mut remarks: Vec<String> = model::separate_bodies(problem, None).into_iter().collect();
+    remarks.extend(resolution::gaps(problem, Known::Data(degree), words));
+    remarks.extend(model::locking(problem, degree));
+    remarks.extend(model::overlap(problem, words));
+    remarks
 }
 
-/// The name of the obstacle of a contact boundary, if it has one.
-fn named_obstacle(case: &Case, boundary: &str) -> Option<String> {
-    case.problem.obstacle_of(boundary).map(|name| quote::quoted(name, '\''))
+/// What a remark may rest on.
+#[derive(Clone, Copy)]
+enum Known<'s> {
+    /// The data alone, and the degree that will be solved for.
+    Data(Degree),
+    /// A solution.
+    Solution(&'s Solution),
 }
 
-/// Says where the body is deepest in its obstacle before it is loaded, if it is.
-pub(super) fn overlap(case: &Case) -> Option<String> {
-    let space = Space::new(&case.problem.mesh, Degree::One);
-    let line = ContactLine::new(&case.problem, &space).ok()?;
-    let points =
-        line.pieces().flat_map(|piece| piece.nodes.iter().map(move |n| (n.gap, n.place, piece)));
-    let least = points.min_by(|a, b| a.0.total_cmp(&b.0));
-    let (gap, [x, y], piece) = least.filter(|p| p.0 < -NO_OVERLAP * size(case))?;
-    let length = length_unit(case);
-    let boundary = &piece.first().boundary;
-    let (obstacle, question) = match named_obstacle(case, boundary) {
-        Some(obstacle) => {
-            (obstacle, ": is it in the right place, and is the body on the right side of it?")
-        }
-        None => (format!("the obstacle of {}", quote::quoted(boundary, '\'')), ""),
-    };
-    Some(format!(
-        "the body overlaps {obstacle} by {}{length} at ({}, {}) before loading{question}",
-        short(-gap, 3),
-        short(x, 4),
-        short(y, 4)
-    ))
+/// Says which triangle sets gamma0 for a whole line that would allow more, if one does.
+fn sliver(solution: &Solution) -> Option<String> {
+    let coercivity = solution.gamma.coercivity;
+    let uniform = matches!(solution.gamma.gamma, Gamma::Uniform(_));
+    let spoils = uniform && coercivity.constant > SLIVER * coercivity.typical;
+    let [[a, b], [c, d]] = coercivity.limiting_edge;
+    spoils.then(|| {
+        format!(
+            "the triangle at the contact edge from ({}, {}) to ({}, {}) sets gamma0 for the whole line, {:.0} times below what half of its triangles allow; method.kappa = 0.5 lets each edge have its own",
+            short(a, 3), short(b, 3), short(c, 3), short(d, 3), coercivity.constant / coercivity.typical
+        )
+    })
 }
 
 /// Says where a contact boundary that touches nothing is nearest to its obstacle.
-pub(super) fn nearest(case: &Case, solution: &Solution, boundary: &str) -> Option<String> {
+fn nearest(
+    problem: &Problem,
+    solution: &Solution,
+    words: &Words,
+    boundary: &str,
+) -> Option<String> {
     let edges = solution.contact.iter().filter(|edge| &*edge.boundary == boundary);
     let distance = |point: &ContactValues| (point.gap - point.u_n, solution.nodes[point.node]);
     let points = edges.flat_map(|edge| edge.points.iter().map(distance));
-    let (gap, [x, y]) = points.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let (gap, at) = points.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(format!(
-        "{} touches nothing: it is nearest to {} at ({}, {}), where a gap of {}{} is left",
+        "{} touches nothing: it is nearest to {} at {}, where a gap of {} is left",
         quote::quoted(boundary, '\''),
-        named_obstacle(case, boundary).unwrap_or_else(|| "its obstacle".to_owned()),
-        short(x, 4),
-        short(y, 4),
-        short(gap.max(0.0), 3),
-        length_unit(case)
+        named_obstacle(problem, boundary).unwrap_or_else(|| "its obstacle".to_owned()),
+        place(at),
+        words.length(gap.max(0.0))
     ))
 }
 
-fn length_unit(case: &Case) -> String {
-    case.units.as_ref().map_or(String::new(), |units| format!(" {}", units.length))
+/// The longer side of the box around the body.
+fn size(problem: &Problem) -> f64 {
+    Bounds::around(problem.mesh.vertices().iter().copied()).size()
+}
+
+/// The name of the obstacle of a contact boundary, if it has one.
+fn named_obstacle(problem: &Problem, boundary: &str) -> Option<String> {
+    problem.obstacle_of(boundary).map(|name| quote::quoted(name, '\''))
+}
+
+/// The name of the obstacle of a contact boundary, or words for it.
+fn obstacle_of(problem: &Problem, boundary: &str) -> String {
+    let unnamed = || format!("the obstacle of {}", quote::quoted(boundary, '\''));
+    named_obstacle(problem, boundary).unwrap_or_else(unnamed)
+}
+
+fn place([x, y]: [f64; 2]) -> String {
+    format!("({}, {})", short(x, 4), short(y, 4))
+}
+
+impl Words {
+    fn length(&self, x: f64) -> String {
+        self.with_unit(x, 0)
+    }
+
+    fn stress(&self, x: f64) -> String {
+        self.with_unit(x, 1)
+    }
+
+    fn with_unit(&self, x: f64, unit: usize) -> String {
+        let unit = self.units.as_ref().map_or("", |units| &units[unit]);
+        format!("{} {unit}", short(x, 3)).trim_end().to_owned()
+    }
 }

@@ -65,7 +65,10 @@ fn stretches(results: &Results) -> String {
     let mut rows = String::new();
     for part in results.contact.iter().filter(|part| results.is_in_contact(part)) {
         for [from, to] in &part.stretches {
+            let all_round = from == to;
             let [from, to] = [from, to].map(|&place| summary::vector(place));
+            let [from, to] =
+                if all_round { ["all round".to_owned(), String::new()] } else { [from, to] };
             let boundary = escaped(&part.boundary);
             let _ = writeln!(rows, "<tr><th>{boundary}</th><td>{from}</td><td>{to}</td></tr>");
         }

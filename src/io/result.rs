@@ -14,7 +14,7 @@ use serde_json::Value;
 use super::case::{MaterialEcho, Units};
 use super::files::NotFinite;
 use crate::certify::adapt::AdaptedLevel;
-use crate::certify::quantities::{Quantity, Zone};
+use crate::certify::quantities::{Limit, Quantity, Zone};
 use crate::certify::{CertifyError, Continuous, Ramp};
 use crate::fem::Mesh;
 use crate::fem::contact_line::Gamma;
@@ -78,8 +78,9 @@ pub struct Results {
     pub seconds: Seconds,
 }
 
-/// The version of the layout of result.json. 2: an entry for each contact boundary, balance, units, materials, choices.
-pub const SCHEMA: u32 = 2;
+/// The version of the layout of result.json. 2: an entry for each contact boundary, balance, units, materials, choices. 3: a(u, u) is
+/// `a_uu`, beside `elastic_energy`; with `thickness`, forces, moments and energies are those of the whole body.
+pub const SCHEMA: u32 = 3;
 
 /// The one without a number.
 fn first() -> u32 {
@@ -171,20 +172,61 @@ pub struct Adaptation {
     pub levels: Vec<AdaptedLevel>,
 }
 
-/// A contact force below this share of all forces is rounding.
-const NO_FORCE: f64 = 1e-10;
-
 impl Results {
-    /// The sum of the magnitudes of contact forces and reactions.
-    pub(crate) fn all_forces(&self) -> f64 {
-        let contact: f64 = self.contact.iter().map(|part| part.force.abs()).sum();
-        let reactions = self.quantities.reactions.values().map(|[x, y]| x.hypot(*y));
-        contact.max(self.quantities.contact_force.abs()) + reactions.sum::<f64>()
+    /// Turns forces, moments and energies per unit of thickness into those of a body of this thickness; intervals outwards, should
+    /// a product be rounded. Norms stay what they are, per unit of thickness.
+    pub(super) fn of_thickness(&mut self, thickness: f64) {
+        let times = |x: &mut f64| *x *= thickness;
+        let outwards = |[low, high]: &mut [f64; 2]| {
+            let exact = |x: f64| x == 0.0 || thickness == 1.0;
+            *low = if exact(*low) { *low } else { (*low * thickness).next_down() };
+            *high = if exact(*high) { *high } else { (*high * thickness).next_up() };
+        };
+        let q = &mut self.quantities;
+        [&mut q.energy, &mut q.elastic_energy, &mut q.work, &mut q.contact_force]
+            .into_iter()
+            .chain(&mut q.contact_resultant)
+            .chain(q.reactions.values_mut().flatten())
+            .chain(self.reaction_moments.values_mut())
+            .for_each(times);
+        for part in &mut self.contact {
+            let [x, y] = &mut part.resultant;
+            [&mut part.force, &mut part.moment, x, y].into_iter().for_each(times);
+        }
+        if let Some(b) = &mut self.balance {
+            let all = [&mut b.strain, &mut b.loads, &mut b.supports, &mut b.contact];
+            all.into_iter().for_each(times);
+        }
+        let Some(Certificates { discrete, continuous }) = &mut self.certificate else { return };
+        if let Some(of) = discrete.as_mut().and_then(|discrete| discrete.intervals.as_mut()) {
+            outwards(&mut of.energy);
+            for part in &mut of.contact {
+                outwards(&mut part.force);
+                part.resultant.iter_mut().for_each(outwards);
+            }
+            of.reactions.values_mut().flatten().for_each(outwards);
+        }
+        let Some(continuous) = continuous else { return };
+        let energies = [&mut continuous.potential_energy, &mut continuous.compliance];
+        energies.into_iter().flatten().for_each(outwards);
+        for quantity in continuous.quantities.iter_mut().filter(|q| q.name != PEAK) {
+            quantity.value *= thickness;
+            if let Some((low, Some(high))) = &mut quantity.interval {
+                let mut ends = [*low, *high];
+                outwards(&mut ends);
+                [*low, *high] = ends;
+            }
+        }
+        for zone in &mut continuous.zones {
+            if let Limit::Force(most) = &mut zone.limit {
+                *most = (*most * thickness).next_up();
+            }
+        }
     }
 
     /// Returns whether a boundary carries more than rounding.
     pub(crate) fn is_in_contact(&self, part: &ContactBoundary) -> bool {
-        part.force > NO_FORCE * self.all_forces()
+        self.quantities.presses(part, &self.contact)
     }
 
     /// Returns whether the solution is not proved, or something else that was asked for could not be had.
@@ -234,6 +276,9 @@ pub fn result_json(results: &Results) -> Result<String, NotFinite> {
     Ok(quote::in_json(&text) + "\n")
 }
 
+/// The name of the only quantity that is no force and no moment.
+const PEAK: &str = "peak pressure";
+
 /// The path of a `null`, which is what serde_json makes of a NaN or an infinity: else only the upper end of a peak pressure
 /// becomes one here.
 fn null_in(value: &Value, place: &str) -> Option<String> {
@@ -244,7 +289,7 @@ fn null_in(value: &Value, place: &str) -> Option<String> {
             items.find_map(|(i, item)| null_in(item, &format!("{place}[{i}]")))
         }
         Value::Object(members) => members.iter().find_map(|(name, member)| {
-            let is_peak = members.get("name").is_some_and(|name| name == "peak pressure");
+            let is_peak = members.get("name").is_some_and(|name| name == PEAK);
             let member = if is_peak && name == "interval" { &member[0] } else { member };
             let dot = if place.is_empty() { "" } else { "." };
             null_in(member, &format!("{place}{dot}{name}"))

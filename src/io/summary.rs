@@ -10,12 +10,13 @@ use super::result::{
     Adaptation, ContinuousCertificate, DiscreteCertificate, GammaChoice, MeshSizes, NewtonHistory,
     Results, Seconds, StressPeak,
 };
+use super::sweep::Sweep;
 use super::{Case, numbers};
 use crate::certify::Continuous;
 use crate::certify::adapt::AdaptedLevel;
 use crate::fem::solvability::Play;
 use crate::quote;
-use crate::solve::{MethodReport, RouteName, Status};
+use crate::solve::{ContactBoundary, MethodReport, RouteName, Status};
 
 /// Lines of a name and a text; one without a name goes on with what the one before it is about.
 #[derive(Default)]
@@ -60,14 +61,12 @@ pub(crate) fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
     reactions(r, &shown, verbose, &mut lines);
     let largest = shown.number(r.quantities.max_displacement, Measure::Length);
     lines.line("displacement", format!("up to {largest}"));
-    for remark in r.remarks.iter().cloned().chain(r.play.iter().map(|play| free(play, &shown))) {
+    for remark in remarks(r) {
         lines.line("remark", remark);
     }
     let certificates = r.certificate.as_ref();
-    if let Some(discrete) = certificates.and_then(|c| c.discrete.as_ref()) {
-        lines.line("proved", enclosed(discrete));
-    }
-    if let Some(continuous) = certificates.and_then(|c| c.continuous.as_ref()) {
+    let continuous = certificates.and_then(|c| c.continuous.as_ref());
+    if let Some(continuous) = continuous {
         distance(continuous, &mut lines);
     }
     if let Some(adapt) = &r.adapt {
@@ -84,10 +83,24 @@ pub(crate) fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
         );
     }
     how_it_was_solved(r, &shown, verbose, &mut lines);
+    if let Some(discrete) = certificates.and_then(|c| c.discrete.as_ref()) {
+        if verbose {
+            lines.line("proved", enclosed(discrete));
+        }
+        let how_far =
+            if continuous.is_none() { "; how far the mesh is off: --certificate" } else { "" };
+        lines.line("solved", solved_exactly(discrete) + how_far);
+    }
     lines.0
 }
 
-/// The format of quantities: each with its unit, those per unit of thickness times the thickness.
+/// All remarks on a result, those on motions that nothing stops included.
+pub fn remarks(r: &Results) -> Vec<String> {
+    let shown = QuantityFormat::of(r);
+    r.remarks.iter().cloned().chain(r.play.iter().map(|play| free(play, &shown))).collect()
+}
+
+/// The format of quantities: each with its unit.
 pub(super) struct QuantityFormat {
     pub(super) units: Option<Units>,
     pub(super) thickness: Option<f64>,
@@ -97,12 +110,8 @@ pub(super) struct QuantityFormat {
 
 impl QuantityFormat {
     fn of(r: &Results) -> QuantityFormat {
-        let no_force = (1e-10 * r.all_forces()).max(rounding(r));
+        let no_force = (1e-10 * r.quantities.all_forces(&r.contact)).max(rounding(r));
         QuantityFormat { units: r.units.clone(), thickness: r.thickness, no_force }
-    }
-
-    fn whole(&self, per_thickness: f64) -> f64 {
-        per_thickness * self.thickness.unwrap_or(1.0)
     }
 
     pub(super) fn with_unit(&self, shown: String, measure: Measure) -> String {
@@ -113,13 +122,12 @@ impl QuantityFormat {
     }
 
     pub(super) fn number(&self, x: f64, measure: Measure) -> String {
-        let per_thickness = matches!(measure, Measure::Force | Measure::Moment);
-        self.with_unit(short(if per_thickness { self.whole(x) } else { x }), measure)
+        self.with_unit(short(x), measure)
     }
 
     /// The components of a force, without the unit.
     pub(super) fn components(&self, f: [f64; 2]) -> String {
-        vector(f.map(|c| if c.abs() > self.no_force { self.whole(c) } else { 0.0 }))
+        vector(f.map(|c| if c.abs() > self.no_force { c } else { 0.0 }))
     }
 }
 
@@ -134,10 +142,23 @@ fn moduli(material: &MaterialEcho) -> String {
     }
 }
 
-/// The force, per unit of thickness, that is one rounding error of the displacement times the stiffest modulus.
+fn stiffest(r: &Results) -> f64 {
+    r.materials.iter().fold(0.0, |most: f64, of| most.max(of.stiffest()))
+}
+
+/// The force that is one rounding error of the displacement times the stiffest modulus.
 fn rounding(r: &Results) -> f64 {
-    let stiffest = r.materials.iter().fold(0.0, |most: f64, of| most.max(of.stiffest()));
-    f64::EPSILON * stiffest * r.quantities.max_displacement
+    let thickness = r.thickness.unwrap_or(1.0);
+    f64::EPSILON * stiffest(r) * r.quantities.max_displacement * thickness
+}
+
+/// The number of roundings that a stress of a triangle is made of, or more.
+const ROUNDINGS: f64 = 16.0;
+
+/// Returns whether a stress is no larger than what rounding the displacement makes of a body without strain.
+pub(super) fn is_no_stress(r: &Results, stress: f64) -> bool {
+    let strain = ROUNDINGS * f64::EPSILON * r.quantities.max_displacement / r.mesh.h_max;
+    stress.abs() <= strain * stiffest(r)
 }
 
 fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines) {
@@ -150,7 +171,9 @@ fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines
         let peak = shown.number(q.peak_pressure, Measure::Stress);
         lines.line("contact", format!("force {force}, length {length}, peak pressure {peak}"));
     }
-    for (i, part) in r.contact.iter().enumerate() {
+    let mut parts: Vec<&ContactBoundary> = r.contact.iter().collect();
+    parts.sort_by(|a, b| quote::natural(&a.boundary, &b.boundary));
+    for (i, part) in parts.into_iter().enumerate() {
         let name = if i == 0 { "contact" } else { "" };
         let boundary = quote::cut(&part.boundary);
         if !r.is_in_contact(part) {
@@ -172,7 +195,7 @@ fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines
             Some((ends, rigorous)) => format!(
                 ", {} {}; components {components}",
                 if rigorous { "proved" } else { "with a reservation" },
-                between(ends.map(|end| shown.whole(end)))
+                between(ends)
             ),
             None => format!(" {components}"),
         };
@@ -211,7 +234,8 @@ fn stress(r: &Results, shown: &QuantityFormat, lines: &mut Lines) {
             Some(surface) if r.materials.len() > 1 => format!(" in {}", quote::cut(surface)),
             _ => String::new(),
         };
-        format!("{} at {}{surface}", shown.number(peak.value, Measure::Stress), vector(peak.at))
+        let stress = if is_no_stress(r, peak.value) { 0.0 } else { peak.value };
+        format!("{} at {}{surface}", shown.number(stress, Measure::Stress), vector(peak.at))
     };
     lines.line("stress", format!("von Mises up to {}", value(&stress.von_mises)));
     let [low, high] = [&stress.principal_min, &stress.principal_max].map(value);
@@ -219,7 +243,9 @@ fn stress(r: &Results, shown: &QuantityFormat, lines: &mut Lines) {
 }
 
 fn reactions(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines) {
-    for (i, (boundary, reaction)) in r.quantities.reactions.iter().enumerate() {
+    let mut reactions: Vec<(&String, &[f64; 2])> = r.quantities.reactions.iter().collect();
+    reactions.sort_by(|a, b| quote::natural(a.0, b.0));
+    for (i, (boundary, reaction)) in reactions.into_iter().enumerate() {
         let name = if i == 0 { "reactions" } else { "" };
         let moment = r.reaction_moments.get(boundary).filter(|_| verbose);
         let moment = moment
@@ -252,9 +278,10 @@ fn how_it_was_solved(r: &Results, shown: &QuantityFormat, verbose: bool, lines: 
         lines.line("accuracy", accuracy(method));
     }
     if verbose {
-        let [energy, work] =
-            [r.quantities.energy, r.quantities.work].map(|e| shown.number(e, Measure::Moment));
-        lines.line("energy", format!("a(u,u) = {energy}, L(u) = {work}"));
+        let [elastic, energy, work] =
+            [r.quantities.energy / 2.0, r.quantities.energy, r.quantities.work]
+                .map(|e| shown.number(e, Measure::Moment));
+        lines.line("energy", format!("elastic energy {elastic}, a(u,u) = {energy}, L(u) = {work}"));
     }
     if let Some(balance) = &r.balance {
         let parts = [balance.loads, balance.supports, balance.contact];
@@ -374,6 +401,29 @@ pub fn audited(audit: &Audit, case: Option<(&Path, Option<&str>)>) -> String {
     lines.under(&header.title)
 }
 
+/// The most digits that a double has.
+const MOST_DIGITS: f64 = 15.0;
+
+/// Says how many digits of the discrete solution are proved.
+fn solved_exactly(certificate: &DiscreteCertificate) -> String {
+    let sliding = if certificate.unique { "" } else { ", but for sliding" };
+    let digits = match (certificate.radius, certificate.relative) {
+        (None, _) => {
+            let reason = certificate.reason.as_deref().unwrap_or_default();
+            return format!("for this mesh, how exactly is not proved: {reason}");
+        }
+        (Some(_), Some(relative)) if relative > 0.0 => (-relative.log10()).floor().min(MOST_DIGITS),
+        _ => return format!("exactly for this mesh{sliding}, rounding included"),
+    };
+    match digits {
+        digits if digits >= 1.0 => {
+            let digits = count(digits as usize, "digit");
+            format!("exactly for this mesh{sliding}, to {digits}, rounding included")
+        }
+        _ => format!("for this mesh{sliding}, to less than a digit, rounding included"),
+    }
+}
+
 /// Says how far the solution can be from the exact solution of the discrete equations (8), and whether there is one.
 fn enclosed(certificate: &DiscreteCertificate) -> String {
     let reason = certificate.reason.as_deref().unwrap_or_default();
@@ -453,8 +503,11 @@ pub fn studied(case: &Case, studies: &[Study], files: &[PathBuf]) -> String {
     format!("{}\n\n{}\nwritten: {}\n", quote::line(&case.title), tables.join("\n"), written(files))
 }
 
-pub fn swept(title: &str, table: &str, files: &[PathBuf]) -> String {
-    format!("{}\n\n{table}\nwritten: {}\n", quote::line(title), written(files))
+pub fn swept(sweep: &Sweep, files: &[PathBuf]) -> String {
+    let (title, table) = (quote::line(&sweep.title), sweep.table());
+    let remarks = sweep.remarks();
+    let remarks = if remarks.is_empty() { remarks } else { format!("\n{remarks}") };
+    format!("{title}\n\n{table}{remarks}\nwritten: {}\n", written(files))
 }
 
 pub(super) fn sizes(mesh: &MeshSizes) -> String {
@@ -531,7 +584,7 @@ fn free(play: &Play, shown: &QuantityFormat) -> String {
         (Some(least), Some(most)) => format!("from {} to {}", end(least), end(most)),
     };
     format!(
-        "the body can still {motion}, {range}: no support and no obstacle that it presses on stops it. The displacement given is the one of least norm; in reality friction would decide"
+        "the body can still {motion}, {range}: no support and no obstacle that it presses on stops it. One displacement of many is shown, the smallest; in reality friction would decide"
     )
 }
 

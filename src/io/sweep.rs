@@ -1,28 +1,36 @@
 //! The command `signorini sweep`: one case, solved for every combination of the values that some of its keys are given, as
 //! a table for people and as CSV.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc;
+use std::thread;
 use std::time::Duration;
-
-use toml::de::{DeTable, DeValue};
 
 use super::case::Case;
 use super::csv;
 use super::files::Output;
-use super::input::Failure;
+use super::input::{Failure, reason};
 use super::numbers::short;
 use super::outputs::{self, Extra};
+use super::picture::plot::{COLOURS, Figure, Panel, Style, figure};
 use super::result::Results;
 use super::run;
+use super::summary;
 use crate::quote;
 use crate::solve::Solution;
 
 /// The most runs of a sweep: more are a mistake of the person who asks for them.
 pub const MOST_RUNS: usize = 10_000;
 
-/// A key of the case file and the values that it takes, such as `method.gamma0=1e-3,1e-2`.
+/// The most remarks below the table.
+const MOST_REMARKS: usize = 20;
+
+/// A key of the case file and the values that it takes, such as `method.gamma0=1e-3,1e-2`, or `material.young=1000:3000:5`: five
+/// values from 1000 to 3000, as far from one to the next.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ParameterAxis {
     /// The key with its dots.
@@ -35,12 +43,13 @@ impl FromStr for ParameterAxis {
     type Err = Failure;
 
     fn from_str(text: &str) -> Result<ParameterAxis, Failure> {
-        let no_axis =
-            || Failure::wrong("expected KEY=VALUE,VALUE,..., such as method.gamma0=1e-3,1e-2");
+        let no_axis = || {
+            Failure::wrong(
+                "expected KEY=VALUE,VALUE,..., such as method.gamma0=1e-3,1e-2, or a range with the number of its values, such as material.young=1000:3000:5",
+            )
+        };
         let (key, values) = text.split_once('=').ok_or_else(no_axis)?;
-        // Commas inside texts, lists and tables separate nothing; bare words are no TOML, and have no commas.
-        let values = items(values)
-            .unwrap_or_else(|| values.split(',').map(|value| value.trim().to_owned()).collect());
+        let values: Vec<String> = items(values).into_iter().flat_map(expanded).collect();
         if key.trim().is_empty() || values.is_empty() || values.iter().any(String::is_empty) {
             return Err(no_axis());
         }
@@ -48,15 +57,45 @@ impl FromStr for ParameterAxis {
     }
 }
 
-/// The texts of the items of a TOML list, without its brackets.
-fn items(list: &str) -> Option<Vec<String>> {
-    let line = format!("list = [{list}]");
-    let table = DeTable::parse(&line).ok()?;
-    match table.get_ref().get("list")?.get_ref() {
-        DeValue::Array(items) => {
-            items.iter().map(|item| Some(line.get(item.span())?.to_owned())).collect()
+/// The texts between the commas of a list; commas inside texts, lists and tables separate nothing.
+fn items(list: &str) -> Vec<&str> {
+    let (mut items, mut start, mut depth, mut quote) = (Vec::new(), 0, 0_i32, None);
+    for (i, c) in list.char_indices() {
+        match (quote, c) {
+            (Some(mark), c) if c == mark => quote = None,
+            (Some(_), _) => {}
+            (None, '"' | '\'') => quote = Some(c),
+            (None, '[' | '{' | '(') => depth += 1,
+            (None, ']' | '}' | ')') => depth -= 1,
+            (None, ',') if depth == 0 => {
+                items.push(list[start..i].trim());
+                start = i + 1;
+            }
+            _ => {}
         }
-        _ => None,
+    }
+    items.push(list[start..].trim());
+    items
+}
+
+/// The values that an item with a range `from:to:count` stands for, alone or as an entry of a list; any other item stands for itself.
+fn expanded(item: &str) -> Vec<String> {
+    let is_part = |c: char| c.is_ascii_alphanumeric() || matches!(c, ':' | '.' | '+' | '-' | '_');
+    let tokens = item.split(|c: char| !is_part(c)).filter(|token| token.matches(':').count() == 2);
+    let range = |token: &str| -> Option<Vec<f64>> {
+        let mut parts = token.split(':');
+        let ends = [parts.next()?, parts.next()?].map(|end| end.parse::<f64>().ok());
+        let (from, to, count) = (ends[0]?, ends[1]?, parts.next()?.parse::<usize>().ok()?);
+        let counts = (2..=MOST_RUNS).contains(&count) && from.is_finite() && to.is_finite();
+        let step = |i: usize| from + (to - from) * (i as f64 / (count - 1) as f64);
+        counts.then(|| (0..count).map(step).collect())
+    };
+    let found = tokens.filter(|_| !item.contains(['"', '\''])).find_map(|t| Some((t, range(t)?)));
+    match found {
+        Some((token, values)) => {
+            values.iter().map(|&x| item.replacen(token, &short(x, 12), 1)).collect()
+        }
+        None => vec![item.to_owned()],
     }
 }
 
@@ -64,6 +103,9 @@ fn items(list: &str) -> Option<Vec<String>> {
 const NOT_SOLVED: &str = "not solved";
 
 pub const FILE: &str = "sweep.csv";
+
+/// Force and peak over what varies.
+pub const CURVES: &str = "sweep.svg";
 
 /// The name of the file that ParaView opens, where the runs have files.
 pub(crate) const COLLECTION: &str = "sweep.pvd";
@@ -98,9 +140,22 @@ pub fn count(axes: &[ParameterAxis]) -> Result<usize, Failure> {
     Ok(runs)
 }
 
-/// Solves the case with this text (see [`Case::parse`]) for each combination of the axes' values, each from the solution of
-/// the one before where the nodes are the same, and calls `done` with the sweep so far after each. With `files`, those of run i
-/// (from 1) are written into the folder i of `folder`; those that an earlier sweep wrote there go before the first run.
+/// What a sweep does beside the table.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent {
+    /// The files of each run are written, too.
+    pub files: bool,
+    /// The number of runs that are solved at the same time, at least 1.
+    pub jobs: usize,
+}
+
+/// The stack of a run: that of the first thread of a program.
+const STACK: usize = 8 << 20;
+
+/// Solves the case with this text (see [`Case::parse`]) for each combination of the axes' values, and calls `done` with the sweep
+/// so far after each. Each run starts from the solution of the one before where the nodes are the same; with several jobs, each
+/// has as many runs in a row. With files, those of run i (from 1) are written into the folder i of `folder`; those that an earlier
+/// sweep wrote there go before the first run.
 ///
 /// # Errors
 /// A mistake in the case or in one of the values, found before anything is solved; files that can't be written; what `done`
@@ -110,7 +165,7 @@ pub fn run(
     text: &str,
     axes: &[ParameterAxis],
     folder: &Path,
-    files: bool,
+    Extent { files, jobs }: Extent,
     mut done: impl FnMut(&Sweep) -> Result<(), Failure>,
 ) -> Result<Sweep, Failure> {
     count(axes)?;
@@ -127,14 +182,52 @@ pub fn run(
     clear(folder);
     let keys = axes.iter().map(|axis| axis.key.clone()).collect();
     let mut sweep = Sweep { title, keys, values, results: Vec::new(), with_files: files };
-    let mut last = None;
-    for i in 0..sweep.values.len() {
-        let case = read(&sweep.values[i])?;
+    let (all, runs) = (sweep.values.clone(), sweep.values.len());
+    let in_a_row = runs.div_ceil(jobs.clamp(1, runs.max(1)));
+    let stopped = AtomicBool::new(false);
+    let one = |i: usize, last: &mut Option<Solution>| {
+        let case = read(&all[i])?;
         let folder = files.then(|| of_run(folder, i));
-        sweep.results.push(solve(case, folder.as_deref(), &mut last)?);
-        done(&sweep)?;
-    }
-    Ok(sweep)
+        solve(case, folder.as_deref(), last)
+    };
+    thread::scope(|scope| {
+        let (sender, receiver) = mpsc::channel();
+        for first in (0..runs).step_by(in_a_row) {
+            let (sender, one, stopped) = (sender.clone(), &one, &stopped);
+            let work = move || {
+                let mut last = None;
+                for i in first..runs.min(first + in_a_row) {
+                    let ended = stopped.load(Ordering::Relaxed)
+                        || sender.send((i, one(i, &mut last))).is_err();
+                    if ended {
+                        break;
+                    }
+                }
+            };
+            let started = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work);
+            started.map_err(|error| {
+                stopped.store(true, Ordering::Relaxed);
+                Failure::failed(format!("cannot start a job: {}", reason(&error)))
+            })?;
+        }
+        drop(sender);
+        // Runs that ended before one that comes before them in the table.
+        let mut early = BTreeMap::new();
+        for (i, result) in receiver {
+            early.insert(i, result);
+            while let Some(next) = early.remove(&sweep.results.len()) {
+                let so_far = next.and_then(|next| {
+                    sweep.results.push(next);
+                    done(&sweep)
+                });
+                if so_far.is_err() {
+                    stopped.store(true, Ordering::Relaxed);
+                }
+                so_far?;
+            }
+        }
+        Ok(sweep)
+    })
 }
 
 fn of_run(folder: &Path, i: usize) -> PathBuf {
@@ -184,54 +277,60 @@ fn solve(
     Ok(Ok(results))
 }
 
+/// The numbers in the value of a key, in their order.
+fn numbers(value: &str) -> Vec<f64> {
+    let is_part = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '+' | '-' | '_');
+    value.split(|c: char| !is_part(c)).filter_map(|word| word.parse().ok()).collect()
+}
+
 type NumberFormat<'a> = &'a dyn Fn(f64) -> String;
 
-/// The numbers of a run by their names: forces, moments and energies times the thickness, if the case has one. Those whose
-/// name has no point stand in the table for people, too.
+/// The numbers of a run by their names. Those whose name has no point stand in the table for people, too. Stresses and energies
+/// that are rounding are 0.
 fn cells(r: &Results, shown: NumberFormat) -> Vec<(String, String)> {
-    let (q, thickness) = (&r.quantities, r.thickness.unwrap_or(1.0));
+    let q = &r.quantities;
     // That of the summary: the recovered one.
     let peak = r.contact.iter().map(|part| part.peak_pressure).reduce(f64::max);
+    let von_mises = r.stress.as_ref().map(|stress| stress.von_mises.value);
+    let is_rounding = von_mises.is_some_and(|stress| summary::is_no_stress(r, stress));
     let brief = [
         ("verdict", Some(r.outcome().unwrap_or_default())),
         ("gamma0", Some(shown(r.gamma.gamma0))),
         ("kappa", Some(shown(r.gamma.kappa))),
         ("newton_steps", Some(r.newton.iterations.to_string())),
-        ("contact_force", Some(shown(q.contact_force * thickness))),
+        ("contact_force", Some(shown(q.contact_force))),
         ("contact_length", Some(shown(q.contact_length))),
         ("peak_pressure", peak.map(shown)),
-        ("max_von_mises", r.stress.as_ref().map(|stress| shown(stress.von_mises.value))),
+        ("max_von_mises", von_mises.map(|stress| shown(if is_rounding { 0.0 } else { stress }))),
         ("max_displacement", Some(shown(q.max_displacement))),
-        ("energy", Some(shown(q.energy * thickness))),
+        ("elastic_energy", Some(shown(if is_rounding { 0.0 } else { q.energy / 2.0 }))),
         ("energy_error", r.errors.as_ref().map(|errors| shown(errors.energy))),
+        ("remarks", Some(summary::remarks(r).len().to_string())),
     ];
     let brief = brief.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?)));
     let mut cells: Vec<(String, String)> = brief.collect();
     let mut add = |of: &str, what: &str, x: f64| cells.push((format!("{of}.{what}"), shown(x)));
     for part in &r.contact {
-        add(&part.boundary, "force", part.force * thickness);
+        add(&part.boundary, "force", part.force);
         add(&part.boundary, "length", part.length);
         add(&part.boundary, "peak_pressure", part.peak_pressure);
     }
-    // Outwards, should the product be rounded.
-    let outwards =
-        |[low, high]: [f64; 2]| [(low * thickness).next_down(), (high * thickness).next_up()];
     let proved = r.certificate.as_ref().and_then(|c| c.discrete.as_ref()?.intervals.as_ref());
     for part in proved.iter().flat_map(|intervals| &intervals.contact) {
-        let [low, high] = outwards(part.force);
+        let [low, high] = part.force;
         add(&part.boundary, "force_low", low);
         add(&part.boundary, "force_high", high);
     }
     let certified = r.certificate.as_ref().and_then(|c| c.continuous.as_ref());
     for part in &r.contact {
         let proved = certified.and_then(|c| c.contact_force(&part.boundary));
-        let Some([low, high]) = proved.map(outwards) else { continue };
+        let Some([low, high]) = proved else { continue };
         add(&part.boundary, "true_force_low", low);
         add(&part.boundary, "true_force_high", high);
     }
     for (boundary, [x, y]) in &q.reactions {
-        add(boundary, "reaction_x", x * thickness);
-        add(boundary, "reaction_y", y * thickness);
+        add(boundary, "reaction_x", *x);
+        add(boundary, "reaction_y", *y);
     }
     for (i, [_, _, u_x, u_y]) in (1..).zip(&r.probes) {
         add(&format!("probe_{i}"), "u_x", *u_x);
@@ -291,6 +390,29 @@ impl Sweep {
         lines.iter().map(line).collect()
     }
 
+    /// The remarks on the runs, a line each: those that several runs share once, with the numbers of these; empty if there are none.
+    pub fn remarks(&self) -> String {
+        let mut remarks: Vec<(String, Vec<String>)> = Vec::new();
+        for (i, results) in (1..).zip(&self.results) {
+            for text in results.iter().flat_map(summary::remarks) {
+                let run = format!("{i}");
+                match remarks.iter_mut().find(|(other, _)| *other == text) {
+                    Some((_, runs)) => runs.push(run),
+                    None => remarks.push((text, vec![run])),
+                }
+            }
+        }
+        let line = |(text, runs): &(String, Vec<String>)| {
+            let of = quote::names(runs.iter().map(String::as_str));
+            format!("remark on row {of}: {}\n", quote::unbroken(text))
+        };
+        let rest = remarks.len().saturating_sub(MOST_REMARKS);
+        let more =
+            format!("and {rest} more remarks: solve the row alone, or --files, shows them\n");
+        let shown: String = remarks.iter().take(MOST_REMARKS).map(line).collect();
+        if rest > 0 { shown + &more } else { shown }
+    }
+
     /// The text of sweep.csv: each number the shortest decimal that reads back to the same double.
     pub fn csv(&self) -> String {
         self.lines(false, &csv::number).into_iter().map(csv::line).collect()
@@ -308,9 +430,83 @@ impl Sweep {
         )
     }
 
-    /// Writes sweep.csv into `folder`, and sweep.pvd where the runs have files; returns their paths.
+    /// The key along the curves of sweep.svg, and the number in its value of each run: the first number that differs from run to
+    /// run, of the key of which it takes the most values.
+    fn abscissa(&self) -> Option<(usize, Vec<f64>)> {
+        let varying = |key: usize| {
+            let of_runs: Vec<Vec<f64>> = self.values.iter().map(|run| numbers(&run[key])).collect();
+            let entries = of_runs.iter().map(Vec::len).min()?;
+            let entry =
+                (0..entries).find(|&e| of_runs.iter().any(|run| run[e] != of_runs[0][e]))?;
+            Some((key, of_runs.iter().map(|run| run[entry]).collect::<Vec<f64>>()))
+        };
+        let distinct = |(_, numbers): &(usize, Vec<f64>)| {
+            let mut sorted = numbers.clone();
+            sorted.sort_by(f64::total_cmp);
+            sorted.dedup();
+            sorted.len()
+        };
+        (0..self.keys.len()).filter_map(varying).max_by_key(distinct)
+    }
+
+    /// Force and peak over what varies, a curve for each combination of the other keys; `None` where no number varies.
+    fn curves(&self) -> Option<Figure> {
+        let (key, numbers) = self.abscissa()?;
+        let others = |run: &[String]| {
+            let other = |(k, value): (&String, &String)| {
+                (*k != self.keys[key]).then(|| format!("{k} = {value}"))
+            };
+            self.keys.iter().zip(run).filter_map(other).collect::<Vec<String>>().join(", ")
+        };
+        let mut curves: Vec<(String, Vec<usize>)> = Vec::new();
+        for (i, run) in self.values.iter().enumerate().take(self.results.len()) {
+            let name = others(run);
+            match curves.iter_mut().find(|(other, _)| *other == name) {
+                Some((_, runs)) => runs.push(i),
+                None => curves.push((name, vec![i])),
+            }
+        }
+        let panel = |name: &str| Panel {
+            title: name.replace('_', " "),
+            lines: curves
+                .iter()
+                .map(|(_, runs)| {
+                    let point = |&i: &usize| {
+                        let results = self.results[i].as_ref().ok()?;
+                        let cells = cells(results, &csv::number);
+                        let (_, value) = cells.into_iter().find(|(cell, _)| cell == name)?;
+                        Some([numbers[i], value.parse().ok()?])
+                    };
+                    let mut points: Vec<[f64; 2]> = runs.iter().filter_map(point).collect();
+                    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+                    points
+                })
+                .collect(),
+            slopes: Vec::new(),
+        };
+        let panels = vec![panel("contact_force"), panel("peak_pressure")];
+        let is_drawn = panels.iter().flat_map(|panel| &panel.lines).any(|line| line.len() > 1);
+        let style = |(i, (name, _)): (usize, &(String, Vec<usize>))| Style {
+            name: if name.is_empty() { "solved".to_owned() } else { quote::line(name) },
+            colour: COLOURS[i % COLOURS.len()],
+            dashed: i / COLOURS.len() % 2 == 1,
+        };
+        is_drawn.then(|| Figure {
+            title: self.title.clone(),
+            x_label: self.keys[key].clone(),
+            logarithmic: false,
+            panels,
+            styles: curves.iter().enumerate().map(style).collect(),
+        })
+    }
+
+    /// Writes sweep.csv into `folder`, sweep.svg where a number varies, and sweep.pvd where the runs have files; returns their
+    /// paths.
     pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-        let mut output = Output::new(folder)?.replacing(&[COLLECTION]);
+        let mut output = Output::new(folder)?.replacing(&[COLLECTION, CURVES]);
+        if let Some(curves) = self.curves() {
+            output.stage_made(CURVES, figure(&curves))?;
+        }
         if self.with_files {
             output.stage(COLLECTION, self.pvd().as_bytes())?;
         }
@@ -339,6 +535,14 @@ mod tests {
             ),
             ("title=\"a,b\"", "title", &["\"a,b\""]),
             ("a={gauss = 4},\"exact\"", "a", &["{gauss = 4}", "\"exact\""]),
+            ("a=max(x,y),1", "a", &["max(x,y)", "1"]),
+            ("a=1000:3000:5", "a", &["1000", "1500", "2000", "2500", "3000"]),
+            ("a=1,0.1:0.3:3", "a", &["1", "0.1", "0.2", "0.3"]),
+            ("a=[0,-0.01:-0.03:3]", "a", &["[0,-0.01]", "[0,-0.02]", "[0,-0.03]"]),
+            // No ranges.
+            ("a=\"1:2:3\"", "a", &["\"1:2:3\""]),
+            ("a=1:2", "a", &["1:2"]),
+            ("a=1:2:1", "a", &["1:2:1"]),
         ] {
             let ParameterAxis { key: found, values: list } = axis(text);
             assert_eq!((&*found, list), (key, values.iter().map(|v| (*v).to_owned()).collect()));

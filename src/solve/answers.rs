@@ -118,14 +118,18 @@ pub(crate) fn energy_balance(
     EnergyBalance { strain, loads, supports, contact, imbalance }
 }
 
-/// The largest principal strain, in magnitude, of the mean strain on a triangle.
-pub fn largest_strain(d: &Discretization, u: &[[f64; 2]]) -> f64 {
+/// The largest principal strain, in magnitude, of the mean strain on a triangle, and the middle of that triangle.
+pub fn largest_strain(d: &Discretization, u: &[[f64; 2]]) -> (f64, [f64; 2]) {
     let of = |t| {
         let g = d.space.mean_gradient(t, u);
         let radius = ((g.m11 - g.m22) / 2.0).hypot((g.m12 + g.m21) / 2.0);
         ((g.m11 + g.m22) / 2.0).abs() + radius
     };
-    (0..d.space.mesh().triangles().len()).map(of).fold(0.0, f64::max)
+    let mesh = d.space.mesh();
+    let strains = (0..mesh.triangles().len()).map(|t| (of(t), t));
+    let (strain, t) =
+        strains.fold((0.0, 0), |most, found| if found.0 > most.0 { found } else { most });
+    (strain, mesh.triangle(t).point([1.0 / 3.0; 3]).into())
 }
 
 /// The recovered pressure at the nodes of each edge, in the order of the edge's nodes.

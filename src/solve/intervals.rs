@@ -22,6 +22,7 @@ pub type Range = [f64; 2];
 #[non_exhaustive]
 pub struct Intervals {
     /// a(u, u)
+    #[cfg_attr(feature = "files", serde(rename = "a_uu", alias = "energy"))]
     pub energy: Range,
     /// The largest length of u at a node.
     pub max_displacement: Range,

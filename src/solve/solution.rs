@@ -62,6 +62,8 @@ pub struct Solution {
     pub balance: EnergyBalance,
     /// The largest principal strain, in magnitude, of the mean strain on a triangle.
     pub largest_strain: f64,
+    /// Where that is: the middle of the triangle, in the undeformed body.
+    pub largest_strain_at: [f64; 2],
 }
 
 /// gamma0 and the coercivity number.
@@ -119,8 +121,12 @@ pub struct ContactValues {
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
 pub struct Quantities {
-    /// a(u, u)
+    /// a(u, u), twice the elastic energy.
+    #[cfg_attr(feature = "files", serde(rename = "a_uu", alias = "energy"))]
     pub energy: f64,
+    /// The elastic energy, a(u, u) / 2; 0 in a result that does not say so.
+    #[cfg_attr(feature = "files", serde(default))]
+    pub elastic_energy: f64,
     /// L(u)
     pub work: f64,
     /// The largest Euclidean norm of u over the nodes.
@@ -140,6 +146,23 @@ pub struct Quantities {
     pub reaction_moments: BTreeMap<String, f64>,
 }
 
+/// A contact force below this share of all forces is rounding.
+const NO_FORCE: f64 = 1e-10;
+
+impl Quantities {
+    /// The sum of the magnitudes of the reactions and of the forces on all parts of Gamma_C.
+    pub(crate) fn all_forces(&self, boundaries: &[ContactBoundary]) -> f64 {
+        let contact: f64 = boundaries.iter().map(|part| part.force.abs()).sum();
+        let reactions = self.reactions.values().map(|[x, y]| x.hypot(*y));
+        contact.max(self.contact_force.abs()) + reactions.sum::<f64>()
+    }
+
+    /// Returns whether one of the parts of Gamma_C carries more than rounding.
+    pub(crate) fn presses(&self, part: &ContactBoundary, boundaries: &[ContactBoundary]) -> bool {
+        part.force > NO_FORCE * self.all_forces(boundaries)
+    }
+}
+
 impl Solution {
     /// Evaluates all reported quantities of a displacement.
     pub fn new(d: &Discretization, evaluated: Evaluated, report: Report) -> Self {
@@ -147,6 +170,7 @@ impl Solution {
         let quantities = quantities(d, &evaluated);
         let Evaluated { u, p, residual } = evaluated;
         let recovered = answers::recovered_pressure(d, &p);
+        let (largest_strain, largest_strain_at) = answers::largest_strain(d, &u);
         let with_material =
             || stress.iter().enumerate().map(|(t, &s)| (d.problem.material.of(t), s));
         Solution {
@@ -158,7 +182,8 @@ impl Solution {
             stress: with_material().map(|(m, s)| (s, m.stress_zz(s))).collect(),
             contact: contact_values(d, &u, &p, &recovered),
             boundaries: answers::contact_boundaries(d, &u, &p, &recovered),
-            largest_strain: answers::largest_strain(d, &u),
+            largest_strain,
+            largest_strain_at,
             balance: answers::energy_balance(d, &u, &p, &residual, quantities.energy),
             pieces: d.contact.clone(),
             gamma: GammaReport::new(d),
@@ -249,8 +274,10 @@ fn contact_values(
 }
 
 fn quantities(d: &Discretization, Evaluated { u, p, residual }: &Evaluated) -> Quantities {
+    let energy = d.strain_energy(u);
     let mut q = Quantities {
-        energy: d.strain_energy(u),
+        energy,
+        elastic_energy: energy / 2.0,
         work: inner(&d.load, u),
         max_displacement: u.iter().fold(0.0, |max, v| f64::max(max, v[0].hypot(v[1]))),
         contact_force: 0.0,

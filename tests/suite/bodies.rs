@@ -457,6 +457,62 @@ fn forty_nine_of_fifty_bodies_of_all_families_are_proved_or_ill_conditioned() {
     assert!(4 * of(&[PROVED]) >= 3 * count, "{} of {count} are proved", of(&[PROVED]));
 }
 
+/// The body on a mesh with each edge divided in four.
+fn finer(body: &Body) -> Option<Problem> {
+    let mut problem = body.problem.clone();
+    for _ in 0..2 {
+        let newest = problem.mesh.opposite_longest();
+        let all: Vec<usize> = (0..problem.mesh.triangles().len()).collect();
+        let refinement = problem.mesh.bisected(&newest, &all).ok()?;
+        problem = problem.refined(refinement);
+    }
+    Some(problem)
+}
+
+/// The remark that the mesh does not resolve the contact is true where force or peak change on finer meshes.
+#[test]
+fn remarks_on_the_contact_of_random_bodies_are_true() {
+    let (from, count) =
+        (number_from("SIGNORINI_BODIES_FROM", 1), number_from("SIGNORINI_BODIES", 64));
+    let mut kinds: BTreeMap<String, usize> = BTreeMap::new();
+    let mut untrue = Vec::new();
+    for seed in from..from + count {
+        let body = of_all_families(seed);
+        let Ok((solution, _)) = solve(&body.problem, &body.method, &Settings::default()) else {
+            continue;
+        };
+        for remark in solution.remarks(&body.problem) {
+            let kind: String =
+                remark.split('\'').next().unwrap_or_default().chars().take(40).collect();
+            let kind = kind.split(char::is_numeric).next().unwrap_or_default().to_owned();
+            *kinds.entry(kind).or_default() += 1;
+            let is_of_the_mesh = ["contact of", "the gap of"].iter().any(|k| remark.starts_with(k));
+            let Some(problem) = finer(&body).filter(|_| is_of_the_mesh) else { continue };
+            let method = Method { gamma0: Gamma0::Auto, ..body.method };
+            let Ok((fine, _)) = solve(&problem, &method, &Settings::default()) else { continue };
+            let is_named = |name: &str| remark.contains(&format!("'{name}'"));
+            let changes = solution.boundaries.iter().zip(&fine.boundaries).any(|(a, b)| {
+                let off = |a: f64, b: f64| (a / b - 1.0).abs();
+                is_named(&a.boundary)
+                    && (off(a.force, b.force) > 0.02
+                        || off(a.peak_pressure, b.peak_pressure) > 0.1
+                        || off(a.force / a.length, b.force / b.length) > 0.1
+                        // No pressure is below its mean.
+                        || remark.contains("is even below force / length"))
+            });
+            if !changes {
+                untrue.push(format!("seed {seed}: {}: {remark} [{}]", body.kind, body.said));
+            }
+        }
+    }
+    for (kind, given) in &kinds {
+        println!("{given:5} {kind}");
+    }
+    println!("{} of {count} untrue\n{}", untrue.len(), untrue.join("\n"));
+    assert!(kinds.keys().any(|kind| kind.starts_with("contact of")), "control: {kinds:?}");
+    assert!(100 * untrue.len() as u64 <= count.max(100), "{}", untrue.join("\n"));
+}
+
 /// The first four are held by stretches that end where P does, the others where some pressed edges are left out: they press too little to
 /// stay so.
 #[test]

@@ -464,13 +464,16 @@ fn a_shorter_sweep_leaves_no_folders_of_a_longer_one() {
         assert_eq!(ended(&output), (Some(0), ""));
         names(&folder.join("out/case"))
     };
-    let all = ["1", "2", "3", "4", "sweep.csv", "sweep.pvd"];
+    let all = ["1", "2", "3", "4", "sweep.csv", "sweep.pvd", "sweep.svg"];
     assert_eq!(sweep("1.0,2.0,3.0,4.0", &["--files"]), all);
     fs::write(folder.join("out/case/4/notes"), "of a person").unwrap();
-    assert_eq!(sweep("7.0,8.0", &["--files"]), ["1", "2", "4", "sweep.csv", "sweep.pvd"]);
+    assert_eq!(
+        sweep("7.0,8.0", &["--files"]),
+        ["1", "2", "4", "sweep.csv", "sweep.pvd", "sweep.svg"]
+    );
     assert_eq!(names(&folder.join("out/case/4")), ["notes"]);
     assert_eq!(names(&folder.join("out/case/2")), FILES);
-    assert_eq!(sweep("7.0,8.0", &[]), ["4", "sweep.csv"]);
+    assert_eq!(sweep("7.0,8.0", &[]), ["4", "sweep.csv", "sweep.svg"]);
 }
 
 #[test]

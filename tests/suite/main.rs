@@ -34,6 +34,7 @@ mod properties;
 mod quantities;
 mod recovered;
 mod reference;
+mod remarks;
 #[cfg(feature = "cli")]
 mod reported;
 mod routes;

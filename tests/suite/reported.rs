@@ -182,7 +182,7 @@ boundary.top.displacement = ["0", "0"]
 boundary.bottom.contact.gap = 0.001
 "#;
     let folder = with_files("quadrature", &[("case.toml", case)]);
-    let message = said(&folder, &["solve", "case.toml", "--report"], 0);
+    let message = said(&folder, &["solve", "case.toml", "--report", "--verbose"], 0);
     let words = "rounding included, with the loads as quadrature gives them";
     assert!(message.contains(words), "{message}");
     assert!(fs::read_to_string(folder.join("out/case/report.html")).unwrap().contains(words));

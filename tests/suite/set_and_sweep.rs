@@ -139,12 +139,12 @@ fn a_sweep_prints_and_writes_one_line_for_each_combination() {
     let arguments = ["--set", "method.gamma0=1e-3,auto", "--set", "method.degree=1,2"];
     let output = signorini(&folder, &[&["sweep", "case.toml"], &arguments[..]].concat());
     assert_eq!(ended(&output), (Some(0), ""));
-    assert_eq!(names(&folder.join("out/case")), ["sweep.csv"]);
+    assert_eq!(names(&folder.join("out/case")), ["sweep.csv", "sweep.svg"]);
     let csv = fs::read_to_string(folder.join("out/case/sweep.csv")).unwrap();
     let lines: Vec<&str> = csv.lines().collect();
     assert_eq!(
         lines[0],
-        "method.gamma0,method.degree,verdict,kappa,newton_steps,contact_force,contact_length,peak_pressure,max_von_mises,max_displacement,energy,bottom.force,bottom.length,bottom.peak_pressure,bottom.force_low,bottom.force_high,top.reaction_x,top.reaction_y,probe_1.u_x,probe_1.u_y,probe_2.u_x,probe_2.u_y,status"
+        "method.gamma0,method.degree,verdict,kappa,newton_steps,contact_force,contact_length,peak_pressure,max_von_mises,max_displacement,elastic_energy,remarks,bottom.force,bottom.length,bottom.peak_pressure,bottom.force_low,bottom.force_high,top.reaction_x,top.reaction_y,probe_1.u_x,probe_1.u_y,probe_2.u_x,probe_2.u_y,status"
     );
     for (line, values) in lines[1..].iter().zip(["1e-3,1", "1e-3,2", "auto,1", "auto,2"]) {
         assert!(line.starts_with(values) && line.ends_with(",converged"), "{line}");
@@ -192,7 +192,7 @@ fn a_sweep_over_lists_writes_the_files_of_each_run_where_asked() {
     let output =
         signorini(&folder, &["sweep", "case.toml", "--set", loads, "--files", "--out", "o"]);
     assert_eq!(ended(&output), (Some(0), ""));
-    assert_eq!(names(&folder.join("o")), ["1", "2", "sweep.csv", "sweep.pvd"]);
+    assert_eq!(names(&folder.join("o")), ["1", "2", "sweep.csv", "sweep.pvd", "sweep.svg"]);
     let collection = fs::read_to_string(folder.join("o/sweep.pvd")).unwrap();
     assert!(
         collection.contains("<DataSet timestep=\"2\" file=\"2/solution.vtu\"/>"),
@@ -283,5 +283,74 @@ fn completions_know_every_option() {
     for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
         let output = signorini(&folder, &["completions", shell]);
         assert!(output.status.success() && text(&output.stdout).contains("ranks"), "{shell}");
+    }
+}
+
+#[test]
+fn a_sweep_has_the_remarks_of_its_runs_in_a_column_and_below_the_table() {
+    let folder = folder("sweep-remarks", &[]);
+    let loads = "load.body=[\"0\", \"-0.001\"],[\"0\", \"-4 + 10*x\"]";
+    let output = signorini(&folder, &["sweep", "case.toml", "--set", loads]);
+    assert_eq!(ended(&output), (Some(0), ""));
+    let said = text(&output.stdout);
+    assert!(said.contains("\nremark on row 2: the largest strain is "), "{said}");
+    assert!(!said.contains("remark on row 1"), "control: {said}");
+    let csv = fs::read_to_string(folder.join("out/case/sweep.csv")).unwrap();
+    let rows: Vec<&str> = csv.lines().collect();
+    let column = rows[0].split(',').position(|name| name == "remarks").unwrap();
+    // The loads have a comma each, in quotes.
+    let count = |row: &str| row.split(',').nth(column + 1).unwrap().parse::<usize>().unwrap();
+    assert_eq!(count(rows[1]), 0, "{csv}");
+    assert!(count(rows[2]) > 0, "{csv}");
+}
+
+#[test]
+fn a_range_makes_as_many_rows_and_jobs_change_nothing_but_the_time() {
+    let folder = folder("sweep-range", &[]);
+    let sweep = |jobs: &str, out: &str| {
+        let range = "boundary.top.displacement=[0,-0.01:-0.03:5]";
+        let arguments = ["sweep", "case.toml", "--set", range, "--jobs", jobs, "--out", out];
+        assert_eq!(ended(&signorini(&folder, &arguments)), (Some(0), ""));
+        fs::read_to_string(folder.join(out).join("sweep.csv")).unwrap()
+    };
+    let [one, two] = [sweep("1", "one"), sweep("2", "two")];
+    let rows: Vec<&str> = one.lines().collect();
+    assert!(rows.len() == 6 && rows[3].starts_with("\"[0,-0.02]\","), "{one}");
+    // Runs start from other solutions: their last digits differ.
+    for (a, b) in one.lines().zip(two.lines()) {
+        for (a, b) in a.split(',').zip(b.split(',')) {
+            match (a.parse::<f64>(), b.parse::<f64>()) {
+                // Newton steps.
+                (Ok(a), Ok(b)) if a.fract() == 0.0 && b.fract() == 0.0 && a.abs() > 1.5 => {}
+                (Ok(a), Ok(b)) => {
+                    approx::assert_relative_eq!(a, b, max_relative = 1e-7, epsilon = 1e-12)
+                }
+                _ => assert_eq!(a, b),
+            }
+        }
+    }
+    let drawn = fs::read_to_string(folder.join("one/sweep.svg")).unwrap();
+    // Five points in each of two panels, and one in the legend.
+    assert_eq!(drawn.matches("<circle").count(), 11);
+    assert!(drawn.contains("boundary.top.displacement"), "{drawn}");
+}
+
+#[test]
+fn the_error_that_is_asked_for_on_the_command_line_is_met() {
+    let folder = folder("within", &[]);
+    let bounds = |within: &str, code: i32| {
+        let output = signorini(&folder, &["solve", "case.toml", "--within", within]);
+        assert_eq!(output.status.code(), Some(code), "{}", text(&output.stderr));
+        text(&output.stdout).to_owned() + text(&output.stderr)
+    };
+    assert!(bounds("30 %", 0).contains("  adapted      target 30 % met;"));
+    let said = bounds("force bottom 40 %", 0);
+    assert!(said.contains("  adapted      force of bottom within ±40 % met;"), "{said}");
+    for (within, message) in [
+        ("30", "invalid value '30' for '--within <TARGET>': expected a share of the energy norm"),
+        ("force roof 5 %", "adapt.target={ force = \"roof\""),
+    ] {
+        let said = bounds(within, 2);
+        assert!(said.contains(message), "{said}");
     }
 }

@@ -149,7 +149,7 @@ fn is_word(text: &str) -> bool {
 }
 
 /// The remedies for errors whose message from the TOML reader begins so.
-const REMEDIES: [(&str, &str); 8] = [
+const REMEDIES: [(&str, &str); 11] = [
     (
         "missing comma between array elements",
         "expected ',' or ']'; is a list or a text above not closed?",
@@ -162,12 +162,17 @@ const REMEDIES: [(&str, &str); 8] = [
     ("invalid mantissa", "expected a digit before the decimal point (0.5, not .5)"),
     // It says so where there is no value at all, too.
     (NO_QUOTES, "expected a value; a text must be in quotes"),
+    ("invalid boolean", "expected a value; a text must be in quotes"),
+    ("invalid time", NO_RANGE),
+    ("invalid date", NO_RANGE),
     ("invalid float", NO_VALUE),
     ("unexpected key or value", NO_VALUE),
     ("unexpected leading zero", NO_VALUE),
 ];
 
 const NO_QUOTES: &str = "string values must be quoted";
+
+const NO_RANGE: &str = "expected a value; a range from:to:count is one of 'signorini sweep', with a count of at least 2";
 
 const NO_VALUE: &str = "expected a value; an expression must be in quotes (\"0.1 - x\"), a list in brackets, and decimals have a point (0.5, not 0,5)";
 

@@ -32,7 +32,7 @@ const OF_THE_RADIUS: f64 = 0.6;
 const FURTHEST: f64 = 0.2;
 
 /// An obstacle along a line that is not straight, which magnifying the gap bends, is left out beyond this part.
-const FURTHEST_WHERE_BENT: f64 = 0.06;
+pub(super) const FURTHEST_WHERE_BENT: f64 = 0.06;
 
 impl ContactLine {
     /// All parts of the contact boundaries, in the plane.
@@ -61,8 +61,11 @@ impl ContactLine {
             // The height of a unit of pressure.
             let height = boundary.peak().map_or(0.0, |peak| highest / peak.pressure);
             for (samples, normals) in parts {
-                let bent = factor != 1.0 && turns(samples);
+                let turns = turns(samples);
+                let bent = factor != 1.0 && turns;
                 let furthest = size * if bent { FURTHEST_WHERE_BENT } else { FURTHEST };
+                // An obstacle with a shape of its own keeps it, and its place.
+                let factor = if turns && boundary.rigid { 1.0 } else { factor };
                 let wall = |(s, &n): (&ContactSample, &Point)| {
                     let gap = factor * s.gap;
                     (gap.abs() <= furthest).then(|| moved(s.position, n, gap))
@@ -109,7 +112,7 @@ impl ContactLine {
 }
 
 /// The line is no straight one with one direction.
-fn turns(samples: &[ContactSample]) -> bool {
+pub(super) fn turns(samples: &[ContactSample]) -> bool {
     let step = |pair: &[ContactSample]| direction(pair[0].position, pair[1].position);
     let first = samples.windows(2).find_map(step);
     let differs = |a: Point, b: Point| distance(a, b) > 1e-6;
@@ -158,7 +161,7 @@ pub(super) fn pressure(contact: &[ContactLine]) -> Option<Group> {
 }
 
 /// An arrow, unless it would be all head.
-fn arrow(from: Point, to: Point, arrows: &mut PathData) {
+pub(super) fn arrow(from: Point, to: Point, arrows: &mut PathData) {
     if let (true, Some([x, y])) = (distance(from, to) > 8.0, direction(from, to)) {
         let wing = |side: f64| moved(to, [-x - side * 0.5 * y, -y + side * 0.5 * x], 6.0);
         arrows.line([from, to]);

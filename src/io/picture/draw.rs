@@ -76,6 +76,32 @@ pub(super) fn width_of(text: &str, size: f64) -> f64 {
     0.56 * size * text.chars().count() as f64
 }
 
+/// The words of a text in lines that fit into a width at a size; a line that would be the last of `most` is cut.
+pub(super) fn wrapped(text: &str, size: f64, width: f64, most: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if width_of(&format!("{line} {word}"), size) <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    let cut = lines.len() > most;
+    lines.truncate(most);
+    let last = lines.len();
+    for (i, line) in lines.iter_mut().enumerate() {
+        let room = (width / width_of("m", size)) as usize;
+        let is_cut = cut && i + 1 == last || line.chars().count() > room;
+        if is_cut {
+            let kept: String = line.chars().take(room.saturating_sub(3)).collect();
+            *line = kept + "...";
+        }
+    }
+    lines
+}
+
 /// The size at which a text fits into a width, at most `size`.
 pub(super) fn fitting(text: &str, size: f64, width: f64) -> f64 {
     rounded((size * width / width_of(text, size)).min(size))
@@ -212,6 +238,11 @@ impl PageMap {
             width: (scale * extent[0] + 2.0 * AROUND).clamp(600.0, 800.0),
             height: (scale * extent[1] + 2.0 * AROUND).clamp(260.0, 520.0),
         }
+    }
+
+    /// The length on the page of a unit of the plane.
+    pub(super) fn scale(&self) -> f64 {
+        self.scale
     }
 
     pub(super) fn page(&self, [x, y]: Point) -> Point {

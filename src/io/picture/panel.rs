@@ -76,7 +76,7 @@ fn panel(
 ) -> Group {
     let peak = surface.peak();
     let (left, bottom, width) = (x + LEFT, y + TOP + PLOT, width - LEFT - RIGHT);
-    let top = peak.map_or(0.0, |peak| peak.pressure);
+    let top = surface.top();
     let axes = Axes {
         x: PageAxis { range: shown(surface), page: [left, left + width] },
         y: PageAxis { range: [0.0, top * (PLOT / (PLOT - ABOVE))], page: [bottom, bottom - PLOT] },
@@ -138,7 +138,8 @@ fn curve(surface: &ContactSurface, axes: &Axes) -> Group {
     let (mut area, mut line) = (PathData::default(), PathData::default());
     for part in &surface.parts {
         let shown = part.iter().filter(|s| (first..=last).contains(&s.arc));
-        let points: Vec<Point> = shown.map(|s| axes.at([s.arc, s.pressure])).collect();
+        let highest = axes.y.range[1];
+        let points: Vec<Point> = shown.map(|s| axes.at([s.arc, s.pressure.min(highest)])).collect();
         if let [first, .., last] = points[..] {
             let points = thinned(&points);
             let ends = [last, first].map(|p| [p[0], axes.y.page[0]]);
@@ -151,13 +152,17 @@ fn curve(surface: &ContactSurface, axes: &Axes) -> Group {
 
 /// A dot at the peak, and its value above it.
 fn mark(peak: &ContactSample, stress: &str, axes: &Axes) -> Group {
-    let [x, y] = axes.at([peak.arc, peak.pressure]);
+    let capped = peak.pressure > axes.y.range[1];
+    let [x, y] = axes.at([peak.arc, peak.pressure.min(axes.y.range[1])]);
+    let beyond = if capped { ", beyond the plot" } else { "" };
     let words = format!("peak {} {stress}", short(peak.pressure));
+    let words = format!("{}{beyond}", words.trim_end());
     let words = words.trim_end();
     let half = width_of(words, 13.0 / 0.85) / 2.0;
     let [left, right] = axes.x.page;
     let (left, right) = (left + half + 3.0, right - half - 3.0);
-    let place = [x.max(left.min(right)).min(right.max(left)), y - 8.0];
+    let y_of_words = if capped { y + 16.0 } else { y - 8.0 };
+    let place = [x.max(left.min(right)).min(right.max(left)), y_of_words];
     let words = anchored("middle", words, place).set("font-weight", "bold");
     Group::new().set("fill", RED).add(dot([x, y])).add(words)
 }

@@ -1,6 +1,6 @@
-//! Figures with logarithmic axes: panels side by side, a legend below them, and triangles that show a slope.
+//! Figures with logarithmic or plain axes: panels side by side, a legend below them, and triangles that show a slope.
 //!
-//! Points with a coordinate that is not positive have no place in such a figure and are left out.
+//! Points with a coordinate that is not positive have no place between logarithmic axes and are left out.
 
 use svg::Node;
 use svg::node::element::{Circle, Group, Path as PathElement};
@@ -10,13 +10,15 @@ use super::draw::{
     stroke, text,
 };
 use crate::io::files::{NotFinite, check_finite};
-use crate::io::numbers::short;
+use crate::io::numbers::{self, short};
 
 #[derive(Clone, Debug)]
 pub struct Figure {
     pub title: String,
     /// The label of the x axis, which all panels share.
     pub x_label: String,
+    /// Both axes are logarithmic.
+    pub logarithmic: bool,
     pub panels: Vec<Panel>,
     /// The lines by name, for the legend and their looks.
     pub styles: Vec<Style>,
@@ -90,6 +92,14 @@ fn mark(at: Point, style: &Style) -> Circle {
         .set("stroke-width", 1.2)
 }
 
+/// An axis around these numbers, with some space.
+fn plain(numbers: impl Iterator<Item = f64>, page: [f64; 2]) -> PageAxis {
+    let range = range(numbers);
+    let [low, high] = if range[0] <= range[1] { range } else { [0.0, 1.0] };
+    let space = if high > low { 0.06 * (high - low) } else { 0.06 * high.abs().max(1.0) };
+    PageAxis { range: [low - space, high + space], page }
+}
+
 /// An axis around these logarithms, with some space.
 fn logarithmic(logarithms: impl Iterator<Item = f64>, page: [f64; 2]) -> PageAxis {
     let range = range(logarithms);
@@ -129,7 +139,9 @@ fn triangle(line: &[[f64; 2]], slope: f64) -> Option<[[f64; 2]; 3]> {
 }
 
 fn draw(panel: &Panel, figure: &Figure, left: f64) -> Group {
-    let lines: Vec<Vec<[f64; 2]>> = panel.lines.iter().map(|line| positive(line)).collect();
+    let is_log = figure.logarithmic;
+    let drawn = |line: &Vec<[f64; 2]>| if is_log { positive(line) } else { line.clone() };
+    let lines: Vec<Vec<[f64; 2]>> = panel.lines.iter().map(drawn).collect();
     let triangles: Vec<(f64, [[f64; 2]; 3])> = panel
         .slopes
         .iter()
@@ -137,10 +149,17 @@ fn draw(panel: &Panel, figure: &Figure, left: f64) -> Group {
         .collect();
     let corners = triangles.iter().flat_map(|(_, corners)| corners);
     let all = || lines.iter().flatten().chain(corners.clone());
-    let logarithms = |[x, y]: Point| [x.log10(), y.log10()];
-    let range = |c: usize, page| logarithmic(all().map(|&p| logarithms(p)[c]), page);
+    let scaled = |p: Point| if is_log { p.map(f64::log10) } else { p };
+    let range = |c: usize, page| {
+        let numbers = all().map(|&p| scaled(p)[c]);
+        if is_log { logarithmic(numbers, page) } else { plain(numbers, page) }
+    };
     let axes = Axes { x: range(0, [left, left + WIDTH]), y: range(1, [TOP + HEIGHT, TOP]) };
-    let page = |p: Point| axes.at(logarithms(p));
+    let page = |p: Point| axes.at(scaled(p));
+    let ticks = |axis: &PageAxis| match is_log {
+        true => ticks(axis),
+        false => numbers::ticks(axis.range[0], axis.range[1]),
+    };
     let middle = left + WIDTH / 2.0;
     let mut group = Group::new()
         .add(anchored("middle", &*panel.title, [middle, TOP - 12.0]))
@@ -170,6 +189,7 @@ mod tests {
         Figure {
             title: "A < B".to_owned(),
             x_label: "h".to_owned(),
+            logarithmic: true,
             panels: vec![Panel {
                 title: "energy".to_owned(),
                 lines: vec![points],
@@ -193,6 +213,16 @@ mod tests {
         }
         let error = figure(&sample(vec![[0.1, f64::NAN]])).unwrap_err().to_string();
         assert_eq!(error, "energy: P1[0] is NaN or infinite; expected a finite number");
+    }
+
+    #[test]
+    fn between_plain_axes_zero_and_negative_numbers_have_their_place() {
+        let plain =
+            Figure { logarithmic: false, ..sample(vec![[-0.2, 0.0], [-0.1, 2.0], [0.0, 3.0]]) };
+        let text = figure(&plain).unwrap();
+        // One mark more in the legend.
+        assert_eq!(text.matches("<circle").count(), 4);
+        assert!(text.contains("\n-0.1\n") && text.contains("\n2\n"), "{text}");
     }
 
     #[test]

@@ -1,12 +1,15 @@
 //! The content of a picture as data: that of a solved case, and by how much it is magnified.
 
+use super::contact::{FURTHEST_WHERE_BENT, turns};
 use super::draw::{Point, distance, moved, short};
+use super::loads;
 use crate::certify::quantities::Zone;
 use crate::fem::tree::Bounds;
-use crate::fem::{BoundaryEdge, Degree};
+use crate::fem::{BoundaryEdge, Condition, Degree, Obstacle};
 use crate::io::case::{Case, Measure};
 use crate::io::numbers::round_below;
 use crate::io::result::{ContinuousCertificate, Results};
+use crate::quote;
 use crate::solve::solution::{ContactEdgeValues, ContactValues};
 use crate::solve::{Solution, Verdict};
 
@@ -30,11 +33,29 @@ pub(super) struct Scene {
     /// The edges of the whole boundary, from start to end, the body on their left.
     pub(super) outline: Vec<[usize; 2]>,
     pub(super) contact: Vec<ContactSurface>,
+    /// What holds the body: lines along its boundary, or single points, each with whether both components are held.
+    pub(super) supports: Vec<(Vec<usize>, bool)>,
+    /// What moves or loads it: at a point of the body, with its direction and its size beside the largest of its kind.
+    pub(super) loads: Vec<Load>,
+    /// Where the largest von Mises stress is, as a point of the body.
+    pub(super) most_stressed: Option<usize>,
+}
+
+/// An arrow of a load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Load {
+    pub(super) at: usize,
+    /// The arrow as a share of the longest one.
+    pub(super) arrow: Point,
+    /// The way of a prescribed displacement; else a force.
+    pub(super) is_motion: bool,
 }
 
 #[derive(Clone, Debug)]
 pub(super) struct ContactSurface {
     pub(super) name: String,
+    /// The obstacle has a shape of its own (a plane, a circle), which a magnified gap would bend.
+    pub(super) rigid: bool,
     /// Its connected parts, each from start to end, the body on its left. Where the pressure jumps there are two samples at
     /// one place.
     pub(super) parts: Vec<Vec<ContactSample>>,
@@ -55,7 +76,36 @@ pub(super) struct ContactSample {
     pub(super) pressure: f64,
 }
 
+/// A pressure this many times that of all but this share of the length in contact is a spike.
+const SPIKES: f64 = 3.0;
+const SPIKE: f64 = 1.0 / 50.0;
+
+/// An obstacle is bent if it is drawn off its place by more than this share of the body's size.
+const BENT: f64 = 0.01;
+
 impl ContactSurface {
+    /// The highest pressure that is drawn: below the peak where most of the plot would otherwise be spent on next to nothing of the
+    /// boundary, as at a corner, where the pressure tells of the mesh.
+    pub(super) fn top(&self) -> f64 {
+        let parts = self.parts.iter().flat_map(|part| part.windows(2));
+        let mut pressed: Vec<(f64, f64)> = parts
+            .map(|pair| (pair[0].pressure.max(pair[1].pressure), pair[1].arc - pair[0].arc))
+            .filter(|(pressure, length)| *pressure > 0.0 && *length > 0.0)
+            .collect();
+        pressed.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
+        let whole: f64 = pressed.iter().map(|part| part.1).sum();
+        let mut above = 0.0;
+        let quantile = pressed.iter().find(|part| {
+            above += part.1;
+            above > SPIKE * whole
+        });
+        let peak = self.peak().map_or(0.0, |peak| peak.pressure);
+        match quantile {
+            Some(&(quantile, _)) if peak > SPIKES * quantile => quantile,
+            _ => peak,
+        }
+    }
+
     /// The sample with the largest pressure, if that is positive.
     pub(super) fn peak(&self) -> Option<&ContactSample> {
         let largest = self.parts.iter().flatten().max_by(|a, b| a.pressure.total_cmp(&b.pressure));
@@ -112,13 +162,30 @@ impl Scene {
             stretch: case.stretch,
             interfaces: interfaces(case).into_iter().flat_map(parts).collect(),
             outline: mesh.outline().iter().copied().flat_map(parts).collect(),
-            contact: contact_surfaces(s, results),
+            contact: contact_surfaces(case, s, results),
+            supports: loads::supports(case, s),
+            loads: loads::loads(case, s),
+            most_stressed: results
+                .stress
+                .as_ref()
+                .and_then(|stress| s.nodes.iter().position(|&place| place == stress.von_mises.at)),
         }
     }
 
     /// The larger of the body's extents along x and y.
     pub(super) fn size(&self) -> f64 {
         Bounds::around(self.points.iter().copied()).size()
+    }
+
+    /// Returns whether an obstacle with a shape of its own would be drawn with another one where the gap is magnified: a flat
+    /// floor below a round body as a hill.
+    fn bends(&self, factor: f64) -> bool {
+        let (size, rigid) = (self.size(), |surface: &&ContactSurface| surface.rigid);
+        self.contact.iter().filter(rigid).flat_map(|surface| &surface.parts).any(|part| {
+            let shown = |s: &&ContactSample| (factor * s.gap).abs() <= FURTHEST_WHERE_BENT * size;
+            let most = part.iter().filter(shown).fold(0.0, |most: f64, s| most.max(s.gap.abs()));
+            turns(part) && (factor - 1.0).abs() * most > BENT * size
+        })
     }
 
     pub(super) fn deformed(&self, factor: f64) -> Vec<Point> {
@@ -136,9 +203,28 @@ impl Scene {
             Some(factor) if factor != 1.0 => (factor, words(&short(factor))),
             None if !(0.01..=0.3).contains(&part) && part > 1e-12 => {
                 let factor = round_below(0.1 / part);
+                if self.bends(factor) {
+                    return (1.0, "deformation at true scale".to_owned());
+                }
                 (factor, words(&short(factor)))
             }
             _ => (1.0, "deformation at true scale".to_owned()),
+        }
+    }
+}
+
+/// Takes the wave out of a pressure of quadratic triangles that rises and falls from node to node: each value inside a stretch of
+/// contact becomes the mean of itself and of the mean of its neighbours.
+fn smooth(part: &mut [ContactSample]) {
+    let before = part.to_vec();
+    for (i, sample) in part.iter_mut().enumerate() {
+        let is_other = |other: &&ContactSample| other.arc != before[i].arc;
+        let neighbours =
+            [before[..i].iter().rev().find(is_other), before[i..].iter().find(is_other)];
+        if let [Some(a), Some(b)] = neighbours
+            && a.pressure.min(b.pressure).min(sample.pressure) > 0.0
+        {
+            sample.pressure = sample.pressure / 2.0 + (a.pressure + b.pressure) / 4.0;
         }
     }
 }
@@ -160,7 +246,7 @@ fn interfaces(case: &Case) -> Vec<BoundaryEdge> {
 }
 
 /// The contact boundaries by their connected parts. A pressure that is mere rounding is none.
-fn contact_surfaces(s: &Solution, results: &Results) -> Vec<ContactSurface> {
+fn contact_surfaces(case: &Case, s: &Solution, results: &Results) -> Vec<ContactSurface> {
     let certificate = results.certificate.as_ref().and_then(|c| c.continuous.as_ref());
     let proved = certificate.filter(|certificate| certificate.bound.is_some());
     let mut surfaces: Vec<ContactSurface> = Vec::new();
@@ -188,8 +274,16 @@ fn contact_surfaces(s: &Solution, results: &Results) -> Vec<ContactSurface> {
                 .map(|part| part.iter().flat_map(|e| &e.points).map(sample).collect())
                 .collect(),
             zones: proved.map(zones),
+            rigid: matches!(
+                case.problem.conditions.get(&name),
+                Some(Condition::Obstacle(_, Obstacle::Plane { .. } | Obstacle::Circle { .. }))
+            ),
             name,
         });
     }
+    if s.degree == Degree::Two {
+        surfaces.iter_mut().flat_map(|surface| &mut surface.parts).for_each(|part| smooth(part));
+    }
+    surfaces.sort_by(|a, b| quote::natural(&a.name, &b.name));
     surfaces
 }

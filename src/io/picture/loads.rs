@@ -1,0 +1,205 @@
+//! What acts on the body: supports as hatching (held altogether) or as a row of rollers (held along one direction), loads and
+//! prescribed displacements as arrows, the place of the largest stress, and a bar for the scale.
+
+use svg::Node;
+use svg::node::element::{Circle, Group};
+
+use super::contact::{arrow, hatched};
+use super::draw::{
+    DARK, GREY, PageMap, PathData, Point, anchored, clean, direction, distance, moved, places,
+    rounded, short, stroke,
+};
+use super::scene::{Load, Scene};
+use crate::fem::{BoundaryEdge, Condition, Degree, SharedFunction};
+use crate::io::case::Case;
+use crate::io::numbers::round_below;
+use crate::solve::Solution;
+
+/// The colour of forces, and that of prescribed displacements.
+pub(super) const FORCE: &str = "#0072b2";
+pub(super) const MOTION: &str = "#009e73";
+
+/// The longest arrow on the page, the room between two, and that between rollers.
+const LONGEST: f64 = 34.0;
+const APART: f64 = 26.0;
+const ROLLERS: f64 = 12.0;
+
+/// An arrow of a share below this is none.
+const NO_ARROW: f64 = 0.02;
+
+/// The nodes of an edge in order along it.
+fn along(case: &Case, s: &Solution, edge: BoundaryEdge) -> Vec<usize> {
+    let [a, b] = case.problem.mesh.ends(edge);
+    match s.degree {
+        Degree::One => vec![a, b],
+        Degree::Two => vec![a, s.elements[6 * edge.triangle + 3 + edge.local], b],
+    }
+}
+
+/// The nodes of a named boundary, edge by edge; none for a name that is no boundary.
+fn lines(case: &Case, s: &Solution, name: &str) -> Vec<Vec<usize>> {
+    let edges = case.problem.mesh.edges_of(name).unwrap_or_default();
+    edges.iter().map(|&edge| along(case, s, edge)).collect()
+}
+
+/// What holds the body, and whether it does so in both components.
+pub(super) fn supports(case: &Case, s: &Solution) -> Vec<(Vec<usize>, bool)> {
+    let mut supports = Vec::new();
+    for (name, condition) in &case.problem.conditions {
+        let held = match condition {
+            Condition::Displacement(components)
+            | Condition::Mixed { displacement: components, .. } => {
+                components.each_ref().map(Option::is_some)
+            }
+            Condition::Support { normal, tangential } => [normal.is_some(), tangential.is_some()],
+            _ => [false; 2],
+        };
+        if held != [false; 2] {
+            supports.extend(lines(case, s, name).into_iter().map(|line| (line, held == [true; 2])));
+        }
+    }
+    for point in &case.problem.points {
+        let held = point.displacement.each_ref().map(Option::is_some);
+        supports.push((vec![point.vertex], held == [true; 2]));
+    }
+    supports
+}
+
+/// The arrows of tractions and pressures, and those of prescribed displacements, each kind beside its largest.
+pub(super) fn loads(case: &Case, s: &Solution) -> Vec<Load> {
+    let mut loads = Vec::new();
+    let mut add = |at: usize, arrow: Point, is_motion: bool| {
+        if arrow.iter().all(|c| c.is_finite()) && arrow != [0.0; 2] {
+            loads.push(Load { at, arrow, is_motion });
+        }
+    };
+    let value = |f: &Option<SharedFunction>, x: Point| f.as_ref().map_or(0.0, |f| f.at(x));
+    for (name, condition) in &case.problem.conditions {
+        let edges = case.problem.mesh.edges_of(name).unwrap_or_default();
+        for &edge in edges {
+            let normal: Point = case.problem.mesh.length_and_normal(edge).1.into();
+            for at in along(case, s, edge) {
+                let x = s.nodes[at];
+                match condition {
+                    Condition::Traction(t) => add(at, t.each_ref().map(|t| t.at(x)), false),
+                    Condition::Pressure(p) => add(at, normal.map(|n| -p.at(x) * n), false),
+                    Condition::Displacement(u) => {
+                        add(at, u.each_ref().map(|u| value(u, x)), true);
+                    }
+                    Condition::Mixed { displacement, traction } => {
+                        add(at, displacement.each_ref().map(|u| value(u, x)), true);
+                        add(at, traction.each_ref().map(|t| t.at(x)), false);
+                    }
+                    Condition::Support { normal: u_n, .. } => {
+                        add(at, normal.map(|n| value(u_n, x) * n), true);
+                    }
+                    _ => {}
+                }
+            }
+        }
+    }
+    for is_motion in [false, true] {
+        let of_kind = |load: &&mut Load| load.is_motion == is_motion;
+        let size = |load: &Load| distance(load.arrow, [0.0; 2]);
+        let most = loads.iter().filter(|l| l.is_motion == is_motion).map(size).fold(0.0, f64::max);
+        loads.iter_mut().filter(of_kind).for_each(|load| load.arrow = load.arrow.map(|c| c / most));
+    }
+    loads
+}
+
+/// The supports on the page, on the deformed body; `None` if nothing holds it.
+pub(super) fn drawn_supports(scene: &Scene, deformed: &[Point]) -> Option<Group> {
+    let line = |nodes: &[usize]| nodes.iter().map(|&v| deformed[v]).collect::<Vec<Point>>();
+    let mut group = Group::new();
+    let held = scene.supports.iter().filter(|(nodes, both)| *both && nodes.len() > 1);
+    let held = hatched(joined(held.map(|(nodes, _)| line(nodes)).collect()));
+    let mut rollers = Vec::new();
+    let partly = scene.supports.iter().filter(|(nodes, both)| !both && nodes.len() > 1);
+    for points in joined(partly.map(|(nodes, _)| line(nodes)).collect()) {
+        for (i, fraction) in places(&points, ROLLERS) {
+            let (a, b) = (points[i], points[i + 1]);
+            if let Some([x, y]) = direction(a, b) {
+                // The body is on the left of the line, on a page whose second axis points down.
+                let foot = super::draw::between(a, b, fraction);
+                rollers.push(moved(foot, [-y, x], 4.0));
+            }
+        }
+    }
+    for (nodes, both) in scene.supports.iter().filter(|(nodes, _)| nodes.len() == 1) {
+        let [x, y] = deformed[nodes[0]];
+        let mut triangle = PathData::default();
+        triangle.polygon([[x, y], [x - 6.0, y + 10.0], [x + 6.0, y + 10.0]]);
+        let fill = if *both { DARK } else { "white" };
+        group.append(stroke(triangle, DARK, 1.2).set("fill", fill));
+    }
+    let is_empty = held.is_none() && rollers.is_empty();
+    let points = scene.supports.iter().any(|(nodes, _)| nodes.len() == 1);
+    for [x, y] in rollers {
+        let roller = Circle::new().set("cx", rounded(x)).set("cy", rounded(y)).set("r", 3.2);
+        group.append(roller.set("fill", "white").set("stroke", DARK));
+    }
+    held.into_iter().for_each(|held| group.append(held));
+    (!is_empty || points).then_some(group)
+}
+
+/// Lines that go on where another one ends, in one.
+fn joined(lines: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
+    let mut joined: Vec<Vec<Point>> = Vec::new();
+    for line in lines {
+        let before = joined.iter_mut().find(|other| other.last() == line.first());
+        match before {
+            Some(before) => before.extend(line.into_iter().skip(1)),
+            None => match joined.iter_mut().find(|other| line.last() == other.first()) {
+                Some(after) => {
+                    let rest = std::mem::replace(after, line);
+                    after.extend(rest.into_iter().skip(1));
+                }
+                None => joined.push(line),
+            },
+        }
+    }
+    joined
+}
+
+/// The arrows of one kind, some way apart; `None` if there are none.
+pub(super) fn arrows(scene: &Scene, deformed: &[Point], is_motion: bool) -> Option<Group> {
+    let mut path = PathData::default();
+    let mut feet: Vec<Point> = Vec::new();
+    for load in scene.loads.iter().filter(|load| load.is_motion == is_motion) {
+        let foot = deformed[load.at];
+        let share = distance(load.arrow, [0.0; 2]);
+        if share < NO_ARROW || feet.iter().any(|&other| distance(other, foot) < APART) {
+            continue;
+        }
+        feet.push(foot);
+        // The page's second axis points down. A force ends at the body, a displacement starts there.
+        let step = [load.arrow[0], -load.arrow[1]];
+        let far = moved(foot, step, if is_motion { LONGEST } else { -LONGEST });
+        let (from, to) = if is_motion { (foot, far) } else { (far, foot) };
+        arrow(from, to, &mut path);
+    }
+    let colour = if is_motion { MOTION } else { FORCE };
+    (!path.is_empty()).then(|| Group::new().add(stroke(path, colour, 1.6)))
+}
+
+/// A cross at a point of the page.
+pub(super) fn cross(at: Point) -> Group {
+    let mut path = PathData::default();
+    for side in [-1.0, 1.0] {
+        path.line([moved(at, [side, 1.0], -5.0), moved(at, [side, 1.0], 5.0)]);
+    }
+    Group::new().add(stroke(path.clone(), "white", 4.0)).add(stroke(path, DARK, 1.6))
+}
+
+/// A bar of a round length of the undeformed body, its right end at a point of the page.
+pub(super) fn scale_bar(frame: &PageMap, unit: Option<&str>, [right, y]: Point) -> Group {
+    let length = round_below(110.0 / frame.scale());
+    let left = right - length * frame.scale();
+    let mut path = PathData::default();
+    path.line([[left, y - 4.0], [left, y + 4.0]]);
+    path.line([[left, y], [right, y]]);
+    path.line([[right, y - 4.0], [right, y + 4.0]]);
+    let words = clean(&format!("{} {}", short(length), unit.unwrap_or_default()));
+    let label = anchored("end", words.trim_end(), [left - 6.0, y + 4.0]);
+    Group::new().add(stroke(path, GREY, 1.2)).add(label.set("fill", GREY).set("font-size", 12))
+}

@@ -1,0 +1,290 @@
+//! Whether the mesh resolves the contact: each stretch of it beside the edges that it lies on, and the gap between the nodes.
+
+use std::ops::Range;
+
+use super::{Known, NO_LENGTH, Words, place, size};
+use crate::fem::piece::PieceGeometry;
+use crate::fem::{Condition, ContactLine, Degree, Problem, Space};
+use crate::quote;
+use crate::solve::solution::ContactEdgeValues;
+use crate::solve::{ContactBoundary, Solution};
+
+/// A stretch of fewer edges than this gives a peak that is 2 % off Hertz's, of two edges 3 %, of less than one 20 % and more.
+const FEWEST_EDGES: f64 = 4.0;
+
+/// A stretch that begins where the boundary ends is half of one, as at a plane of symmetry.
+const FEWEST_EDGES_OF_A_HALF: f64 = 2.0;
+
+/// A stretch that carries less than this share of the force of its boundary does not matter.
+const LITTLE_FORCE: f64 = 0.05;
+
+/// A peak is below the mean pressure by more than what rounding makes of a pressure that is the same everywhere.
+const BELOW_THE_MEAN: f64 = 0.99;
+
+/// The share of the motion by which the interpolated gap may be off: on four edges across a contact of circles 1/16, on two 1/4.
+const GAP_OFF: f64 = 0.2;
+
+/// Places on an edge, from its start to its end.
+const BETWEEN_NODES: [f64; 7] = [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875];
+
+/// Two stretches that are no farther apart than this share of an edge are one: the pressure of a mesh rises and falls by edges.
+const NEXT: f64 = 1.0;
+
+/// The edges of one contact boundary, in the order of the boundary.
+struct Line<'s> {
+    edges: &'s [ContactEdgeValues],
+    nodes: &'s [[f64; 2]],
+}
+
+/// A stretch of contact on a line.
+struct Stretch {
+    /// From where to where, in edges from the start of the line.
+    at: Range<f64>,
+    /// The length on the undeformed boundary.
+    length: f64,
+    /// How many edges that is.
+    edges: f64,
+    /// Whether contact stops before the boundary does, at the start and at the end.
+    free: [bool; 2],
+    force: f64,
+}
+
+impl Line<'_> {
+    fn ends(&self, e: usize) -> [usize; 2] {
+        let points = &self.edges[e].points;
+        [0, points.len() - 1].map(|p| points[p].node)
+    }
+
+    fn length(&self, e: usize) -> f64 {
+        let [[a, b], [c, d]] = self.ends(e).map(|node| self.nodes[node]);
+        (c - a).hypot(d - b)
+    }
+
+    /// The place of a point in edges from the start of the line: of two edges that meet there that which starts there, or that which
+    /// `ends` there.
+    fn position(&self, [x, y]: [f64; 2], ends: bool) -> Option<f64> {
+        let on = |e: usize| {
+            let [[a, b], [c, d]] = self.ends(e).map(|node| self.nodes[node]);
+            let (along, length) = ([c - a, d - b], self.length(e));
+            let s = ((x - a) * along[0] + (y - b) * along[1]) / (length * length);
+            let s = if s < NO_LENGTH {
+                0.0
+            } else if s > 1.0 - NO_LENGTH {
+                1.0
+            } else {
+                s
+            };
+            let off = (x - a - s * along[0]).hypot(y - b - s * along[1]);
+            (off <= NO_LENGTH * length && s != if ends { 0.0 } else { 1.0 }).then_some(e as f64 + s)
+        };
+        (0..self.edges.len()).find_map(on)
+    }
+
+    fn stretch(&self, from: [f64; 2], to: [f64; 2]) -> Option<Stretch> {
+        let at = self.position(from, false)?..self.position(to, true)?;
+        let (mut edges, mut length, mut force) = (0.0, 0.0, 0.0);
+        for e in at.start as usize..self.edges.len().min(at.end.ceil() as usize) {
+            let part = at.end.min(e as f64 + 1.0) - at.start.max(e as f64);
+            let points = &self.edges[e].points;
+            let mean = points.iter().map(|p| p.pressure).sum::<f64>() / points.len() as f64;
+            edges += part;
+            length += part * self.length(e);
+            force += mean * self.length(e);
+        }
+        let goes_on =
+            |node: usize, end: usize| (0..self.edges.len()).any(|e| self.ends(e)[1 - end] == node);
+        let [first, last] = [at.start as usize, (at.end.ceil() as usize).saturating_sub(1)];
+        let start_free = at.start.fract() > 0.0 || goes_on(self.ends(first)[0], 0);
+        let end_free = at.end.fract() > 0.0 || goes_on(self.ends(last)[1], 1);
+        (at.end > at.start).then_some(Stretch {
+            at,
+            length,
+            edges,
+            free: [start_free, end_free],
+            force,
+        })
+    }
+
+    /// The stretches of contact; those that meet, or nearly, are one.
+    fn stretches(&self, part: &ContactBoundary) -> Vec<Stretch> {
+        let found = part.stretches.iter().filter_map(|&[from, to]| self.stretch(from, to));
+        let mut stretches: Vec<Stretch> = Vec::new();
+        for next in found {
+            match stretches.last_mut() {
+                Some(last) if self.are_next(last.at.end, next.at.start) => last.join(next),
+                _ => stretches.push(next),
+            }
+        }
+        // A closed line goes on where it starts.
+        let count = self.edges.len();
+        let closed = self.ends(count - 1)[1] == self.ends(0)[0];
+        if let [first, .., last] = &stretches[..]
+            && closed
+            && last.at.end + NEXT >= count as f64 + first.at.start
+        {
+            let first = stretches.remove(0);
+            if let Some(last) = stretches.last_mut() {
+                last.join(first);
+            }
+        }
+        stretches
+    }
+
+    /// Returns whether what ends at one place of a line goes on at another, in edges.
+    fn are_next(&self, end: f64, start: f64) -> bool {
+        let [last, first] = [(end.ceil() as usize).saturating_sub(1), start as usize];
+        let joined = (last..first).all(|e| self.ends(e)[1] == self.ends(e + 1)[0]);
+        joined && (0.0..=NEXT).contains(&(start - end))
+    }
+
+    /// The middle of a stretch.
+    fn middle(&self, stretch: &Stretch) -> [f64; 2] {
+        let middle = (stretch.at.start + stretch.at.end) / 2.0;
+        let e = middle as usize % self.edges.len();
+        let [a, b] = self.ends(e).map(|node| self.nodes[node]);
+        [0, 1].map(|c| a[c] + middle.fract() * (b[c] - a[c]))
+    }
+}
+
+impl Stretch {
+    /// Adds a stretch that goes on where this one ends.
+    fn join(&mut self, next: Stretch) {
+        self.at.end += next.at.end - next.at.start;
+        self.length += next.length;
+        self.edges += next.edges;
+        self.force += next.force;
+        self.free[1] = next.free[1];
+    }
+
+    fn is_resolved(&self) -> bool {
+        match self.free {
+            [true, true] => self.edges >= FEWEST_EDGES,
+            [false, false] => true,
+            _ => self.edges >= FEWEST_EDGES_OF_A_HALF,
+        }
+    }
+}
+
+/// Says which boundaries are in contact along so few edges that force and pressure depend on the mesh.
+pub(super) fn short_stretches(solution: &Solution, words: &Words) -> Vec<String> {
+    let lines = solution.contact.chunk_by(|a, b| a.boundary == b.boundary);
+    lines.filter_map(|edges| short_stretch(solution, words, edges)).collect()
+}
+
+fn short_stretch(
+    solution: &Solution,
+    words: &Words,
+    edges: &[ContactEdgeValues],
+) -> Option<String> {
+    let line = Line { edges, nodes: &solution.nodes };
+    let name = &*edges.first()?.boundary;
+    let part = solution.boundaries.iter().find(|part| part.boundary == *name)?;
+    let stretches = line.stretches(part);
+    let all: f64 = stretches.iter().map(|stretch| stretch.force).sum();
+    let matters = |stretch: &&Stretch| stretch.force > LITTLE_FORCE * all && !stretch.is_resolved();
+    let short: Vec<&Stretch> = stretches.iter().filter(matters).collect();
+    let worst = short.iter().min_by(|a, b| a.edges.total_cmp(&b.edges))?;
+    let others = match short.len() - 1 {
+        0 => String::new(),
+        1 => ", and likewise in one other place".to_owned(),
+        more => format!(", and likewise in {more} other places"),
+    };
+    let mean = part.force / part.length;
+    let below = if part.peak_pressure < BELOW_THE_MEAN * mean {
+        format!(
+            " (the peak of {} is even below force / length, {})",
+            words.stress(part.peak_pressure),
+            words.stress(mean)
+        )
+    } else {
+        String::new()
+    };
+    let depends = if words.known_force.as_deref() == Some(name) {
+        "the pressure depends on the mesh; make it finer there".to_owned()
+    } else {
+        format!(
+            "force and pressure depend on the mesh; make it finer there, or ask for the force: --within \"force {} 5 %\"",
+            quote::cut(name)
+        )
+    };
+    Some(format!(
+        "contact of {} around {} is {} long, the edges there {}{others}: {depends}{below}",
+        quote::quoted(name, '\''),
+        place(line.middle(worst)),
+        words.length(worst.length),
+        words.length(worst.length / worst.edges)
+    ))
+}
+
+/// Says where between the nodes the gap is far from what the mesh makes of it, beside how far the body moves or, before it is
+/// solved, overlaps its obstacle.
+pub(super) fn gaps(problem: &Problem, known: Known, words: &Words) -> Vec<String> {
+    let degree = match known {
+        Known::Data(degree) => degree,
+        Known::Solution(solution) => solution.degree,
+    };
+    let space = Space::new(&problem.mesh, degree);
+    let Ok(line) = ContactLine::new(problem, &space) else { return Vec::new() };
+    let pieces: Vec<&PieceGeometry> = line.pieces().collect();
+    let by_boundary = pieces.chunk_by(|a, b| a.first().boundary == b.first().boundary);
+    by_boundary.filter_map(|pieces| gap(problem, (known, degree), words, pieces)).collect()
+}
+
+/// A place on an edge with the gap there and its interpolant.
+struct Interpolated {
+    at: [f64; 2],
+    gap: f64,
+    interpolant: f64,
+}
+
+impl Interpolated {
+    fn off(&self) -> f64 {
+        (self.interpolant - self.gap).abs()
+    }
+}
+
+fn gap(
+    problem: &Problem,
+    (known, degree): (Known, Degree),
+    words: &Words,
+    pieces: &[&PieceGeometry],
+) -> Option<String> {
+    let name = &*pieces[0].first().boundary;
+    let gap_at = |x: [f64; 2]| match problem.conditions.get(name)? {
+        Condition::Contact { gap } => Some(gap.at(x)).filter(|gap| gap.is_finite()),
+        Condition::Obstacle(_, obstacle) => Some(obstacle.closest(x, String::new).ok()?.gap),
+        _ => None,
+    };
+    let motion = match known {
+        Known::Data(_) => {
+            pieces.iter().flat_map(|piece| piece.gaps()).fold(0.0, |most: f64, g| most.max(-g))
+        }
+        Known::Solution(solution) => {
+            let of_line = solution.contact.iter().filter(|edge| &*edge.boundary == name);
+            of_line.flat_map(|edge| &edge.points).fold(0.0, |most: f64, p| most.max(p.u_n.abs()))
+        }
+    };
+    let mut worst: Option<Interpolated> = None;
+    for piece in pieces.iter().filter(|piece| !piece.curved && piece.stretches.len() == 1) {
+        let [a, b] = problem.mesh.places_of_ends(piece.first().edge);
+        let gaps: Vec<f64> = piece.gaps().collect();
+        for s in BETWEEN_NODES {
+            let at = [0, 1].map(|c| a[c] + s * (b[c] - a[c]));
+            let Some(gap) = gap_at(at) else { continue };
+            let found = Interpolated { at, gap, interpolant: degree.value_at(&gaps, s) };
+            // A gap that the motion does not close does not matter.
+            let closes = found.gap.min(found.interpolant) <= motion;
+            if closes && worst.as_ref().is_none_or(|worst| found.off() > worst.off()) {
+                worst = Some(found);
+            }
+        }
+    }
+    let worst = worst.filter(|w| w.off() > (GAP_OFF * motion).max(NO_LENGTH * size(problem)))?;
+    Some(format!(
+        "the gap of {} at {}, between two nodes, is {}; interpolated on the edge there it is {}: the mesh does not resolve it, make it finer there",
+        quote::quoted(name, '\''),
+        place(worst.at),
+        words.length(worst.gap),
+        words.length(worst.interpolant)
+    ))
+}
