@@ -32,6 +32,8 @@ pub mod moments;
 #[doc(hidden)]
 pub mod obstacle;
 #[doc(hidden)]
+pub mod pairs;
+#[doc(hidden)]
 pub mod problem;
 #[doc(hidden)]
 pub mod quadrature;
@@ -59,6 +61,7 @@ pub use material::Materials;
 pub use mesh::bisection::Refinement;
 pub use mesh::{BoundaryEdge, Mesh, MeshError};
 pub use obstacle::{Closest, Distance, Obstacle, Side};
+pub use pairs::{Pair, PairError, PairLaw, PairPiece, PairSide};
 pub use problem::{Condition, PointSupport, Problem, SurfaceForce};
 pub use rigid::{FreeMotion, Parts};
 pub use space::Space;
