@@ -18,7 +18,7 @@
 //! of d: a rigid motion of both bodies together has no jump, and forces and moments of the two sides cancel.
 
 mod error;
-mod search;
+pub(super) mod search;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
