@@ -28,6 +28,7 @@ use edges::{MeshEdge, match_edges, name_boundaries};
 pub use error::MeshError;
 pub(super) use error::TOUCHING;
 use nalgebra::Vector2;
+pub use split::split_names;
 
 /// A conforming triangulation with named parts of its boundary.
 #[derive(Clone, Debug)]

@@ -33,6 +33,7 @@ pub mod moments;
 pub mod obstacle;
 #[doc(hidden)]
 pub mod pairs;
+mod path;
 #[doc(hidden)]
 pub mod problem;
 #[doc(hidden)]
@@ -60,8 +61,9 @@ pub use function::{Function, SharedFunction};
 pub use material::Materials;
 pub use mesh::bisection::Refinement;
 pub use mesh::{BoundaryEdge, Mesh, MeshError};
-pub use obstacle::{Closest, Distance, Obstacle, Side};
+pub use obstacle::{Closest, Distance, Hand, Obstacle, Side};
 pub use pairs::{Pair, PairError, PairLaw, PairPiece, PairSide};
+pub use path::{Path, PathError};
 pub use problem::{Condition, PointSupport, Problem, SurfaceForce};
 pub use rigid::{FreeMotion, Parts};
 pub use space::Space;

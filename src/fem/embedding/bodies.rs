@@ -283,7 +283,7 @@ mod tests {
         // A third body, which is in no pair.
         let upper = ("upper", [0.1, 1.0], [0.8, 2.0]);
         for (third, what) in [
-            (("third", [0.4, 0.4], [0.6, 0.6]), "two bodies overlap at "),
+            (("third", [0.41, 0.41], [0.6, 0.6]), "two bodies overlap at "),
             (("third", [0.8, 1.0], [1.8, 2.0]), "two bodies touch at "),
         ] {
             let error = blocks(&[LOWER, upper, third], &[pair()]).unwrap_err().to_string();

@@ -9,7 +9,7 @@
 use std::path::Path;
 
 use toml::Spanned;
-use toml::de::{DeString, DeTable, DeValue};
+use toml::de::{DeArray, DeString, DeTable, DeValue};
 
 use crate::io::expression::Expression;
 use crate::io::input::{Failure, FileError, Position};
@@ -103,6 +103,17 @@ fn merge<'s>(below: &mut DeTable<'s>, above: DeTable<'s>, path: &str) -> Result<
             (Some(DeValue::Table(old)), DeValue::Table(new)) => {
                 merge(old, std::mem::take(new), &path)?;
             }
+            // An entry of a list of tables is one of them: pair.0.clearance=-0.01.
+            (Some(DeValue::Array(old)), DeValue::Table(new)) if are_tables(old, new) => {
+                for (number, mut entry) in std::mem::take(new) {
+                    let index: Option<usize> = number.get_ref().parse().ok();
+                    let old = index.and_then(|index| old.get_mut(index)).map(Spanned::get_mut);
+                    if let (Some(DeValue::Table(old)), DeValue::Table(new)) = (old, entry.get_mut())
+                    {
+                        merge(old, std::mem::take(new), &format!("{path}.{}", number.get_ref()))?;
+                    }
+                }
+            }
             (Some(DeValue::Array(_)), DeValue::Table(new)) if new.keys().all(is_number) => {
                 let (list, path) = (quoted(&path, '\''), cut(&path));
                 return Err(format!(
@@ -117,6 +128,15 @@ fn merge<'s>(below: &mut DeTable<'s>, above: DeTable<'s>, path: &str) -> Result<
         }
     }
     Ok(())
+}
+
+/// The table has tables only, each by the number of a table of the list.
+fn are_tables(list: &DeArray, table: &DeTable) -> bool {
+    table.iter().all(|(number, entry)| {
+        let index: Option<usize> = number.get_ref().parse().ok();
+        let of_list = index.and_then(|index| list.get(index)).map(Spanned::get_ref);
+        matches!((of_list, entry.get_ref()), (Some(DeValue::Table(_)), DeValue::Table(_)))
+    })
 }
 
 fn is_number(key: &Spanned<DeString>) -> bool {
