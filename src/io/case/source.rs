@@ -103,15 +103,20 @@ fn merge<'s>(below: &mut DeTable<'s>, above: DeTable<'s>, path: &str) -> Result<
             (Some(DeValue::Table(old)), DeValue::Table(new)) => {
                 merge(old, std::mem::take(new), &path)?;
             }
-            // An entry of a list of tables is one of them: pair.0.clearance=-0.01.
-            (Some(DeValue::Array(old)), DeValue::Table(new)) if are_tables(old, new) => {
+            (Some(DeValue::Array(old)), DeValue::Table(new)) if has_tables(old, new) => {
+                let most = old.len() - 1;
                 for (number, mut entry) in std::mem::take(new) {
-                    let index: Option<usize> = number.get_ref().parse().ok();
+                    let (number, list) = (number.get_ref(), cut(&path));
+                    let index: Option<usize> = number.parse().ok();
                     let old = index.and_then(|index| old.get_mut(index)).map(Spanned::get_mut);
-                    if let (Some(DeValue::Table(old)), DeValue::Table(new)) = (old, entry.get_mut())
-                    {
-                        merge(old, std::mem::take(new), &format!("{path}.{}", number.get_ref()))?;
-                    }
+                    let (Some(DeValue::Table(old)), DeValue::Table(new)) = (old, entry.get_mut())
+                    else {
+                        return Err(format!(
+                            "found {list}.{}; expected a key of one of the tables {list}.0 to {list}.{most}",
+                            cut(number)
+                        ));
+                    };
+                    merge(old, std::mem::take(new), &format!("{path}.{number}"))?;
                 }
             }
             (Some(DeValue::Array(_)), DeValue::Table(new)) if new.keys().all(is_number) => {
@@ -130,13 +135,10 @@ fn merge<'s>(below: &mut DeTable<'s>, above: DeTable<'s>, path: &str) -> Result<
     Ok(())
 }
 
-/// The table has tables only, each by the number of a table of the list.
-fn are_tables(list: &DeArray, table: &DeTable) -> bool {
-    table.iter().all(|(number, entry)| {
-        let index: Option<usize> = number.get_ref().parse().ok();
-        let of_list = index.and_then(|index| list.get(index)).map(Spanned::get_ref);
-        matches!((of_list, entry.get_ref()), (Some(DeValue::Table(_)), DeValue::Table(_)))
-    })
+/// The list is one of tables, which the keys of the other table number.
+fn has_tables(list: &DeArray, numbered: &DeTable) -> bool {
+    let is_table = |entry: &Spanned<DeValue>| matches!(entry.get_ref(), DeValue::Table(_));
+    !list.is_empty() && list.iter().all(is_table) && numbered.keys().all(is_number)
 }
 
 fn is_number(key: &Spanned<DeString>) -> bool {
