@@ -92,7 +92,8 @@ fn solve(
         })
         .collect();
     let result = interruptible(py, move |stage| {
-        let mesh = Mesh::new(points, triangles, boundaries).map_err(wrong)?;
+        let pairs = Case::pairs(Path::new("case"), &text).map_err(wrong)?;
+        let mesh = Mesh::with_pairs(points, triangles, boundaries, &pairs).map_err(wrong)?;
         let mesh = mesh.with_names(surfaces, named_points).map_err(wrong)?;
         let mut case = Case::on_mesh(Path::new("case"), &text, mesh, &functions).map_err(wrong)?;
         case.remarks.extend(remarks);
@@ -202,7 +203,7 @@ fn plane_mesh<'py>(
         }
     }
     raw.names = names.map(|of_dimension| of_dimension.into_iter().collect());
-    let Made { mesh, remarks } = raw.made(None).map_err(|error| unsolved(&error))?;
+    let Made { mesh, remarks } = raw.made(None, &[]).map_err(|error| unsolved(&error))?;
     let dict = PyDict::new(py);
     let points = mesh.vertices().iter().flatten().flat_map(|c| c.to_ne_bytes());
     dict.set_item("points", PyBytes::new(py, &points.collect::<Vec<u8>>()))?;

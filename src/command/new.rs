@@ -14,7 +14,7 @@ use super::{Done, complain, summarised};
 pub fn run(mesh: &Path, out: Option<&Path>, quiet: bool) -> Result<Done, Failure> {
     let phases = Phases::start(quiet);
     phases.enter("reading the mesh");
-    let made = gmsh::read(mesh, None)?;
+    let made = gmsh::read(mesh, None, &[])?;
     drop(phases);
     let out = out.map_or_else(|| mesh.with_extension("toml"), Path::to_owned);
     let title = mesh.file_stem().unwrap_or_default().to_string_lossy();

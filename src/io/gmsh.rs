@@ -20,30 +20,32 @@ use std::path::Path;
 
 use super::input::{self, FileError, MOST_OF_A_MESH};
 use super::raw_mesh::{ByDimension, Elements, Kind, Made, Node, RawMesh};
+use crate::fem::Pair;
 use crate::memory;
 use cursor::{Cursor, Version, shown};
 
 type Result<T> = std::result::Result<T, FileError>;
 
-/// The mesh in this file, its nodes merged that are no further apart than a share of the body's size, if one is given.
+/// The mesh in this file, its nodes merged that are no further apart than a share of the body's size, if one is given. The
+/// boundaries of these pairs may touch each other, and are not merged.
 ///
 /// # Errors
 /// The first mistake found, with its place and the numbers that the file uses.
-pub fn read(file: &Path, share: Option<f64>) -> Result<Made> {
-    from_bytes(&input::read(file, MOST_OF_A_MESH)?, file, share)
+pub fn read(file: &Path, share: Option<f64>, pairs: &[Pair]) -> Result<Made> {
+    from_bytes(&input::read(file, MOST_OF_A_MESH)?, file, share, pairs)
 }
 
 /// The mesh in `bytes`, which messages call `file`; otherwise as [`read`].
 ///
 /// # Errors
 /// As [`read`].
-pub fn from_bytes(bytes: &[u8], file: &Path, share: Option<f64>) -> Result<Made> {
+pub fn from_bytes(bytes: &[u8], file: &Path, share: Option<f64>, pairs: &[Pair]) -> Result<Made> {
     // Names and entities: what is kept of one is no more than this many times what the file says of it.
     const MOST_TIMES: u64 = 4;
     let mut cursor = Cursor { bytes, file, at: 0, version: Version::Four, binary: false };
     memory::check(MOST_TIMES * bytes.len() as u64).map_err(|lack| cursor.in_the_file(lack))?;
     let raw = read_sections(&mut cursor)?;
-    raw.made(share).map_err(|error| cursor.in_the_file(error))
+    raw.made(share, pairs).map_err(|error| cursor.in_the_file(error))
 }
 
 /// The physical groups of each entity.
@@ -525,7 +527,7 @@ mod tests {
     const ALL: &[u8] = include_bytes!("../../tests/meshes/square-all.msh");
 
     fn parse(bytes: &[u8]) -> Result<Mesh> {
-        from_bytes(bytes, Path::new("x.msh"), None).map(|made| made.mesh)
+        from_bytes(bytes, Path::new("x.msh"), None, &[]).map(|made| made.mesh)
     }
 
     fn message(bytes: &[u8]) -> String {

@@ -13,7 +13,7 @@ use super::input::Failure;
 use crate::fem::merge::merge;
 use crate::fem::mesh::{ROUNDED, length};
 use crate::fem::tree::Bounds;
-use crate::fem::{Mesh, MeshError};
+use crate::fem::{Mesh, MeshError, Pair};
 use crate::memory::{self, bytes_of};
 use crate::quote::number;
 
@@ -232,11 +232,11 @@ const MIXED: &str = "others of its surface run counter-clockwise";
 
 impl RawMesh {
     /// The mesh of the corners of triangles and quadrangles, its nodes merged that are no further apart than a share of the body's
-    /// size, if one is given.
+    /// size, if one is given. The boundaries of these pairs may touch each other, and are not merged.
     ///
     /// # Errors
     /// The first mistake found, with the numbers of nodes and elements that are used here.
-    pub fn made(mut self, share: Option<f64>) -> Result<Made> {
+    pub fn made(mut self, share: Option<f64>, pairs: &[Pair]) -> Result<Made> {
         let mut remarks = std::mem::take(&mut self.remarks);
         let cells = self.elements.triangles.len() + 2 * self.elements.quadrangles.len();
         // Two maps from tags, which are at most half empty and twice as large for a moment while they grow; the lists.
@@ -261,11 +261,11 @@ impl RawMesh {
             self.elements.triangles.extend(halves.map(|nodes| Element { tag, nodes, entity }));
         }
         if let Some(share) = share {
-            self.merge_nodes(share);
+            self.merge_nodes(share, pairs);
         }
         let note =
             if is_mixed { format!("{}; {MIXED}", self.numbers) } else { self.numbers.to_owned() };
-        let mesh = self.mesh(&note)?;
+        let mesh = self.mesh(&note, pairs)?;
         Ok(Made { mesh, remarks })
     }
 
@@ -335,13 +335,24 @@ impl RawMesh {
     }
 
     /// Gives the elements on nodes that lie together the first of these nodes, and leaves out what loses an edge by it. Nodes
-    /// that no triangle uses stay as they are.
-    fn merge_nodes(&mut self, share: f64) {
+    /// that no triangle uses stay as they are. The two boundaries of a pair stay apart.
+    fn merge_nodes(&mut self, share: f64, pairs: &[Pair]) {
+        let on_sides: Vec<[HashSet<usize>; 2]> = pairs
+            .iter()
+            .map(|pair| pair.boundaries.each_ref().map(|name| self.nodes_on(name)))
+            .collect();
         let Elements { points, lines, triangles, .. } = &mut self.elements;
         let used: HashSet<usize> = triangles.iter().flat_map(|t| t.nodes).collect();
         let kept: Vec<&Node> = self.nodes.iter().filter(|node| used.contains(&node.tag)).collect();
         let places: Vec<[f64; 2]> = kept.iter().map(|node| plane_place(node.place)).collect();
-        let merged = merge(&places, &[], share);
+        let are_apart = |v: usize, w: usize| {
+            let [v, w] = [kept[v].tag, kept[w].tag];
+            on_sides.iter().any(|[first, second]| {
+                (first.contains(&v) && second.contains(&w))
+                    || (first.contains(&w) && second.contains(&v))
+            })
+        };
+        let merged = merge(&places, &[], share, are_apart);
         let first: HashMap<usize, usize> = kept
             .iter()
             .zip(&merged.vertex)
@@ -357,8 +368,16 @@ impl RawMesh {
         triangles.retain(|&Element { nodes: [a, b, c], .. }| a != b && b != c && c != a);
     }
 
+    /// The nodes on the named curve.
+    fn nodes_on(&self, name: &str) -> HashSet<usize> {
+        let is_named = |line: &&Element<2>| {
+            names_of(&self.names[1], line.entity).iter().any(|of_line| of_line == name)
+        };
+        self.elements.lines.iter().filter(is_named).flat_map(|line| line.nodes).collect()
+    }
+
     /// The mesh of the triangles, in their order.
-    fn mesh(self, note: &str) -> Result<Mesh> {
+    fn mesh(self, note: &str, pairs: &[Pair]) -> Result<Mesh> {
         let RawMesh { nodes, elements, names, .. } = self;
         let Elements { points, lines, triangles, .. } = elements;
         let (triangles, other_entities) = once(triangles, &names[2]);
@@ -407,7 +426,7 @@ impl RawMesh {
         }
         let corners = triangles.iter().map(|t| t.nodes.map(|node| vertex_of[&node])).collect();
         let places = kept.iter().map(|node| plane_place(node.place)).collect();
-        Mesh::new(places, corners, parts)
+        Mesh::with_pairs(places, corners, parts, pairs)
             .and_then(|mesh| mesh.with_names(surfaces, named_points))
             .map(|mesh| mesh.with_faults(faults))
             .map_err(|error| {

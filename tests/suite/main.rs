@@ -27,6 +27,7 @@ mod gmsh_live;
 mod held;
 mod meshes;
 mod method;
+mod pair_cases;
 mod parts;
 mod patch;
 mod peaks;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::exact::angle;
 use super::table::{Table, Value};
 use crate::fem::structured::MOST_CELLS;
-use crate::fem::{Diagonal, Mesh, Perturbation, Rectangle, Structured, Trapezoid};
+use crate::fem::{Diagonal, Mesh, Pair, Perturbation, Rectangle, Structured, Trapezoid};
 use crate::io::expression::PlaceCondition;
 use crate::io::gmsh;
 use crate::io::input::FileError;
@@ -29,13 +29,14 @@ impl From<Mesh> for Meshed {
 }
 
 /// The mesh that is `given`, or else that of the table, with the boundaries that the case names by their places; `directory` is
-/// the one of the case file.
+/// the one of the case file. Boundaries of `pairs` may touch each other.
 pub(super) fn read_mesh(
     root: &Table,
     given: Option<Mesh>,
     directory: &Path,
+    pairs: &[Pair],
 ) -> Result<Meshed, FileError> {
-    let meshed = read_plain_mesh(root, given, directory)?;
+    let meshed = read_plain_mesh(root, given, directory, pairs)?;
     Ok(Meshed { mesh: with_places(root, meshed.mesh)?, ..meshed })
 }
 
@@ -58,6 +59,7 @@ fn read_plain_mesh(
     root: &Table,
     given: Option<Mesh>,
     directory: &Path,
+    pairs: &[Pair],
 ) -> Result<Meshed, FileError> {
     match (given, root.section("mesh")?) {
         (Some(_), Some(table)) => {
@@ -66,12 +68,12 @@ fn read_plain_mesh(
         (Some(mesh), None) => Ok(mesh.into()),
         (None, _) => {
             let expected = "rectangle = { .. } or gmsh = \"..\" in it";
-            make_mesh(&root.required_section("mesh", expected)?, directory)
+            make_mesh(&root.required_section("mesh", expected)?, directory, pairs)
         }
     }
 }
 
-fn make_mesh(table: &Table, directory: &Path) -> Result<Meshed, FileError> {
+fn make_mesh(table: &Table, directory: &Path, pairs: &[Pair]) -> Result<Meshed, FileError> {
     const SHAPES: [&str; 3] = ["rectangle", "trapezoid", "gmsh"];
     table.only(&["rectangle", "trapezoid", "gmsh", "perturb", "merge"])?;
     let perturbation = table.optional("perturb", read_perturbation)?;
@@ -95,7 +97,7 @@ fn make_mesh(table: &Table, directory: &Path) -> Result<Meshed, FileError> {
             return Err(value.wrong("the name of a mesh file"));
         }
         let file = directory.join(name);
-        let Made { mesh, remarks } = gmsh::read(&file, merge).map_err(|error| {
+        let Made { mesh, remarks } = gmsh::read(&file, merge, pairs).map_err(|error| {
             value.at.wrong(error.error.clone().map(|_| format!("[mesh] gmsh: {error}")))
         })?;
         return Ok(Meshed { file: Some(file), remarks, ..mesh.into() });
