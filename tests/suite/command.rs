@@ -203,7 +203,10 @@ fn check_says_what_acts_on_each_boundary_and_what_contact_holds() {
     let edits = [
         ["displacement = [\"0\", \"0\"]", "force = [0, -3]"],
         ["body = [\"0\", \"-4 + 10*x\"]", "body = [\"0\", \"0\"]"],
-        ["contact = { gap = \"0\" }", "contact = { gap = \"0.1*x\" }\n[boundary.left]\nnormal = 0\n[boundary.edge]\nwhere = \"x > 0.99 and y < 0.6\"\npressure = 2"],
+        [
+            "contact = { gap = \"0\" }",
+            "contact = { gap = \"0.1*x\" }\n[boundary.left]\nnormal = 0\n[boundary.edge]\nwhere = \"x > 0.99 and y < 0.6\"\npressure = 2",
+        ],
     ];
     let output = signorini(&folder("check-listed", &edits), &["check", "case.toml"]);
     let said = text(&output.stdout);
@@ -217,7 +220,11 @@ fn check_says_what_acts_on_each_boundary_and_what_contact_holds() {
     ] {
         assert!(said.contains(line), "{line} in {said}");
     }
-    let edits = [edits[0], edits[1], ["contact = { gap = \"0\" }", "contact = {}\n[boundary.left]\nnormal = 0"]];
+    let edits = [
+        edits[0],
+        edits[1],
+        ["contact = { gap = \"0\" }", "contact = {}\n[boundary.left]\nnormal = 0"],
+    ];
     let output = signorini(&folder("check-held", &edits), &["check", "case.toml"]);
     let held = "held         by contact: supports leave 2 rigid motions free, against which the loads press the body";
     assert!(text(&output.stdout).contains(held), "{}", text(&output.stdout));
@@ -226,7 +233,14 @@ fn check_says_what_acts_on_each_boundary_and_what_contact_holds() {
 /// What `new` writes for any mesh is a case that is sound and can be solved.
 #[test]
 fn new_writes_a_case_that_can_be_solved_and_replaces_no_file() {
-    let meshes = ["msh41", "numbers_only", "no_curves", "one_surface_clockwise", "quadrangles", "meshio_bare"];
+    let meshes = [
+        "msh41",
+        "numbers_only",
+        "no_curves",
+        "one_surface_clockwise",
+        "quadrangles",
+        "meshio_bare",
+    ];
     let folder = with_files("new", &[]);
     let variants = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/variants");
     for name in meshes {
@@ -241,11 +255,18 @@ fn new_writes_a_case_that_can_be_solved_and_replaces_no_file() {
         assert_eq!(ended(&solved), (Some(0), ""), "{name}");
     }
     let written = fs::read_to_string(folder.join("one_surface_clockwise.toml")).unwrap();
-    for part in ["[material.left]", "[material.right]", "[boundary.top]     # length 2, x = 0 to 2, y = 1\n"] {
+    for part in [
+        "[material.left]",
+        "[material.right]",
+        "[boundary.top]     # length 2, x = 0 to 2, y = 1\n",
+    ] {
         assert!(written.contains(part), "{written}");
     }
     let written = fs::read_to_string(folder.join("no_curves.toml")).unwrap();
-    assert!(written.contains("[boundary.bottom]") && written.contains("where = \"y < "), "{written}");
+    assert!(
+        written.contains("[boundary.bottom]") && written.contains("where = \"y < "),
+        "{written}"
+    );
     let again = signorini(&folder, &["new", "msh41.msh"]);
     let said = "error: msh41.toml: there is such a file; expected another name: --out CASE.toml\n";
     assert_eq!(ended(&again), (Some(2), said));

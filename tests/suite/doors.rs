@@ -219,9 +219,8 @@ fn names_titles_and_paths_are_shown_without_control_characters() {
 #[test]
 fn pictures_reports_and_json_hold_no_character_that_a_terminal_obeys() {
     let nasty = r#""a\u202eb\u009bc\u0085d\u2066e\r""#;
-    let text_of = CASE
-        .replace("\"Block\"", nasty)
-        .replace("\"0\", \"0\"]", "\"0\", \"0\"] # \u{202e}\u{9b}");
+    let text_of =
+        CASE.replace("\"Block\"", nasty).replace("\"0\", \"0\"]", "\"0\", \"0\"] # \u{202e}\u{9b}");
     let text_of = format!("{text_of}[units]\nlength = {nasty}\nforce = {nasty}\n");
     let folder = with_files("doors-pages", &[("case.toml", &text_of)]);
     let output = run(&mut command(&folder, &["solve", "case.toml", "--report", "--out", "out"]));
@@ -230,7 +229,8 @@ fn pictures_reports_and_json_hold_no_character_that_a_terminal_obeys() {
     let read = |name| fs::read_to_string(folder.join("out").join(name)).unwrap();
     let json = text(&json.stdout);
     for page in [&read("picture.svg"), &read("report.html"), json, &read("result.json")] {
-        let is_obeyed = |c: char| (c.is_control() && c != '\n' && c != '\t') || "\u{202e}\u{2066}".contains(c);
+        let is_obeyed =
+            |c: char| (c.is_control() && c != '\n' && c != '\t') || "\u{202e}\u{2066}".contains(c);
         let found: Vec<char> = page.chars().filter(|&c| is_obeyed(c)).collect();
         assert_eq!(found, []);
     }
@@ -472,15 +472,16 @@ fn certificates_ask_for_memory_before_they_take_it() {
     let quantities = format!("{larger}[certify]\nquantities = [\"force bottom\"]\n");
     let folder =
         with_files("doors-memory", &[("case.toml", &larger), ("forces.toml", &quantities)]);
-    let solved = run(&mut command(&folder, &["solve", "case.toml", "--certificate", "--out", "out"]));
+    let solved =
+        run(&mut command(&folder, &["solve", "case.toml", "--certificate", "--out", "out"]));
     assert_eq!(ended(&solved), (Some(0), ""));
-    for (arguments, most) in [
-        ("audit out/certificate.json --quiet", 40),
-        ("solve forces.toml --quiet --json", 110),
-    ] {
+    for (arguments, most) in
+        [("audit out/certificate.json --quiet", 40), ("solve forces.toml --quiet --json", 110)]
+    {
         // From what the program takes by itself on, in steps of a megabyte or more.
         let least = (8..).find(|megabytes| {
-            limited(&format!("-v {}", megabytes << 10), &folder, "check missing.toml").status.code() == Some(2)
+            limited(&format!("-v {}", megabytes << 10), &folder, "check missing.toml").status.code()
+                == Some(2)
         });
         let least = least.unwrap();
         let step = (most / 10).max(1);
