@@ -70,7 +70,7 @@
 //!
 //! # Speed
 //!
-//! A dev build of a program solves some 80 times slower than a release build. This in its `Cargo.toml` makes it about as fast:
+//! A dev build of a program solves some 80 times slower than a release build. This in its `Cargo.toml` has the solver optimised there, too:
 //!
 //! ```toml
 //! [profile.dev.package."*"]

@@ -192,7 +192,7 @@ fn each_force_on_body(
     }
     for SurfaceForce { surface, triangles, force } in &problem.surface_forces {
         for (c, f) in acting(force) {
-            let what = || format!("[load.{surface}] body[{c}]");
+            let what = || format!("[load.{}] body[{c}]", key(surface));
             let triangles = triangles.iter().copied();
             each_body_force(c, f, &rule(f), space, triangles, what, &mut add)?;
         }

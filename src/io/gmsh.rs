@@ -218,9 +218,19 @@ fn named(names: &Names, groups: Groups) -> ByDimension<BTreeMap<i32, Vec<String>
 /// What kinds of entities there are, in messages.
 const KINDS: ByDimension<&str> = ["point", "curve", "surface"];
 
-/// Refuses elements on entities that are not in the list.
+/// The most groups of an entity: each of its elements is kept once for each of them.
+const MOST_GROUPS: usize = 100;
+
+/// Refuses elements on entities that are not in the list, and entities in too many groups.
 fn check_entities(cursor: &Cursor, groups: &Groups, elements: &Elements) -> Result<()> {
     for (dimension, known) in groups.iter().enumerate() {
+        if let Some((entity, of)) = known.iter().find(|(_, groups)| groups.len() > MOST_GROUPS) {
+            let (kind, count) = (KINDS[dimension], of.len());
+            let said = format!(
+                "{kind} {entity} belongs to {count} physical {kind}s; expected at most {MOST_GROUPS}"
+            );
+            return Err(cursor.in_the_file(said));
+        }
         let unknown =
             elements.entities(dimension).into_iter().find(|entity| !known.contains_key(entity));
         if let Some(entity) = unknown {
