@@ -31,6 +31,8 @@ pub mod mesh;
 pub mod moments;
 #[doc(hidden)]
 pub mod obstacle;
+#[doc(hidden)]
+pub mod pairs;
 pub mod piece;
 #[doc(hidden)]
 pub mod problem;
@@ -61,6 +63,7 @@ pub use material::Materials;
 pub use mesh::bisection::Refinement;
 pub use mesh::{BoundaryEdge, Mesh, MeshError};
 pub use obstacle::{Closest, Distance, Obstacle, Side};
+pub use pairs::{Pair, PairError, PairLaw, PairPiece, PairSide};
 pub use piece::Piece;
 pub use problem::{Condition, PointSupport, Problem, SurfaceForce};
 pub use rigid::{FreeMotion, Parts};

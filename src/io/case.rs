@@ -224,7 +224,15 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
     Ok(Case {
         file: file.to_owned(),
         title,
-        problem: Problem { mesh, material, body_force, surface_forces, conditions, points },
+        problem: Problem {
+            mesh,
+            material,
+            body_force,
+            surface_forces,
+            conditions,
+            points,
+            pairs: Vec::new(),
+        },
         materials,
         units,
         thickness,
