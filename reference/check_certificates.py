@@ -6,11 +6,11 @@ Of each file NAME.proof: the questions of its paths are a tree in which the answ
 is still possible, so every point lies on a path; and each path that ends in `fails` contradicts itself: its facts follow
 from its answers, and its certificate, weights >= 0 times products of facts and squares plus multiples of equations, is
 zero, though one product is positive. The statement is that of the file's name, and only its unknowns occur. With
-VERIFY.md, each proof listed there has its file, with as many paths, as many of them refuted, and the same classes reached:
-which paths fail is the predicate's to say, so a path relabelled is seen there. Format: transcript.rs in props/src/proof.
-Fractions and integers only.
+VERIFY.md, each proof listed there has its file, with as many paths, as many of them refuted, and the hash of its tree, which is the
+file without facts and certificates: another predicate, or a path that is called something else, is seen there. Format:
+transcript.rs in props/src/proof. Fractions and integers only.
 """
-import re, sys
+import hashlib, re, sys
 from fractions import Fraction
 from pathlib import Path
 
@@ -124,7 +124,7 @@ def covers(paths, known, depth=0):
 
 
 def check(text, name=None):
-    """The paths, the paths refuted and the classes reached; a ValueError says what is wrong."""
+    """The paths, the paths refuted and the hash of the tree; a ValueError says what is wrong."""
     head, *blocks = text.split("\npath\n")
     title = re.fullmatch(r"statement (\w+)\nunknowns((?: \w+)*) ?", head, re.A)
     demand(title and name in (None, title[1]), f"the head of {name} is '{head}'")
@@ -146,7 +146,13 @@ def check(text, name=None):
         classes |= {end[6:]} if end.startswith("holds ") else set()
         paths.append((steps, end, certificate))
     demand(classes, "no path holds: nothing is said of anything")
-    return len(paths), covers(paths, {}), classes
+    return len(paths), covers(paths, {}), tree(text)
+
+
+def tree(text):
+    """The hash of what is proved: questions, answers and ends, without facts and certificates."""
+    lines = [line + "\n" for line in text.splitlines() if not line.startswith(("fact ", "term ", "multiple "))]
+    return hashlib.sha256("".join(lines).encode()).hexdigest()[:16]
 
 
 def certified(line):
@@ -159,9 +165,10 @@ def certified(line):
 
 
 def listed(ledger):
-    """The proofs of VERIFY.md: by name, paths, paths refuted and classes."""
-    lines = re.findall(r"^- `(\w+)`: (\d+)/(\d+); (.*)$", Path(ledger).read_text(), re.M)
-    return {name: (int(paths), int(refuted), set(re.sub(r"\. Rocq: .*", "", classes).split(" | "))) for name, paths, refuted, classes in lines}
+    """The proofs of VERIFY.md: by name, paths, paths refuted and hash of the tree."""
+    lines = re.findall(r"^- \[(\w+)\]\([^)]*\): (\d+)/(\d+) ([0-9a-f]{16})\b", Path(ledger).read_text(), re.M)
+    demand(lines, f"{ledger} lists no proof")
+    return {name: (int(paths), int(refuted), digest) for name, paths, refuted, digest in lines}
 
 
 def main(directory, ledger=None):

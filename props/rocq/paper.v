@@ -211,8 +211,8 @@ Proof.
 Qed.
 (* false: <= (lambda + 2 * mu) => <= (lambda + mu) *)
 
-(** Lemma 3.2 and (12) from (11): s = |gamma^(1/2) sigma_n|^2, n = |v|_1^2, and what contact adds *)
-Theorem lemma_3_2 : forall n a s contact gamma0 limit c alpha most : R,
+(** Lemma 3.2 and (12) from (11) and Korn's inequality: s = |gamma^(1/2) sigma_n|^2, n = |v|_1^2, and what contact adds *)
+Theorem lemma_3_2_from_11_and_korn : forall n a s contact gamma0 limit c alpha most : R,
   0 <= n -> 0 <= a -> 0 <= contact -> 0 < gamma0 -> 0 <= limit -> 0 < alpha ->
   alpha * n <= a -> a <= most * n -> s <= gamma0 * limit * a -> limit <= c -> 2 * gamma0 * c <= 1 ->
   s <= gamma0 * c * most * n /\ a - s >= alpha / 2 * n /\ a - s + contact >= alpha / 2 * n.
@@ -394,29 +394,3 @@ Proof.
 Qed.
 (* false: x <= s + k * (e + h) => x <= k * (e + h) *)
 
-(** * The certified bound *)
-
-(** docs/theory.md, 7: |C eps(v) - tau|^2 splits where u satisfies Hooke's law: the entries of eps(v - u) and of
-    C^-1 (sigma(u) - tau), in the norm of C *)
-Theorem error_square : forall exx eyy exy txx tyy txy lambda mu : R,
-  0 < mu -> 0 < lambda + mu ->
-  let product := fun axx ayy axy bxx byy bxy : R =>
-    (lambda * (axx + ayy) + 2 * mu * axx) * bxx + (lambda * (axx + ayy) + 2 * mu * ayy) * byy + 4 * mu * axy * bxy in
-  product (exx + txx) (eyy + tyy) (exy + txy) (exx + txx) (eyy + tyy) (exy + txy)
-  = product exx eyy exy exx eyy exy + product txx tyy txy txx tyy txy + 2 * product exx eyy exy txx tyy txy /\
-  0 <= product exx eyy exy exx eyy exy.
-Proof.
-  intros exx eyy exy txx tyy txy lambda mu shear bulk product; unfold product; clear product.
-  (* paths of the_square_of_the_bound_splits_at_a_point *)
-Qed.
-(* false: + 2 * product exx => + product exx *)
-
-(** The identity behind Theorem 7.2 on Gamma_C: what contact adds is a = sigma_n (v_n - g) >= 0 and b = tau_n (u_n - g) >= 0 *)
-Theorem error_identity_on_contact : forall u s v t g : R,
-  contact u g s -> v <= g -> t <= 0 ->
-  (s - t) * (u - v) = t * (v - g) - s * (v - g) - t * (u - g) /\ 0 <= s * (v - g) + t * (u - g).
-Proof.
-  intros u s v t g [admissible [pressure complementary]] below compressed.
-  (* paths of what_contact_adds_is_not_negative *)
-Qed.
-(* false: t <= 0 => 0 <= t *)

@@ -1,21 +1,26 @@
-//! Runs the rows of the ledger: progress and a table on the terminal, and a page with its twin (`page`) in `target/audit`.
+//! Runs the rows of the ledger: each check with what it found, and a table.
 
 use std::fmt::Write as _;
 use std::io::{self, IsTerminal, Write as _};
-use std::path::PathBuf;
 use std::time::Instant;
 
-use crate::claim::Claim;
+use crate::claim::{Check, Claim, Outcome};
 use crate::claims;
 use crate::draws;
-use crate::page::{self, Line, Report};
-use crate::receipt::root;
+
+/// A check that was run.
+struct Line {
+    row: &'static str,
+    check: Check,
+    seconds: f64,
+    outcome: Outcome,
+}
 
 /// Runs the row with this id, or all of them; of a row, the checks with this name, or all of them. True if every check
-/// passed. Writes a page with its twin in JSON; a part of the ledger goes to files of its own.
+/// passed.
 ///
 /// # Errors
-/// An unknown id or name, or a file that can't be written.
+/// An unknown id or name.
 pub fn audit(id: Option<&str>, name: Option<&str>) -> io::Result<bool> {
     let mut claims: Vec<Claim> =
         claims::all().into_iter().filter(|c| id.is_none_or(|id| c.id == id)).collect();
@@ -33,32 +38,12 @@ pub fn audit(id: Option<&str>, name: Option<&str>) -> io::Result<bool> {
     }
     let lines: Vec<Line> = claims.iter().flat_map(run).collect();
     println!("\n{}{}", table(&claims, &lines), failures(&lines));
-    let passed = lines.iter().all(|line| line.outcome.is_ok());
-    let provenance = page::provenance();
-    let report = Report { provenance, claims, complete: id.is_none(), lines };
-    let stem = match (id, name) {
-        (None, _) => "index".to_owned(),
-        (Some(id), None) => format!("row-{id}"),
-        (Some(id), Some(name)) => format!("row-{id}-{name}"),
-    };
-    let folder = folder();
-    std::fs::create_dir_all(&folder)?;
-    let at = folder.join(format!("{stem}.html"));
-    std::fs::write(&at, page::html(&report))?;
-    std::fs::write(at.with_extension("json"), page::json(&report))?;
-    println!("written: {}, and the same as .json", at.display());
-    Ok(passed)
-}
-
-/// Where the pages go.
-fn folder() -> PathBuf {
-    let target = std::env::var_os("CARGO_TARGET_DIR");
-    target.map_or_else(|| root().join("target"), PathBuf::from).join("audit")
+    Ok(lines.iter().all(|line| line.outcome.is_ok()))
 }
 
 fn run(claim: &Claim) -> Vec<Line> {
     println!("row {}: {}", claim.id, claim.title);
-    let one = |check: &crate::claim::Check| {
+    let one = |check: &Check| {
         let (engine, name) = (check.engine_name(), check.shown_name());
         print!("  {engine:7} {name} ... ");
         let _ = io::stdout().flush();

@@ -7,8 +7,7 @@ use std::panic::{self, AssertUnwindSafe};
 use crate::draws;
 use crate::harness::Harness;
 use crate::proof;
-use crate::receipt::{self, Standing};
-use crate::solvers::{self, Field};
+use crate::receipt::{self, Answer, Standing};
 use crate::statement::Statement;
 
 /// What a check answers: a line of evidence, or what went wrong.
@@ -49,8 +48,6 @@ pub enum Subject {
     Function(fn() -> Outcome),
     /// A harness.
     Harness(Harness),
-    /// A false statement, which the proof engine must refuse.
-    Falsehood(Statement),
 }
 
 /// One piece of evidence.
@@ -74,49 +71,27 @@ impl Check {
         Check { items, ..self }
     }
 
-    /// Its engine in the ledger: that of a harness is the model checker where a receipt says so; where it has few values,
+    /// Its engine in the ledger: that of a harness is the model checker where the newest receipt says so; where it has few values,
     /// all of them are run; else random draws.
     pub fn engine_name(&self) -> &'static str {
-        match (self.subject, self.standing()) {
-            (_, Some(standing)) if standing.is_verified() => "Kani",
-            (Subject::Harness(harness), _) if receipt::is_decided(&harness) => "all cases",
+        match self.subject {
+            Subject::Harness(h)
+                if receipt::standing(&h) == Standing::Answered(Answer::Verified) =>
+            {
+                "Kani"
+            }
+            Subject::Harness(harness) if receipt::is_decided(&harness) => "all cases",
             _ => self.engine.name(),
         }
     }
 
     /// Its name in the ledger: a harness says that it is for all numbers only where it was decided for all.
     pub fn shown_name(&self) -> String {
-        match (self.subject, self.standing()) {
-            (Subject::Harness(harness), Some(standing))
-                if !standing.is_verified() && !receipt::is_decided(&harness) =>
-            {
+        match self.subject {
+            Subject::Harness(harness) if !self.control && self.engine_name() == "draws" => {
                 harness.name_on_draws()
             }
             _ => self.name.to_owned(),
-        }
-    }
-
-    /// What the model checker said of a harness, by the receipts.
-    pub fn standing(&self) -> Option<Standing> {
-        match self.subject {
-            Subject::Harness(harness) => Some(receipt::standing(&harness)),
-            _ => None,
-        }
-    }
-
-    /// What a receipt says of it: of a harness by the model checker, of a statement by the solvers.
-    pub fn receipt(&self) -> Option<String> {
-        match self.subject {
-            Subject::Harness(_) => self.standing().map(|standing| format!("Kani: {standing}")),
-            Subject::Statement(statement) if !self.control => {
-                let field = match self.engine {
-                    Engine::Doubles => Field::Doubles,
-                    Engine::Proof => Field::Reals,
-                    _ => return None,
-                };
-                solvers::opinion(&statement, field).map(|opinion| opinion.said(field))
-            }
-            _ => None,
         }
     }
 
@@ -134,7 +109,6 @@ impl Check {
         match (self.subject, self.engine, self.control) {
             (Subject::Function(run), _, _) => run(),
             (Subject::Harness(harness), _, _) => harness.run(),
-            (Subject::Falsehood(s), _, _) => proof::refuse(&s),
             (Subject::Statement(s), Engine::Proof, false) => proof::prove(&s),
             (Subject::Statement(s), Engine::Proof, true) => proof::refute(&s),
             (Subject::Statement(s), Engine::Exact, false) => draws::hold_exactly(&s),
@@ -206,17 +180,6 @@ macro_rules! doubles {
     };
 }
 
-/// A false statement, refused by the proof engine.
-pub fn false_statement(statement: Statement) -> Check {
-    Check {
-        name: statement.name,
-        engine: Engine::Proof,
-        control: true,
-        items: &[],
-        subject: Subject::Falsehood(statement),
-    }
-}
-
 /// `statements! { WAYS NAME[UNKNOWNS]: CLASSES fails CONCLUSION about ITEMS hints(HINTS) prepared(PREPARE); .. }`: statements with
 /// the checks that each of them is, such as `proved + tested`, as a table. One without classes and without a conclusion that
 /// must fail holds always.
@@ -245,13 +208,13 @@ macro_rules! statements {
     }};
 }
 
-/// Harnesses, as evidence or, if they are the false twins of some, as controls.
-pub fn model_checked(harnesses: &[Harness]) -> Vec<Check> {
+/// Harnesses, as evidence for these items or, if they are the false twins of some, as controls.
+pub fn model_checked(harnesses: &[Harness], items: &'static [&'static str]) -> Vec<Check> {
     let one = |&harness: &Harness| Check {
         name: harness.name,
         engine: Engine::Harness,
         control: harness.counterexample.is_some(),
-        items: &[],
+        items,
         subject: Subject::Harness(harness),
     };
     harnesses.iter().map(one).collect()
@@ -281,12 +244,6 @@ pub struct Claim {
     pub title: &'static str,
     /// The paper's words.
     pub paper: &'static str,
-    /// The statement as it is checked.
-    pub statement: &'static str,
-    /// Over which numbers.
-    pub numbers: &'static str,
-    /// What is assumed, and by whom.
-    pub preconditions: &'static str,
     /// What this does not establish.
     pub limits: &'static str,
     /// Why evidence of fewer than two engines is all there is, where that is so.

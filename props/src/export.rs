@@ -1,20 +1,16 @@
-//! The paths of the proofs as SMT-LIB 2 problems, for solvers that know nothing of the proof engine; and those of the
-//! statements that are tested in doubles, over all finite doubles, for a floating-point solver.
+//! The statements that are tested in doubles as SMT-LIB 2 problems, over all finite doubles, for the floating-point solver
+//! bitwuzla; and the proofs as text, with their certificates, for the checker in `reference/`.
 //!
-//! And the proofs as text, with their certificates, for the checker in `reference/`.
-//!
-//! One file per failing path. The head of a file says what to expect: `unsat` of a statement that must hold; of a control,
-//! `unsat` where this engine has a certificate, `sat` where it has a point, `unknown` where it has neither. A solver that
-//! contradicts it is news.
+//! One problem per failing path. The head of a file says what to expect: `unsat` of a statement that must hold; of a control
+//! `unknown`: one of its problems is `sat`.
 
 use std::collections::BTreeSet;
 use std::io;
 
 use crate::claim::{Engine, Subject};
 use crate::claims;
-use crate::proof::smt::{in_doubles, of_path, of_paths};
-use crate::proof::{Fate, analyse, transcript};
-use crate::statement::Statement;
+use crate::proof::float::in_doubles;
+use crate::proof::transcript;
 
 /// Writes every proof as text into `directory`, one file `NAME.proof` each, and answers how many.
 ///
@@ -38,34 +34,16 @@ pub fn export(directory: &std::path::Path) -> io::Result<usize> {
     std::fs::create_dir_all(directory)?;
     let (mut seen, mut count) = (BTreeSet::new(), 0);
     for check in claims::all().iter().flat_map(|claim| &claim.checks) {
-        let Subject::Statement(statement) = check.subject else { continue };
-        if !seen.insert((check.engine, statement.name)) {
+        let (Subject::Statement(statement), Engine::Doubles) = (check.subject, check.engine) else {
+            continue;
+        };
+        if !seen.insert(statement.name) {
             continue;
         }
-        let problems = match (check.engine, check.control) {
-            (Engine::Doubles, control) => in_doubles(&statement, control),
-            (Engine::Proof, false) => of_paths(&statement),
-            (Engine::Proof, true) => of_control(&statement),
-            _ => Vec::new(),
-        };
-        count += problems.len();
-        for (name, problem) in problems {
+        for (name, problem) in in_doubles(&statement, check.control) {
             std::fs::write(directory.join(name), problem)?;
+            count += 1;
         }
     }
     Ok(count)
-}
-
-/// The failing paths of a control, with what this engine finds of each.
-fn of_control(statement: &Statement) -> Vec<(String, String)> {
-    let analysis = analyse(statement);
-    let one = |(i, fate): &(usize, Fate)| {
-        let expected = match fate {
-            Fate::Impossible(_) => "unsat",
-            Fate::Refuted(_) => "sat",
-            Fate::Open => "unknown",
-        };
-        of_path(statement, *i, &analysis.paths[*i], expected)
-    };
-    analysis.fates.iter().map(one).collect()
 }

@@ -20,8 +20,6 @@ pub mod draws;
 pub mod elimination;
 #[cfg(not(kani))]
 pub mod export;
-#[cfg(not(kani))]
-pub mod fingerprint;
 pub mod harness;
 #[cfg(not(kani))]
 pub mod items;
@@ -30,8 +28,6 @@ pub mod ledger;
 #[cfg(not(kani))]
 pub mod naive;
 pub mod numbers;
-#[cfg(not(kani))]
-pub mod page;
 #[cfg(not(kani))]
 pub mod paper;
 #[cfg(not(kani))]

@@ -16,10 +16,10 @@ fn main() -> std::process::ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let outcome = match arguments[..] {
-        ["ledger"] => {
-            print!("{}", props::ledger::ledger());
-            Ok(true)
-        }
+        ["ledger"] => props::ledger::ledger().map_err(std::io::Error::other).map(|text| {
+            print!("{text}");
+            true
+        }),
         ["audit"] => props::audit::audit(None, None),
         ["audit", id] => props::audit::audit(Some(id), None),
         ["audit", id, name] => props::audit::audit(Some(id), Some(name)),
@@ -47,7 +47,7 @@ fn main() -> std::process::ExitCode {
         _ => {
             eprintln!("props ledger       print VERIFY.md");
             eprintln!("props audit [ROW [CHECK]]  run every check, or those of a row, or one");
-            eprintln!("props smt DIR      write the paths of the proofs as SMT-LIB 2 problems");
+            eprintln!("props smt DIR      write the statements in doubles as SMT-LIB 2 problems");
             eprintln!("props export DIR   write the proofs with their certificates as text");
             eprintln!(
                 "props export --rocq DIR    write the headline statements with proofs for Rocq"

@@ -9,7 +9,8 @@ use std::sync::OnceLock;
 use crate::claim::Engine;
 use crate::claims;
 use crate::proof::rocq;
-use crate::solvers::{Receipt, hash};
+use crate::receipt::hash;
+use crate::solvers::Receipt;
 
 const PAPER: &str = include_str!("../rocq/paper.v");
 
@@ -55,7 +56,8 @@ impl Theorem {
     /// Whether Rocq has proved this very statement, by the newest receipt.
     pub fn is_proved(&self) -> bool {
         let answer = receipt().answers.get(self.name);
-        answer.is_some_and(|(digest, answers)| *digest == self.digest() && answers == &["proved"])
+        answer
+            .is_some_and(|(digest, _, answers)| *digest == self.digest() && answers == &["proved"])
     }
 }
 

@@ -1,23 +1,29 @@
-//! Receipts of runs of other programs, tables in `props/receipts`, and what those of the model checker Kani say of a harness.
+//! Receipts of runs of other programs, tables in `props/receipts`, and what the newest one of the model checker Kani says of a
+//! harness.
 //!
 //! ```text
-//! cargo kani 2>&1 | tee LOG               at the root, with Kani installed
-//! cargo run -p props -- receipt LOG       writes props/receipts/kani-DATE.tsv
+//! cargo kani 2>&1 | tee LOG               at the root, with Kani installed, at a commit
+//! cargo run -p props -- receipt LOG       writes props/receipts/kani-DATE.tsv, and nothing else does
 //! ```
 //!
-//! Such a receipt says which harness got which verdict, in how many seconds, by which versions, and for which sources (see
-//! [`crate::fingerprint`]). It stands behind a harness as long as the harness and all that it reaches are what they were.
+//! Such a receipt says at which commit which harness got which verdict, in how many seconds and by which versions, and has a
+//! hash of each file of the kernel, of each file that a harness stands in and of what all harnesses share, as they are in that
+//! commit. It stands behind a harness as long as these files are what they were.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use crate::fingerprint::Sources;
+use sha2::{Digest, Sha256};
+
 use crate::harness::Harness;
+
+/// What each harness may reach, beside the file that it stands in.
+const SHARED: [&str; 4] =
+    ["src/kernel/", "props/src/harness.rs", "props/src/verdict.rs", "props/src/numbers/whole.rs"];
 
 /// The root of the workspace.
 pub(crate) fn root() -> &'static Path {
@@ -25,15 +31,24 @@ pub(crate) fn root() -> &'static Path {
     props.parent().unwrap_or(props)
 }
 
-/// The output of a program, run at the root.
-pub(crate) fn output(program: &str, arguments: &[&str]) -> Option<String> {
-    let output = Command::new(program).args(arguments).current_dir(root()).output().ok()?;
-    let text = String::from_utf8(output.stdout).ok()?;
-    output.status.success().then(|| text.trim().to_owned())
+/// The hash by which a receipt knows a text.
+pub fn hash(text: &str) -> String {
+    let digest = Sha256::digest(text.as_bytes());
+    digest[..8].iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-fn directory() -> PathBuf {
-    root().join("props/receipts")
+/// What a program prints at the root.
+fn output(program: &str, arguments: &[&str]) -> io::Result<String> {
+    let output = Command::new(program).args(arguments).current_dir(root()).output()?;
+    if !output.status.success() {
+        let (what, why) = (arguments.join(" "), String::from_utf8_lossy(&output.stderr));
+        return Err(io::Error::other(format!("{program} {what}: {}", why.trim())));
+    }
+    String::from_utf8(output.stdout).map_err(io::Error::other)
+}
+
+fn git(arguments: &[&str]) -> io::Result<String> {
+    output("git", arguments)
 }
 
 /// A receipt as it is stored: lines `# HEAD`, the names of the columns, and rows of columns between tabs.
@@ -41,7 +56,7 @@ fn directory() -> PathBuf {
 pub struct Table {
     /// When: year-month-day, in UTC.
     pub date: String,
-    /// Versions, commit, machine: a line for each.
+    /// Versions, commit, machine, files: a line for each.
     pub head: Vec<String>,
     /// The names of the columns.
     pub columns: Vec<String>,
@@ -73,24 +88,27 @@ impl Table {
         head.chain(rows.map(|row| row.join("\t") + "\n")).collect()
     }
 
-    /// The receipts in `props/receipts` whose names are `prefix` and a date, the oldest first.
+    /// The newest receipt in `props/receipts` whose name is `prefix` and a date.
     ///
     /// # Errors
-    /// A file that can't be read, or that is no receipt.
-    pub fn stored(prefix: &str) -> Result<Vec<Table>, String> {
-        let directory = directory();
-        let failed = |why: io::Error| format!("{}: {why}", directory.display());
-        let mut tables = Vec::new();
-        for entry in std::fs::read_dir(&directory).map_err(failed)? {
-            let path = entry.map_err(failed)?.path();
-            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            if let Some(date) = name.strip_prefix(prefix).and_then(|n| n.strip_suffix(".tsv")) {
-                tables.push(Table::parse(date, &std::fs::read_to_string(&path).map_err(failed)?)?);
-            }
+    /// A file that can't be read, or that is no receipt, and that there is none.
+    pub fn newest(prefix: &str) -> Result<Table, String> {
+        let folder = root().join("props/receipts");
+        let failed = |why: io::Error| format!("{}: {why}", folder.display());
+        let mut dates = BTreeSet::new();
+        for entry in std::fs::read_dir(&folder).map_err(failed)? {
+            let name = entry.map_err(failed)?.file_name().to_string_lossy().into_owned();
+            dates.extend(dated(&name, prefix).map(str::to_owned));
         }
-        tables.sort_by(|a, b| a.date.cmp(&b.date));
-        Ok(tables)
+        let date = dates.last().ok_or(format!("{}: no {prefix}DATE.tsv", folder.display()))?;
+        let text = std::fs::read_to_string(folder.join(format!("{prefix}{date}.tsv")));
+        Table::parse(date, &text.map_err(failed)?)
     }
+}
+
+/// The date in the name of a receipt.
+fn dated<'a>(name: &'a str, prefix: &str) -> Option<&'a str> {
+    name.strip_prefix(prefix)?.strip_suffix(".tsv")
 }
 
 /// What the model checker said of a harness.
@@ -110,7 +128,7 @@ const ANSWERS: [(&str, Answer); 3] =
 /// One harness of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// Its path in the crate where it stood.
+    /// Its path in this crate.
     pub harness: String,
     /// The verdict.
     pub answer: Answer,
@@ -118,26 +136,39 @@ pub struct Run {
     pub seconds: String,
     /// How many conditions were decided, where that is known.
     pub conditions: String,
-    /// The fingerprint of the sources that it was about.
-    pub sources: String,
 }
 
 /// One run of the model checker over the harnesses.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Receipt {
     /// When: year-month-day, in UTC.
     pub date: String,
-    /// Versions, commit, machine: a line for each.
+    /// Of which sources.
+    pub commit: String,
+    /// Versions and machine: a line for each.
     pub head: Vec<String>,
+    /// The files that the answers hang on, each with its hash.
+    pub files: BTreeMap<String, String>,
     /// The harnesses.
     pub runs: Vec<Run>,
 }
 
-const COLUMNS: [&str; 6] = ["harness", "expected", "verdict", "seconds", "conditions", "sources"];
+const COLUMNS: [&str; 5] = ["harness", "expected", "verdict", "seconds", "conditions"];
 
 /// What is expected of a harness: a false twin must fail.
 fn expected(harness: &str) -> &'static str {
     if own_name(harness).starts_with("control_") { "should_panic" } else { "success" }
+}
+
+/// The name of a harness without the modules in front of it: no two have the same.
+fn own_name(path: &str) -> &str {
+    path.rsplit("::").next().unwrap_or(path)
+}
+
+/// The file in which a harness with this path stands.
+fn file_of(path: &str) -> String {
+    let module = path.rsplit_once("::").map_or("lib", |(module, _)| module);
+    format!("props/src/{}.rs", module.replace("::", "/"))
 }
 
 impl Receipt {
@@ -145,23 +176,23 @@ impl Receipt {
         let row = |run: &Run| {
             let verdict = ANSWERS.iter().find(|(_, answer)| *answer == run.answer);
             let verdict = verdict.map_or("", |(name, _)| name);
-            let Run { harness, seconds, conditions, sources, .. } = run;
-            [harness, expected(harness), verdict, seconds, conditions, sources]
-                .map(str::to_owned)
-                .into()
+            let Run { harness, seconds, conditions, .. } = run;
+            [harness, expected(harness), verdict, seconds, conditions].map(str::to_owned).into()
         };
         let rows = self.runs.iter().map(row).collect();
-        let columns = COLUMNS.map(str::to_owned).into();
-        Table { date: self.date.clone(), head: self.head.clone(), columns, rows }
+        let mut head = self.head.clone();
+        head.push(format!("commit {}", self.commit));
+        head.extend(self.files.iter().map(|(file, hash)| format!("file {file} {hash}")));
+        Table { date: self.date.clone(), head, columns: COLUMNS.map(str::to_owned).into(), rows }
     }
 
-    /// A receipt as it is stored.
+    /// A receipt as it is stored, or the table of a run before its files are added.
     ///
     /// # Errors
-    /// A row that is none of a receipt.
+    /// A table without a commit, or with a row that is none of a receipt.
     pub fn of(table: &Table) -> Result<Receipt, String> {
-        let wrong = |what: String| format!("{}: no row of a receipt: {what}", table.date);
-        if table.columns != COLUMNS {
+        let wrong = |what: String| format!("kani-{}.tsv: no row of a receipt: {what}", table.date);
+        if !table.columns.starts_with(&COLUMNS.map(str::to_owned)) {
             return Err(wrong(table.columns.join(" ")));
         }
         let run = |row: &Vec<String>| {
@@ -169,22 +200,31 @@ impl Receipt {
             let (Some((_, answer)), true) = (answer, row[1] == expected(&row[0])) else {
                 return Err(wrong(row.join(" ")));
             };
-            let [harness, seconds, conditions, sources] = [0, 3, 4, 5].map(|at| row[at].clone());
-            Ok(Run { harness, answer, seconds, conditions, sources })
+            let [harness, seconds, conditions] = [0, 3, 4].map(|at| row[at].clone());
+            Ok(Run { harness, answer, seconds, conditions })
         };
         let runs = table.rows.iter().map(run).collect::<Result<_, _>>()?;
-        Ok(Receipt { date: table.date.clone(), head: table.head.clone(), runs })
+        let mut receipt = Receipt { date: table.date.clone(), runs, ..Receipt::default() };
+        for line in &table.head {
+            match *line.split(' ').collect::<Vec<_>>() {
+                ["commit", commit] => receipt.commit = commit.to_owned(),
+                ["file", file, hash] => {
+                    receipt.files.insert(file.to_owned(), hash.to_owned());
+                }
+                _ => receipt.head.push(line.clone()),
+            }
+        }
+        if receipt.commit.is_empty() {
+            return Err(format!("kani-{}.tsv: expected a line '# commit HASH'", table.date));
+        }
+        Ok(receipt)
     }
 
     /// A receipt from what Kani printed, one harness after the other.
     ///
     /// # Errors
-    /// A log without harnesses, with one that does not exist, or of several threads, which are mixed up.
-    pub fn from_log(
-        date: &str,
-        log: &str,
-        hashes: &BTreeMap<String, String>,
-    ) -> Result<Receipt, String> {
+    /// A log without harnesses, or of several threads, which are mixed up.
+    pub fn from_log(date: &str, commit: &str, log: &str) -> Result<Receipt, String> {
         if log.lines().any(|line| line.starts_with("Thread ")) {
             return Err(
                 "the log of several threads is mixed up: run cargo kani without -j".to_owned()
@@ -192,33 +232,62 @@ impl Receipt {
         }
         let version = |start: &str| log.lines().map(str::trim).find(|line| line.starts_with(start));
         let head = ["Kani Rust Verifier ", "CBMC "].into_iter().filter_map(version);
-        let head = head.map(str::to_owned).collect();
-        let mut runs = Vec::new();
-        for block in log.split("Checking harness ").skip(1) {
-            let name = block.lines().next().unwrap_or_default().trim_end_matches('.');
-            let Some(sources) = hashes.get(own_name(name)) else {
-                return Err(format!(
-                    "the log has the harness '{name}', which these sources have not"
-                ));
-            };
-            runs.push(run(name, block, sources));
-        }
+        let mut head: Vec<String> = head.map(str::to_owned).collect();
+        let runs: Vec<Run> = log.split("Checking harness ").skip(1).map(run).collect();
         if runs.is_empty() {
             return Err("no line of the log begins with 'Checking harness': \
                         it is the output of cargo kani that is needed"
                 .to_owned());
         }
-        Ok(Receipt { date: date.to_owned(), head, runs })
+        let seconds: f64 = runs.iter().filter_map(|run| run.seconds.parse::<f64>().ok()).sum();
+        let (os, arch) = (std::env::consts::OS, std::env::consts::ARCH);
+        head.push(format!("{os} {arch}, {} harnesses in {seconds:.0} s", runs.len()));
+        let (date, commit) = (date.to_owned(), commit.to_owned());
+        Ok(Receipt { date, commit, head, files: BTreeMap::new(), runs })
+    }
+
+    /// The files that the answers hang on, with their hashes in the commit of the run.
+    fn files_of_the_commit(&self) -> io::Result<BTreeMap<String, String>> {
+        let listed =
+            git(&["ls-tree", "-r", "--name-only", &self.commit, "src/kernel", "props/src"])?;
+        let of_harnesses: BTreeSet<String> =
+            self.runs.iter().map(|run| file_of(&run.harness)).collect();
+        let files = listed.lines().filter(|file| is_shared(file) || of_harnesses.contains(*file));
+        let hashed = |file: &str| {
+            let text = git(&["show", &format!("{}:{file}", self.commit)])?;
+            Ok((file.to_owned(), hash(&text)))
+        };
+        files.map(hashed).collect()
+    }
+
+    /// The files of the receipt that are not now what they were, or are no more.
+    fn changed(&self) -> Vec<String> {
+        let now = |file: &str| std::fs::read_to_string(root().join(file)).map(|text| hash(&text));
+        let differs = |(file, then): &(&String, &String)| now(file).ok().as_ref() != Some(*then);
+        self.files.iter().filter(differs).map(|(file, _)| file.clone()).collect()
+    }
+
+    /// What it says of a harness, with the files that have changed since.
+    fn standing(&self, path: &str, changed: &[String]) -> Standing {
+        let name = own_name(path);
+        let Some(run) = self.runs.iter().find(|run| own_name(&run.harness) == name) else {
+            return Standing::Never;
+        };
+        let file = file_of(path);
+        let moved = !self.files.contains_key(&file);
+        if moved || changed.iter().any(|changed| is_shared(changed) || *changed == file) {
+            return Standing::Changed;
+        }
+        Standing::Answered(run.answer)
     }
 }
 
-/// The name of a harness without the modules in front of it, which may be others after a move: no two have the same.
-fn own_name(path: &str) -> &str {
-    path.rsplit("::").next().unwrap_or(path)
+fn is_shared(file: &str) -> bool {
+    SHARED.iter().any(|shared| file.starts_with(shared))
 }
 
 /// What Kani printed about one harness.
-fn run(name: &str, block: &str, sources: &str) -> Run {
+fn run(block: &str) -> Run {
     let after = |start: &str| block.lines().find_map(|line| line.trim().strip_prefix(start));
     let none = ["timed out", "CBMC failed", "Status: ERROR", "out of memory"];
     let answer = match after("VERIFICATION:- ") {
@@ -231,82 +300,61 @@ fn run(name: &str, block: &str, sources: &str) -> Run {
     let conditions =
         after("** ").and_then(|rest| rest.split(" of ").nth(1)?.split(' ').next()).unwrap_or("");
     Run {
-        harness: name.to_owned(),
+        harness: block.lines().next().unwrap_or_default().trim_end_matches('.').to_owned(),
         answer,
         seconds: seconds.map_or(String::new(), |s: f64| format!("{s:.2}")),
         conditions: conditions.to_owned(),
-        sources: sources.to_owned(),
     }
 }
 
-/// What is known of a harness from the receipts.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// What the newest receipt says of a harness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
-    /// The model checker has this answer for these sources, on this date.
-    Answered(Answer, String),
-    /// It was run for other sources only.
+    /// The model checker has this answer for these sources.
+    Answered(Answer),
+    /// It was run before a file changed that the answer may hang on.
     Changed,
-    /// It never was.
+    /// It was not run.
     Never,
 }
 
-impl Standing {
-    /// What a harness has of these receipts: of several runs about these sources, a failure counts most, and any verdict
-    /// more than none.
-    fn of(harness: &str, sources: &str, receipts: &[Receipt]) -> Standing {
-        let runs = || {
-            let all = receipts.iter().flat_map(|of| of.runs.iter().map(move |run| (of, run)));
-            all.filter(|(_, run)| own_name(&run.harness) == harness)
-        };
-        for answer in [Answer::Failed, Answer::Verified, Answer::NoAnswer] {
-            if let Some((receipt, _)) =
-                runs().rfind(|(_, r)| r.sources == sources && r.answer == answer)
-            {
-                return Standing::Answered(answer, receipt.date.clone());
-            }
-        }
-        if runs().next().is_some() { Standing::Changed } else { Standing::Never }
-    }
-
-    /// Whether a receipt says that the model checker has verified it.
-    pub fn is_verified(&self) -> bool {
-        matches!(self, Standing::Answered(Answer::Verified, _))
-    }
-}
-
-impl std::fmt::Display for Standing {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Standing::Answered(Answer::Verified, date) => write!(f, "verified by receipt {date}"),
-            Standing::Answered(Answer::Failed, date) => write!(f, "REFUTED by receipt {date}"),
-            Standing::Answered(Answer::NoAnswer, date) => write!(f, "no answer by receipt {date}"),
-            Standing::Changed => write!(f, "never run since the sources changed"),
-            Standing::Never => write!(f, "never run"),
-        }
-    }
-}
-
-/// The receipts of the model checker, the oldest first.
-///
-/// # Errors
-/// A file that can't be read, or that is no receipt.
-pub fn stored() -> Result<Vec<Receipt>, String> {
-    Table::stored("kani-")?.iter().map(Receipt::of).collect()
+/// The newest receipt of the model checker, with the files that have changed since: read once.
+fn newest() -> &'static (Receipt, Vec<String>) {
+    static NEWEST: OnceLock<(Receipt, Vec<String>)> = OnceLock::new();
+    NEWEST.get_or_init(|| {
+        let receipt = Table::newest("kani-").and_then(|table| Receipt::of(&table));
+        let receipt = receipt.unwrap_or_else(|why| panic!("props/receipts: {why}"));
+        let changed = receipt.changed();
+        (receipt, changed)
+    })
 }
 
 /// What stands behind a harness.
 pub fn standing(harness: &Harness) -> Standing {
-    static STANDINGS: OnceLock<BTreeMap<String, Standing>> = OnceLock::new();
-    let standings = STANDINGS.get_or_init(|| {
-        let receipts = stored().expect("props/receipts can be read");
-        let hashes = Sources::read(root()).expect("the sources can be read").fingerprints();
-        let of = |(harness, sources): (String, String)| {
-            let standing = Standing::of(&harness, &sources, &receipts);
-            (harness, standing)
-        };
-        hashes.into_iter().map(of).collect()
-    });
-    standings.get(harness.name).cloned().unwrap_or(Standing::Never)
+    let (receipt, changed) = newest();
+    receipt.standing(&harness.path(), changed)
+}
+
+/// What the newest receipt says of these harnesses, as a sentence of `VERIFY.md`.
+pub fn said(harnesses: &[Harness]) -> String {
+    let (receipt, changed) = newest();
+    let Receipt { date, commit, runs, .. } = receipt;
+    let known = |answer| runs.iter().filter(|run| run.answer == answer).count();
+    let standing = harnesses
+        .iter()
+        .filter(|harness| standing(harness) == Standing::Answered(Answer::Verified));
+    let since = if changed.is_empty() { "nothing".to_owned() } else { changed.join(", ") };
+    format!(
+        "{} harnesses were run at `{}` on {date}: {} as expected, {} not, {} without an answer; changed since: {since}. That \
+         stands behind {} of the {} harnesses of today; the others count as draws.",
+        runs.len(),
+        &commit[..commit.len().min(7)],
+        known(Answer::Verified),
+        known(Answer::Failed),
+        known(Answer::NoAnswer),
+        standing.count(),
+        harnesses.len(),
+    )
 }
 
 /// Whether a harness is decided by running it on all its values, which are few: asked once.
@@ -322,72 +370,49 @@ pub fn is_decided(harness: &Harness) -> bool {
     })
 }
 
-/// Writes the receipt of a run of which Kani's output is in the file `log`, and answers where.
+/// Writes the receipt of a run and answers where. `log` is what `cargo kani` printed, of the commit that is checked out; or the
+/// table `kani-DATE.tsv` of a run elsewhere, with its commit.
 ///
 /// # Errors
-/// A log that is none, or that is older than the sources.
+/// A log that is none, sources that are not those of the commit or are newer than the log, and a commit that git does not have.
 pub fn make(log: &Path) -> io::Result<PathBuf> {
     let at = |why: io::Error| io::Error::new(why.kind(), format!("{}: {why}", log.display()));
     let text = std::fs::read_to_string(log).map_err(at)?;
-    let ended = std::fs::metadata(log).and_then(|data| data.modified()).map_err(at)?;
-    let log = std::path::absolute(log)?.display().to_string();
-    let date = output("date", &["-u", "-r", &log, "+%Y-%m-%d"]);
-    let date = date.ok_or_else(|| io::Error::other("the program date does not tell when"))?;
-    let hashes = Sources::read(root())?.fingerprints();
-    let mut receipt = Receipt::from_log(&date, &text, &hashes).map_err(io::Error::other)?;
-    let seconds: f64 = receipt.runs.iter().filter_map(|run| run.seconds.parse::<f64>().ok()).sum();
-    let newest = newest(&[root().join("src/kernel"), root().join("props/src")])?;
-    if newest > ended.checked_sub(Duration::from_secs_f64(seconds)).unwrap_or(ended) {
-        return Err(io::Error::other(format!(
-            "{log}: the kernel or the harnesses were changed after this run began; run cargo kani again"
-        )));
-    }
-    let commit = output("git", &["rev-parse", "HEAD"]).unwrap_or_else(|| "unknown".to_owned());
-    let changes = output("git", &["status", "--porcelain", "--", "src", "props/src"]);
-    let changed = if changes.is_some_and(|files| files.is_empty()) { "" } else { ", changed" };
-    receipt.head.push(format!("commit {commit}{changed}"));
-    receipt.head.push(format!(
-        "{} {}, {} harnesses in {seconds:.0} s, {} not run",
-        std::env::consts::OS,
-        std::env::consts::ARCH,
-        receipt.runs.len(),
-        hashes.len() - receipt.runs.len()
-    ));
-    let path = directory().join(format!("kani-{}.tsv", receipt.date));
+    let name = log.file_name().unwrap_or_default().to_string_lossy();
+    let receipt = match dated(&name, "kani-") {
+        Some(date) => Table::parse(date, &text).and_then(|table| Receipt::of(&table)),
+        None => {
+            let changes = git(&["status", "--porcelain", "--", "src/kernel", "props/src"])?;
+            if !changes.is_empty() {
+                return Err(io::Error::other(format!(
+                    "these files are not those of the commit; commit them and run cargo kani again:\n{changes}"
+                )));
+            }
+            let commit = git(&["rev-parse", "HEAD"])?.trim().to_owned();
+            let path = std::path::absolute(log)?.display().to_string();
+            let written = output("date", &["-u", "-r", &path, "+%s %F"])?;
+            let (seconds, date) = written.trim().split_once(' ').unwrap_or_default();
+            let committed = git(&["log", "-1", "--format=%ct"])?;
+            if committed.trim().parse::<u64>().ok() > seconds.parse().ok() {
+                return Err(io::Error::other(format!(
+                    "{} is older than the commit {commit}: run cargo kani again",
+                    log.display()
+                )));
+            }
+            Receipt::from_log(date, &commit, &text)
+        }
+    };
+    let mut receipt = receipt.map_err(io::Error::other)?;
+    receipt.files = receipt.files_of_the_commit()?;
+    let path = root().join(format!("props/receipts/kani-{}.tsv", receipt.date));
     std::fs::write(&path, receipt.table().text())?;
     Ok(path)
 }
 
-/// When a file below the directories was changed last.
-fn newest(directories: &[PathBuf]) -> io::Result<SystemTime> {
-    let mut latest = UNIX_EPOCH;
-    for directory in directories {
-        for entry in std::fs::read_dir(directory)? {
-            let (path, data) = entry.and_then(|entry| Ok((entry.path(), entry.metadata()?)))?;
-            latest = latest.max(if data.is_dir() { newest(&[path])? } else { data.modified()? });
-        }
-    }
-    Ok(latest)
-}
-
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeSet;
-
     use super::*;
-    use crate::claim::Subject;
     use crate::claims;
-
-    /// All harnesses of the claims.
-    fn harnesses() -> Vec<Harness> {
-        let checks = claims::all().into_iter().flat_map(|claim| claim.checks);
-        checks
-            .filter_map(|check| match check.subject {
-                Subject::Harness(harness) => Some(harness),
-                _ => None,
-            })
-            .collect()
-    }
 
     const LOG: &str = "\
 Kani Rust Verifier 0.67.0 (cargo plugin)
@@ -420,14 +445,10 @@ VERIFICATION:- FAILED
 Checking harness claims::a::ended...
 ";
 
-    fn hashes() -> BTreeMap<String, String> {
-        ["holds", "control_fails", "wrong", "slow", "ended"]
-            .map(|name| (name.to_owned(), format!("hash of {name}")))
-            .into()
-    }
-
     fn receipt() -> Receipt {
-        Receipt::from_log("2026-11-21", LOG, &hashes()).expect("a log")
+        let mut receipt = Receipt::from_log("2026-11-21", "c0ffee", LOG).expect("a log");
+        receipt.files = [("props/src/claims/a.rs".to_owned(), "0123".to_owned())].into();
+        receipt
     }
 
     #[test]
@@ -444,72 +465,74 @@ Checking harness claims::a::ended...
             (NoAnswer, "", ""),
         ];
         assert_eq!(found, expected);
-        let versions = [
-            "Kani Rust Verifier 0.67.0 (cargo plugin)",
-            "CBMC version 6.6.0 (cbmc-6.6.0) 64-bit x86_64 linux",
-        ];
-        assert_eq!(receipt.head, versions);
         let text = receipt.table().text();
-        assert!(text.contains("claims::a::control_fails\tshould_panic\tverified\t12.50\t35\t"));
+        assert!(text.contains("claims::a::control_fails\tshould_panic\tverified\t12.50\t35\n"));
         let read = |text: &str| Receipt::of(&Table::parse("2026-11-21", text)?);
         assert_eq!(read(&text), Ok(receipt));
         assert!(read(&text.replace("should_panic", "success")).is_err());
         assert!(read(&text.replace("verified", "perhaps")).is_err());
         assert!(read(&text.replace("\t12.50", "")).is_err());
+        assert!(read(&text.replace("# commit c0ffee\n", "")).unwrap_err().contains("commit"));
     }
 
     #[test]
     fn what_is_no_log_is_refused() {
-        let error = |log: &str| Receipt::from_log("", log, &hashes()).unwrap_err();
+        let error = |log: &str| Receipt::from_log("", "", log).unwrap_err();
         assert!(error("test result: ok").contains("output of cargo kani"));
-        assert!(error("Checking harness claims::b::gone...\n").contains("'claims::b::gone'"));
         assert!(error("Thread 0: Checking harness claims::a::holds...\n").contains("without -j"));
     }
 
     #[test]
-    fn a_receipt_stands_behind_the_sources_it_is_about_and_no_others() {
-        let receipts = [receipt()];
-        let of = |name: &str, sources: &str| Standing::of(name, sources, &receipts).to_string();
-        assert_eq!(of("holds", "hash of holds"), "verified by receipt 2026-11-21");
-        assert_eq!(of("holds", "another hash"), "never run since the sources changed");
-        assert_eq!(of("wrong", "hash of wrong"), "REFUTED by receipt 2026-11-21");
-        assert_eq!(of("slow", "hash of slow"), "no answer by receipt 2026-11-21");
-        assert_eq!(of("new", "hash of new"), "never run");
+    fn a_receipt_stands_behind_files_that_have_not_changed_and_no_others() {
+        let receipt = receipt();
+        let of = |path: &str, changed: &[&str]| {
+            receipt.standing(path, &changed.iter().map(|&file| file.to_owned()).collect::<Vec<_>>())
+        };
+        let verified = Standing::Answered(Answer::Verified);
+        assert_eq!(of("claims::a::holds", &[]), verified);
+        assert_eq!(of("claims::a::holds", &["props/src/claims/b.rs"]), verified);
+        assert_eq!(of("claims::a::holds", &["props/src/claims/a.rs"]), Standing::Changed);
+        assert_eq!(of("claims::a::holds", &["src/kernel/ball.rs"]), Standing::Changed);
+        assert_eq!(of("claims::b::holds", &[]), Standing::Changed);
+        assert_eq!(of("claims::a::wrong", &[]), Standing::Answered(Answer::Failed));
+        assert_eq!(of("claims::a::new", &[]), Standing::Never);
+        assert_eq!(receipt.changed(), ["props/src/claims/a.rs"]);
     }
 
     #[test]
-    fn a_verdict_counts_more_than_none_and_a_failure_most() {
-        let mut receipts = vec![receipt(); 3];
-        let slow =
-            |receipts: &[Receipt]| Standing::of("slow", "hash of slow", receipts).to_string();
-        receipts[1].runs[3].answer = Answer::Verified;
-        receipts[1].date = "2026-11-22".to_owned();
-        assert_eq!(slow(&receipts), "verified by receipt 2026-11-22");
-        receipts[0].runs[3].answer = Answer::Failed;
-        assert_eq!(slow(&receipts), "REFUTED by receipt 2026-11-21");
-    }
-
-    #[test]
-    fn every_receipt_names_a_harness_once_and_none_refutes_one() {
-        for receipt in stored().expect("receipts") {
-            let mut seen = BTreeSet::new();
-            for run in &receipt.runs {
-                let what = format!("receipt {}: {}", receipt.date, run.harness);
-                assert!(seen.insert(own_name(&run.harness)), "{what} is there twice");
-            }
+    fn the_receipt_has_the_hashes_of_its_commit_and_refutes_no_harness() {
+        let (receipt, _) = newest();
+        let mut seen = BTreeSet::new();
+        for run in &receipt.runs {
+            assert!(seen.insert(own_name(&run.harness)), "{} is there twice", run.harness);
+            assert!(run.answer != Answer::Failed, "{} is refuted", run.harness);
         }
-        for harness in harnesses() {
-            let standing = standing(&harness);
-            let refuted = matches!(standing, Standing::Answered(Answer::Failed, _));
-            assert!(!refuted, "{}: {standing}", harness.path());
+        assert!(receipt.files.keys().any(|file| file == "src/kernel/positive_part.rs"));
+        // A shallow clone and an unpacked archive do not have the commit.
+        if git(&["cat-file", "-e", &receipt.commit]).is_err() {
+            eprintln!("not compared with its files: this copy has no commit {}", receipt.commit);
+            return;
         }
+        let theirs = receipt.files_of_the_commit().expect("the files of the commit");
+        assert_eq!(receipt.files, theirs, "made by another program than props receipt");
+        let mut forged = receipt.clone();
+        forged.files.insert("src/kernel/positive_part.rs".to_owned(), hash("another file"));
+        assert_ne!(forged.files, theirs);
     }
 
     #[test]
-    fn the_harnesses_in_the_sources_are_those_of_the_claims_and_no_two_have_one_name() {
-        let sources = Sources::read(root()).expect("the sources").fingerprints();
-        let mut claimed: Vec<&str> = harnesses().iter().map(|harness| harness.name).collect();
-        claimed.sort_unstable();
-        assert!(claimed.len() > 50 && sources.keys().eq(&claimed), "{sources:?}\n{claimed:?}");
+    fn harnesses_stand_in_the_files_that_their_paths_name_and_no_two_have_one_name() {
+        let harnesses = claims::harnesses();
+        assert!(harnesses.len() > 50, "{}", harnesses.len());
+        let mut seen = BTreeSet::new();
+        for harness in &harnesses {
+            let file = file_of(&harness.path());
+            let text = std::fs::read_to_string(root().join(&file)).unwrap_or_default();
+            assert!(text.contains(&format!(" {}(", harness.name)), "{} in {file}", harness.name);
+            assert!(seen.insert(harness.name), "{} is there twice", harness.name);
+        }
+        // Flags change answers, and no receipt has them.
+        let manifest = std::fs::read_to_string(root().join("Cargo.toml")).expect("Cargo.toml");
+        assert!(!manifest.contains("metadata.kani"), "flags of Kani belong into the receipt");
     }
 }

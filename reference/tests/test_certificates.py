@@ -24,8 +24,8 @@ class Certificates(unittest.TestCase):
             check(text)
 
     def test_the_proof_is_accepted(self):
-        paths, refuted, classes = check(PROOF, "a_quotient_of_squares_is_not_negative")
-        self.assertEqual(classes, {"always"})
+        paths, refuted, digest = check(PROOF, "a_quotient_of_squares_is_not_negative")
+        self.assertRegex(digest, "^[0-9a-f]{16}$")
         self.assertEqual(paths, PROOF.count("\npath\n"))
         self.assertGreater(refuted, 0)
 
@@ -73,7 +73,7 @@ multiple 1 a | 0"""
         for text in (unsound, squares, unsound.replace("multiple 1 a | 0", "term 1 | 0 0 | 1 a^0")):
             self.refused(text, "multiple of an inequality|not zero|exponent")
         self.refused(PROOF.replace("1 a^2", "1 a^-2"), "exponent")
-        self.assertEqual(check(PROOF.replace("1 a^2", "1 a a")), check(PROOF))
+        self.assertEqual(check(PROOF.replace("1 a^2", "1 a a"))[:2], check(PROOF)[:2])
 
     def test_an_unknown_removed_from_the_head_is_noticed(self):
         self.refused(PROOF.replace("unknowns a b", "unknowns a"), "is no unknown")
@@ -85,13 +85,34 @@ multiple 1 a | 0"""
     def test_a_proof_without_a_path_that_holds_is_noticed(self):
         self.refused("statement a_theorem\nunknowns a b\npath\nvacuous", "no path holds")
 
-    def test_a_failing_path_relabelled_is_noticed_by_the_ledger(self):
+    def test_another_tree_is_noticed_by_the_ledger(self):
         name = "a_quotient_of_squares_is_not_negative"
         start = PROOF.index("fails ")
         end = PROOF.index("path\n", start)
+        paths, refuted, digest = check(PROOF, name)
+        # Signs of the first unknown, which say nothing, with as many paths, as many of them refuted and the same class.
+        nothing = f"""statement {name}
+unknowns a b
+path
+ask <= 1 a^2 + 1
+fails a
+fact >= -1 a^2 + -1
+term 1 | 0 |
+term 1 | | 1 a
+term 1 | |
+path
+ask > 1 a^2 + 1
+ask <= 1 a
+holds always
+path
+ask > 1 a^2 + 1
+ask > 1 a
+vacuous
+"""
+        self.assertEqual(check(nothing, name)[:2], (paths, refuted))
         with tempfile.TemporaryDirectory() as folder:
             ledger = Path(folder, "VERIFY.md")
-            ledger.write_text(f"- `{name}`: 3/1; always\n")
+            ledger.write_text(f"- [{name}](props/src/claims/a.rs#L7): {paths}/{refuted} {digest}, exact\n")
 
             def accepted(text):
                 Path(folder, f"{name}.proof").write_text(text)
@@ -102,5 +123,7 @@ multiple 1 a | 0"""
             for label in ("holds always", "vacuous"):
                 self.assertFalse(accepted(PROOF[:start] + label + "\n" + PROOF[end:]), label)
             self.assertFalse(accepted(PROOF.replace("holds always", "holds sometimes")))
-            ledger.write_text(ledger.read_text() + "- `another_theorem`: 1/0; always\n")
+            self.assertFalse(accepted(PROOF.replace("\nvacuous", "\nholds always", 1)))
+            self.assertFalse(accepted(nothing))
+            ledger.write_text(ledger.read_text() + f"- [another_theorem](a.rs#L1): 1/0 {digest}\n")
             self.assertFalse(accepted(PROOF))

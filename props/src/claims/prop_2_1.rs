@@ -183,6 +183,13 @@ fn within_7() -> Whole {
     Whole(i32::from(value))
 }
 
+/// u_n - g = m gamma, so that the division by gamma leaves nothing.
+pub(super) fn touching(within: fn() -> Whole) -> ContactPoint<Whole> {
+    let [m, gap, sigma_n, gamma] = [within(), within(), within(), within()];
+    assume(gamma > Whole(0));
+    ContactPoint { u_n: gap + m * gamma, gap, sigma_n, gamma }
+}
+
 harnesses! {
     /// No tension.
     holds scaled_equation_implies_no_tension_for_all_finite_doubles() {
@@ -285,6 +292,16 @@ harnesses! {
         let point = point([i32::from(u), i32::from(g), i32::from(s), 1].map(Whole));
         assert!(conditions_2(&point) == (point.violation().product == Whole(0)));
     }
+    /// Proposition 2.1 as printed, with the division, by the kernel's lambda^h.
+    holds conditions_2_are_equation_5_as_printed_within_7() {
+        let point = touching(within_7);
+        assert!(conditions_2(&point) == (point.sigma_n == point.pressure()));
+    }
+    /// The false twin: without 1/gamma.
+    fails control_conditions_2_are_equation_5_without_the_division_within_7([0.0, 0.0, -1.0, 2.0]) {
+        let point = touching(within_7);
+        assert!(conditions_2(&point) == (point.sigma_n == -signorini::kernel::positive_part(point.p())));
+    }
 }
 
 #[cfg(not(kani))]
@@ -319,10 +336,7 @@ mod row {
             id: "2",
             title: "Contact as one equation",
             paper: "Let gamma > 0. The contact conditions (2)(i)-(iii) on Gamma_C are equivalent to: sigma_n(u) = -(1/gamma)[u_n - gamma sigma_n(u)]+.",
-            statement: "With a gap g: u_n - g <= 0, sigma_n <= 0 and sigma_n (u_n - g) = 0 hold together exactly if sigma_n = -(1/gamma)[u_n - g - gamma sigma_n]+, the kernel's lambda^h. P, P0, lambda^h and the violation of (2) are their definitions. In doubles, with s = gamma sigma_n: (2) implies s = -[u - s]+; and s = -[u - s]+ implies s <= 0, u <= 0 where s = 0, and |u| <= 2^-52 |s| where s < 0.",
-            numbers: "every ordered field (proof); rationals; in doubles the scaled form only. Over doubles the equivalence as written is false; the counterexamples are kept.",
-            preconditions: "gamma > 0 (the paper's). The gap is ours; the paper has g = 0.",
-            limits: "One point of Gamma_C. That the traces u_n and sigma_n exist there is the regularity of the solution, which nothing here looks at. (2)(iv), no friction, is no equation of the kernel: the tangential traction is natural in (8).",
+            limits: "(2)(iv), no friction, is no equation of the kernel: the tangential traction is natural in (8).",
             single: None,
             checks: [
                 statements! {
@@ -349,7 +363,7 @@ mod row {
                     doubles!("a_displacement_below_rounding_is_kept" => kept_counterexample()),
                     doubles!("control_equation_5_as_written_in_doubles" => as_written()),
                 ],
-                model_checked(HARNESSES),
+                model_checked(HARNESSES, &["Proposition 2.1", "(5)"]),
             ]
             .concat(),
         }
@@ -361,9 +375,6 @@ mod row {
             id: "3",
             title: "gamma may be a function",
             paper: "Condition (5) is still equivalent to (2)(i)-(iii) on Gamma_C when gamma is a positive function defined on Gamma_C instead of a positive constant.",
-            statement: "(2) and (5) are conditions at each point, and gamma enters as a number of that point: Proposition 2.1 holds with any gamma > 0 there, and (5) with one gamma > 0 is (5) with any other.",
-            numbers: "every ordered field (proof); rationals.",
-            preconditions: "gamma > 0 at the point. It is needed: gamma < 0 and gamma = 0 are refuted by the controls.",
             limits: "Nothing about measurability of gamma: in the code it is constant on each edge, (7).",
             single: None,
             checks: statements! {

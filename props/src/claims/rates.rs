@@ -138,10 +138,7 @@ pub fn claim() -> Claim {
         id: "12",
         title: "Rates of convergence",
         paper: "|u - u^h|_1 + |gamma^1/2 (sigma_n(u) + (1/gamma)[P_gamma(u^h)]+)| <= C h^(1/2 + nu) |u|_(3/2 + nu), 0 < nu <= 1/2; the same rate for |gamma^1/2 sigma_n(u - u_h)|; for quadratic elements 0 < nu <= 3/2.",
-        statement: "Observed, not established: on the wedge of angle 3 pi/4, u in H^(1 + alpha), the energy, contact and normal stress errors of P1 and P2 fall at the rate alpha; at the end of contact, u in H^(5/2), the energy error at the rates 1 (P1) and 3/2 (P2). The whole study, more solutions and meshes, and the variants of the method that lose the rates: `cargo test --test suite convergence`, docs/convergence.md. The step from (13) with its constant to the rate of Corollary 3.6 is proved in row 11.",
-        numbers: "doubles: slopes fitted over four meshes of the solver, 4 to 32 cells a side.",
-        preconditions: "The regularity of the solution.",
-        limits: "An observed rate is no proof: for P1 and nu = 1/2 row 15 has the bound with its number; (22)-(24) for other nu are proved on the page (P1: docs/theory.md, 9.7) or taken from the literature (P2). The rates are those for lambda = mu = 1; at the end of contact, of the energy error only.",
+        limits: "An observed rate is no proof. The rates are those for lambda = mu = 1; at the end of contact, of the energy error only.",
         single: Some("A rate is a limit: it can be observed in floating point only."),
         checks: vec![
             doubles!("the_wedge_converges_at_the_rate_alpha" => wedge_rates_are(0.0)).about(&[

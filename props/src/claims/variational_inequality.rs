@@ -56,10 +56,7 @@ mod row {
             id: "16",
             title: "The variational inequality",
             paper: "Find u in K such that a(u, v - u) >= L(v - u) for all v in K, K = {v in V: v_n <= 0 on Gamma_C}.",
-            statement: "At a point of Gamma_C, sigma_n (v_n - u_n) >= 0 for all v_n <= g is equivalent to (2), given u_n <= g. On random bodies with an affine exact solution, a(u, w) - L(w) >= 0 for every shape function w of P1 with w_n <= 0 on Gamma_C, in both directions of both axes: so (3) holds for u + w, and for all sums of these with factors that are not negative.",
-            numbers: "every ordered field (proof); rationals.",
-            preconditions: "Green's formula, which row 4 checks on bodies.",
-            limits: "That (3) has one solution (Stampacchia) is taken from analysis; so is Green's formula, by which (3) for all v in K is the inequality at each point.",
+            limits: "Green's formula, by which (3) for all v in K is the inequality at each point, is taken from analysis.",
             single: None,
             checks: [
                 statements! {
@@ -72,7 +69,7 @@ mod row {
                     refuted control_sign_of_3_for_every_v[u_n, g, sigma_n, v_n] fails "s * (v - u) >= zero";
                 },
                 vec![
-                    exact!("inequality_3_holds_at_affine_solutions_on_random_bodies" => inequality_3_at_affine_solutions()).about(&["(3)"]),
+                    exact!("inequality_3_holds_at_affine_solutions_on_random_bodies" => inequality_3_at_affine_solutions()).about(&["(3)", "K"]),
                 ],
             ]
             .concat(),

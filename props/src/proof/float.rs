@@ -11,6 +11,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use signorini::kernel::Scalar;
 
 use crate::Verdict;
+use crate::statement::Statement;
 
 #[derive(Default)]
 struct Run {
@@ -156,6 +157,18 @@ impl Scalar for Float {
     ) -> Float {
         if self <= Float::from(0) { nonpositive(self) } else { positive(self) }
     }
+}
+
+/// The failing paths of a statement: the names of their files, and the problems. That of a statement that must hold is impossible; of
+/// a control one is not.
+pub fn in_doubles(statement: &Statement, control: bool) -> Vec<(String, String)> {
+    let (name, expected) = (statement.name, if control { "unknown" } else { "unsat" });
+    let problems = problems(statement.variables, statement.terms).into_iter().enumerate();
+    let with_names = |(i, problem): (usize, String)| {
+        let head = format!("; {name}, in doubles, path {i}\n; expected: {expected}\n");
+        (format!("{name}.double.{i}.smt2"), head + &problem)
+    };
+    problems.map(with_names).collect()
 }
 
 /// The problems of all paths of a predicate that end in `Fails`, for finite unknowns with these names.

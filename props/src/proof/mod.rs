@@ -12,13 +12,12 @@ pub mod rocq;
 pub mod sampler;
 pub mod search;
 mod simplex;
-pub mod smt;
 pub mod symbol;
 pub mod transcript;
 
 pub use float::Float;
 pub use symbol::Sym;
-pub use transcript::transcript;
+pub use transcript::{transcript, tree};
 
 use std::fmt::Write;
 
@@ -146,19 +145,6 @@ pub fn refute(statement: &Statement) -> Result<String, String> {
     match point {
         Some(point) => Ok(format!("rejected at {}: {conclusion}", place(statement, &point))),
         None => Err(format!("'{conclusion}' does not fail")),
-    }
-}
-
-/// Refuses a false statement: the engine does not prove it, and where it names a conclusion, that is what fails at a
-/// rational point.
-///
-/// # Errors
-/// That it is proved, or that its conclusion does not fail.
-pub fn refuse(statement: &Statement) -> Result<String, String> {
-    match (prove(statement), statement.conclusion) {
-        (Ok(said), _) => Err(format!("false, and proved: {said}")),
-        (Err(_), Some(_)) => refute(statement),
-        (Err(why), None) => Ok(format!("not proved: {why}")),
     }
 }
 
@@ -347,15 +333,5 @@ mod tests {
         assert!(refute(&second).unwrap().ends_with("a < S::from(2)"));
         let never = statement!(two_conclusions, [a], fails "a > S::from(1)");
         assert!(refute(&never).is_err());
-    }
-
-    #[test]
-    fn a_path_is_printed_as_an_smt_problem() {
-        let paths = explore(1, |v| a_square_is_positive(crate::statement::take(v)));
-        let zero = paths.iter().find(|p| p.verdict.fails()).unwrap();
-        let text = smt::problem(zero, &["a"], "; head\n");
-        let expected = "; head\n(set-logic QF_NRA)\n(declare-const a Real)\n\
-                        (assert (>= (* (- 1.0) a a) 0.0))\n(check-sat)\n";
-        assert_eq!(text, expected);
     }
 }

@@ -13,14 +13,15 @@
 //! multiple 1 a | 3                       a times fact 3, which is an equation
 //! ```
 //!
-//! `reference/check_certificates.py` checks that the questions of all paths are a tree whose answers leave no sign out, that
+//! The lines without `fact`, `term` and `multiple` are the tree, whose hash VERIFY.md has. `reference/check_certificates.py` checks that
+//! hash, that the questions of all paths are a tree whose answers leave no sign out, that
 //! the facts follow from the answers, and that each certificate is one. What it does not check is that the polynomials are
 //! those of the predicate: for this the exploration is trusted.
 
 use std::fmt::Write;
 
 use super::certificate::Certificate;
-use super::explorer::Path;
+use super::explorer::{Path, explore};
 use super::symbol::Step;
 use super::{Fate, analyse};
 use crate::Verdict;
@@ -32,24 +33,42 @@ use crate::statement::Statement;
 /// The first path that fails and is not refuted.
 pub fn transcript(statement: &Statement) -> Result<String, String> {
     let analysis = analyse(statement);
+    let mut fates = analysis.fates.iter();
+    written(statement, &analysis.paths, |path, text| match fates.next() {
+        Some((_, Fate::Impossible(certificate))) => {
+            contradiction(path, certificate, &path.names(statement.variables), text);
+            Ok(())
+        }
+        _ => Err(format!("{}: {:?} is not proved", statement.name, path.verdict)),
+    })
+}
+
+/// The paths of a proof and those that fail; and its tree, the same text without facts and certificates: what is proved, whoever
+/// wrote the certificates.
+pub fn tree(statement: &Statement) -> ([usize; 2], String) {
+    let paths = explore(statement.variables.len(), statement.symbolic);
+    let failing = paths.iter().filter(|path| path.verdict.fails()).count();
+    let text = written(statement, &paths, |_, _| Ok(())).unwrap_or_default();
+    ([paths.len(), failing], text)
+}
+
+fn written(
+    statement: &Statement,
+    paths: &[Path],
+    mut refute: impl FnMut(&Path, &mut String) -> Result<(), String>,
+) -> Result<String, String> {
     let variables = statement.variables.join(" ");
     let mut text = format!("statement {}\nunknowns {variables}\n", statement.name);
-    let mut fates = analysis.fates.iter();
-    for path in &analysis.paths {
-        let names = path.names(statement.variables);
-        steps(path, &names, &mut text);
-        let _ = match path.verdict {
-            Verdict::Holds(class) => writeln!(text, "holds {class}"),
-            Verdict::Vacuous => writeln!(text, "vacuous"),
+    for path in paths {
+        steps(path, &path.names(statement.variables), &mut text);
+        match path.verdict {
+            Verdict::Holds(class) => text += &format!("holds {class}\n"),
+            Verdict::Vacuous => text += "vacuous\n",
             Verdict::Fails(conclusion) => {
-                let Some((_, Fate::Impossible(certificate))) = fates.next() else {
-                    return Err(format!("{}: {conclusion} is not proved", statement.name));
-                };
-                let _ = writeln!(text, "fails {}", conclusion.replace('\n', " "));
-                contradiction(path, certificate, &names, &mut text);
-                Ok(())
+                text += &format!("fails {}\n", conclusion.replace('\n', " "));
+                refute(path, &mut text)?;
             }
-        };
+        }
     }
     Ok(text)
 }
@@ -118,5 +137,18 @@ mod tests {
     fn what_is_not_proved_has_no_transcript() {
         let why = transcript(&statement!(a_square_is_positive, [a], ["always"])).unwrap_err();
         assert!(why.contains("is not proved"), "{why}");
+    }
+
+    #[test]
+    fn a_tree_is_the_proof_without_facts_and_certificates() {
+        let statement = statement!(a_quotient_of_squares_is_not_negative, [a, b], ["always"]);
+        let text = transcript(&statement).unwrap();
+        let of_tree =
+            |line: &&str| !["fact ", "term ", "multiple "].iter().any(|w| line.starts_with(w));
+        let lines: String = text.lines().filter(of_tree).map(|line| format!("{line}\n")).collect();
+        let ([paths, failing], tree) = tree(&statement);
+        assert_eq!(tree, lines);
+        assert_eq!(paths, text.matches("path\n").count());
+        assert!(failing > 0 && failing == text.matches("\nfails ").count());
     }
 }

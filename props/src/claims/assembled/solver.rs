@@ -10,7 +10,7 @@ use signorini::solve::{
 use super::definition::Named;
 
 /// The report that goes with a displacement that nothing was solved for.
-pub(in crate::claims) fn unsolved() -> Report {
+pub fn unsolved() -> Report {
     let newton = NewtonReport {
         status: Status::Converged,
         residuals: Vec::new(),

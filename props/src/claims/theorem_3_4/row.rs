@@ -46,10 +46,7 @@ pub fn claim() -> Claim {
         id: "11",
         title: "The abstract error estimate, with its constant",
         paper: "The solution u^h satisfies |u - u^h|_1 + |gamma^1/2 (sigma_n(u) + [P(u^h)]+/gamma)| <= C inf over v^h of (|u - v^h|_1 + |gamma^-1/2 (u_n - v_n^h)| + |gamma^1/2 sigma_n(u - v^h)|), gamma0 sufficiently small.",
-        statement: "With kappa < 1 and delta = 1 - kappa: |u - u^h|_a^2 + |z|_g^2 / delta <= (2/delta) [(1/delta + kappa + 1/2) |eta|_a^2 + kappa (1/delta + 1/2) |sigma_n(eta)|_g^2 + 1/2 |gamma^-1/2 P0(eta)|^2]. The identity for a(e, w), the pointwise inequality for z, Young's steps and the combination are proved one by one; so are (14) whole, (15), (16), (17) and (18) with the missing factor gamma, (19) with constants, (20), and the last estimate of the proof with what it says for beta_1 = beta_2 = 2. The steps are linked: what the raw facts leave is, by one function, the hypothesis of the three facts' combination, and what that concludes is the hypothesis of the theorem.",
-        numbers: "every ordered field (proof); rationals; doubles for the errors that the solver makes on exact solutions. Square roots enter as data: k with kappa = k^2, norms with their squares.",
-        preconditions: "gamma > 0, 0 <= kappa < 1; (5) at the exact solution; (8) for the discrete one; the Cauchy-Schwarz inequalities and (11) of the norms.",
-        limits: "The integrals are numbers here: that they exist, Green's formula and the Cauchy-Schwarz inequality are hypotheses. The computed errors are those of two solutions on one mesh each; `cargo test --test suite convergence` has many more. C in the paper's (13) is in other norms; Korn's constant is not computed (in row 15 it is the unknown alpha).",
+        limits: "The computed errors are those of two solutions on one mesh each; `tests/suite/convergence.rs` has many more. Korn's constant is not computed (in row 15 it is the unknown alpha).",
         single: None,
         checks: [
             statements! {

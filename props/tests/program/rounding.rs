@@ -12,10 +12,10 @@ use signorini::solve::factor::Factor;
 use signorini::solve::system::System;
 use signorini::solve::{Method, discretize};
 
-use crate::claim::{Outcome, text};
-use crate::problems::{constant, held};
-use crate::proof::sampler::Random;
-use crate::{draws, sharpness};
+use props::claim::{Outcome, text};
+use props::problems::{constant, held};
+use props::proof::sampler::Random;
+use props::{draws, sharpness};
 
 /// The small bodies of row 9 under a load and a displacement of their upper side, half of them pressed on their obstacle.
 fn loaded_bodies() -> Result<Vec<(String, Problem)>, String> {
@@ -77,7 +77,7 @@ fn rounding_of_stresses(degree: Degree, problem: &Problem, by: f64) -> Result<f6
 }
 
 /// The rounding of stresses is at most `scale` times its bound.
-pub(super) fn stresses_are_off(scale: f64) -> Outcome {
+pub fn stresses_are_off(scale: f64) -> Outcome {
     let bodies = loaded_bodies()?;
     let mut most = 0.0_f64;
     for (name, problem) in &bodies {

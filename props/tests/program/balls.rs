@@ -9,10 +9,10 @@ use signorini::kernel::PreciseBall;
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Ball, Enclosing, P1, positive_part};
 
-use crate::claim::Outcome;
-use crate::numbers::Exact;
-use crate::verdict::Verdict;
-use crate::{draws, ensure};
+use props::claim::Outcome;
+use props::numbers::Exact;
+use props::verdict::Verdict;
+use props::{draws, ensure};
 
 /// Two pairs of doubles and two relative widths.
 type Draw = ([f64; 4], [f64; 2]);
@@ -87,7 +87,7 @@ fn fine_balls(&([a, b, c, d], [r, s]): &Draw, share: f64) -> Verdict {
     Verdict::Holds("wide")
 }
 
-/// Row 13: balls of twice the precision.
+/// Balls of twice the precision.
 pub fn fine_balls_contain_the_exact_results() -> Outcome {
     draws::hold(1000, data(), &["numbers", "wide"], |draw| fine_balls(draw, 1.0))
 }
@@ -154,7 +154,7 @@ fn centres(&([a, _, c, _], [r, s]): &Draw) -> Verdict {
     Verdict::Holds("within")
 }
 
-/// Row 13: balls of either precision.
+/// Balls of either precision.
 pub fn balls_contain_the_exact_results() -> Outcome {
     let classes = ["numbers", "wide"];
     let single = draws::hold(1500, data(), &classes, balls::<Ball>)?;
@@ -197,7 +197,7 @@ fn chain<S: Enclosing>(&(start, divisors, radius, radii): &Chain, around: fn(f64
     Verdict::Holds("always")
 }
 
-/// Row 13: chains of balls.
+/// Chains of balls.
 pub fn chains_of_balls_contain_the_exact_results() -> Outcome {
     draws::hold(300, chains(), &["always"], |data| chain(data, |r| Ball::around(0.0, r)))
 }
@@ -230,7 +230,7 @@ fn moments_of(draw: &Draw, share: f64) -> Verdict {
     })
 }
 
-/// Row 13: the contact terms in balls.
+/// The contact terms in balls.
 pub fn moments_of_balls_contain_those_of_their_numbers() -> Outcome {
     let classes = ["balls, cut", "balls, not cut", "points"];
     draws::hold(300, data(), &classes, |draw| moments_of(draw, 1.0))
@@ -271,7 +271,7 @@ fn double_doubles() -> impl Strategy<Value = [f64; 4]> {
     [size(), size(), size(), size()]
 }
 
-/// Row 13: numbers of twice the precision keep 100 bits.
+/// Numbers of twice the precision keep 100 bits.
 pub fn double_doubles_keep_a_hundred_bits() -> Outcome {
     draws::hold(500, double_doubles(), &["one sign", "two signs"], |draw| double_double(draw, -100))
 }
@@ -279,4 +279,17 @@ pub fn double_doubles_keep_a_hundred_bits() -> Outcome {
 /// To 120 bits they are not exact.
 pub fn double_doubles_keep_120_bits() -> Outcome {
     draws::reject(double_doubles(), |draw| double_double(draw, -120))
+}
+
+checks! {
+    double_doubles_keep_a_hundred_bits => double_doubles_keep_a_hundred_bits();
+    operations_of_balls_contain_the_exact_results => balls_contain_the_exact_results();
+    chains_of_balls_contain_the_exact_results => chains_of_balls_contain_the_exact_results();
+    control_chains_of_doubles_are_exact => chains_of_doubles_are_exact();
+    operations_of_balls_of_twice_the_precision_contain_the_exact_results => fine_balls_contain_the_exact_results();
+    moments_of_balls_contain_those_of_their_numbers => moments_of_balls_contain_those_of_their_numbers();
+    control_moments_of_balls_within_a_twentieth_of_them => moments_of_balls_within_a_twentieth_of_them();
+    control_doubles_for_balls => doubles_contain_the_exact_results();
+    control_centres_for_balls_of_twice_the_precision => centres_contain_the_exact_results();
+    control_double_doubles_keep_120_bits => double_doubles_keep_120_bits();
 }

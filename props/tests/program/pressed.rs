@@ -20,10 +20,10 @@ use signorini::solve::balls::pieces;
 use signorini::solve::pressed::{Pressed, SHARES};
 use signorini::solve::{Degree, Method, Settings, solve};
 
-use crate::claim::{Outcome, text};
-use crate::draws;
-use crate::problems::{cells, constant, floor, mapped, problem};
-use crate::proof::sampler::Random;
+use props::claim::{Outcome, text};
+use props::draws;
+use props::problems::{cells, constant, floor, mapped, problem};
+use props::proof::sampler::Random;
 
 /// A square on its floor under its weight.
 fn square() -> Result<Problem, String> {
@@ -158,7 +158,7 @@ fn stays_on(degree: Degree, rule: EdgeRule, times: f64) -> Result<[usize; 2], St
 }
 
 /// On balls that are larger by a factor.
-pub(super) fn stays(times: f64) -> Outcome {
+pub fn stays(times: f64) -> Outcome {
     let mut sum = [0, 0];
     for seen in [
         stays_on(Degree::One, EdgeRule::Exact, times)?,
@@ -227,7 +227,7 @@ fn holds_on(degree: Degree, rule: EdgeRule, kappa: f64, share: f64) -> Result<f6
 }
 
 /// With a share of the bounds.
-pub(super) fn holds(share: f64) -> Outcome {
+pub fn holds(share: f64) -> Outcome {
     let mut nearest: f64 = 0.0;
     for kappa in [1e-6, 0.1, 0.5, 0.9] {
         for degree in [Degree::One, Degree::Two] {
@@ -265,7 +265,7 @@ fn springs_on(degree: Degree, scale: f64) -> Result<(), String> {
     Ok(())
 }
 
-pub(super) fn springs(scale: f64) -> Outcome {
+pub fn springs(scale: f64) -> Outcome {
     springs_on(Degree::One, scale)?;
     springs_on(Degree::Two, scale)?;
     Ok("five rules, P1 and P2".to_owned())
@@ -296,7 +296,7 @@ fn solves(problem: &Problem, degree: Degree, u: &[[f64; 2]]) -> Result<bool, Str
 
 /// Where walls that a body does not press leave it room, the displacement that is given, and that moved by `share` of what it may
 /// move, solve (8), and the former is enclosed.
-pub(super) fn room(share: f64) -> Outcome {
+pub fn room(share: f64) -> Outcome {
     let mut ends = 0;
     for angle in [0.0, 0.7] {
         for gaps in [

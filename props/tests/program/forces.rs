@@ -9,13 +9,12 @@ use signorini::certify::proof::{Certificate, Lift, Role};
 use signorini::kernel::Ball;
 use signorini::nalgebra::Vector2;
 
-use super::by_hand::{self, draws_of, sixteenth, to_double};
-use crate::bodies::whole;
-use crate::claim::Check;
-use crate::naive::{Hooke, Line, Tensor, integral_of_affine};
-use crate::numbers::Exact;
-use crate::verdict::Verdict;
-use crate::{draws, ensure};
+use crate::by_hand::{self, draws_of, sixteenth, to_double};
+use props::bodies::whole;
+use props::naive::{Hooke, Line, Tensor, integral_of_affine};
+use props::numbers::Exact;
+use props::verdict::Verdict;
+use props::{draws, ensure};
 
 /// A certificate with what is to prove a force of it, in sixteenths.
 #[derive(Clone, Debug)]
@@ -481,18 +480,8 @@ const CLASSES: [&str; 5] = [
     "off where nothing covers it",
 ];
 
-/// The checks of row 26.
-pub(in crate::claims) fn checks() -> [Check; 3] {
-    [
-        exact!("forces_are_between_the_numbers_of_their_definitions" => {
-            draws::hold(200, drawn(), &CLASSES, |draw| forces_by_definition(draw, Mistake::None))
-        })
-        .about(&["the error bound"]),
-        exact!("control_forces_by_nine_tenths_of_the_norm" => {
-            draws::reject(drawn(), |draw| forces_by_definition(draw, Mistake::ShortNorm))
-        }),
-        exact!("control_nine_tenths_of_the_product_with_a_dual_pair" => {
-            draws::reject(drawn(), |draw| forces_by_definition(draw, Mistake::ShortProduct))
-        }),
-    ]
+checks! {
+    forces_are_between_the_numbers_of_their_definitions => { draws::hold(200, drawn(), &CLASSES, |draw| forces_by_definition(draw, Mistake::None)) };
+    control_forces_by_nine_tenths_of_the_norm => { draws::reject(drawn(), |draw| forces_by_definition(draw, Mistake::ShortNorm)) };
+    control_nine_tenths_of_the_product_with_a_dual_pair => { draws::reject(drawn(), |draw| forces_by_definition(draw, Mistake::ShortProduct)) };
 }

@@ -5,12 +5,12 @@
 use proptest::prelude::*;
 use signorini::study::{Errors, a_priori};
 
-use crate::claim::Claim;
-use crate::claims::rates;
-use crate::claims::theorem_3_4::scaled_sides;
-use crate::numbers::Exact;
-use crate::verdict::{Ordered, Verdict};
-use crate::{draws, ensure, given};
+use props::claims::rates;
+use props::claims::theorem_3_4::scaled_sides;
+use props::numbers::Exact;
+use props::proof::{prove, refute};
+use props::verdict::{Ordered, Verdict};
+use props::{draws, ensure, given, statement};
 
 /// Theorem 3.4, divided by delta^2, has the right side that the solver prints.
 pub fn plain_bound_is_that_of_theorem_3_4<S: Ordered>([e, h, z, s, q, k]: [S; 6]) -> Verdict {
@@ -43,7 +43,7 @@ pub fn sharp_bound_is_that_of_theorem_9_3<S: Ordered>([h, s, k]: [S; 3]) -> Verd
 /// [`three_facts_give_the_hypothesis_of_theorem_3_4`]: delta E^2 + Z^2 <= b E + Q Z + c with the solver's b and c, and what
 /// Theorem 9.1 starts from is no smaller.
 ///
-/// [`three_facts_give_the_hypothesis_of_theorem_3_4`]: super::theorem_3_4::three_facts_give_the_hypothesis_of_theorem_3_4
+/// [`three_facts_give_the_hypothesis_of_theorem_3_4`]: props::claims::theorem_3_4::three_facts_give_the_hypothesis_of_theorem_3_4
 pub fn three_facts_give_inequality_9_6<S: Ordered>(
     [e, h, z, s, big, k, c, d, q, r, t]: [S; 11],
 ) -> Verdict {
@@ -208,40 +208,19 @@ fn called(&[kappa, e, z, h, s, q]: &Draw, spoil: impl Fn(Exact) -> Exact) -> Ver
     })
 }
 
-/// The row of the bounds.
-pub fn claim() -> Claim {
-    Claim {
-        id: "17",
-        title: "The bounds that the solver prints",
-        paper: "The right sides of Theorem 3.4 and of Corollary 3.6, with C.",
-        statement: "The functions of `study::a_priori`, by which the solver prints the bounds of Theorem 3.4 (plain, and for the a-orthogonal projection of u) and Corollary 3.6, are the right sides that rows 11 and docs/theory.md, 9 prove, over symbols; the terms b and c of the sharp bound are those of Theorem 9.3, whose inequality [9.6] follows from the facts of the proof of Theorem 3.4, and the bound [9.5] from [9.6]; the hypothesis of Theorem 9.4 likewise, whose projection is nearer to the solution in the energy norm than u^h and than the interpolant. In doubles, squared, each is within 64 roundings of the same function over rationals, the root of kappa in Corollary 3.6 is a root, and the sharp bound is a root of its quadratic equation.",
-        numbers: "every ordered field (proof), with k = kappa^(1/2) as data; doubles against rationals.",
-        preconditions: "0 <= kappa < 1; the hypotheses of row 11.",
-        limits: "The norms that are put in are those of row 12's quadrature.",
-        single: None,
-        checks: [
-            statements! {
-                proved plain_bound_is_that_of_theorem_3_4[e, h, z, s, q, k] about "Theorem 3.4";
-                proved + tested sharp_bound_is_that_of_theorem_9_3[h, s, k]: "kappa above 1/2", "kappa at most 1/2";
-                proved projected_bound_is_that_of_theorem_9_4[w, z, h, s, q, k];
-                proved corollary_bound_is_that_of_corollary_3_6[x, s, r, w, e, h, k] about "Corollary 3.6";
-                proved three_facts_give_inequality_9_6[e, h, z, s, big, k, c, d, q, r, t] about "Theorem 3.4";
-                proved three_facts_give_the_hypothesis_of_theorem_9_4[w, z, s, big, k, d, q, r, t];
-                proved the_right_side_of_9_6_is_bounded_by_the_left_one[e, z, b, q, delta]
-                    hints(|v| vec![v[2] * v[1] - v[3] * v[4] * v[0]]);
-                proved inequality_9_6_gives_the_sharp_bound_9_5[l, c, x, r, w, m]: "c = 0", "c > 0"
-                    about "Theorem 3.4";
-                refuted control_kappa_for_its_root_in_corollary_3_6[s, e, h, k]
-                    fails "s + k * (e + h) <= a_priori::corollary_bound(k * k, e, [h, s])";
-                refuted control_9_5_with_half_the_constant[c, x, r, w] fails "x <= (r + w) / S::from(2)";
-            },
-            vec![
-                doubles!("the_bounds_that_the_solver_calls_are_roots_of_these" => draws::hold(400, numbers(), &["always"], |draw| called(draw, |kappa| kappa))),
-                doubles!("control_kappa_for_its_root_in_doubles" => draws::reject(numbers(), |draw| called(draw, |kappa| kappa * kappa))),
-                doubles!("the_projection_is_nearer_than_the_discrete_solution_and_the_interpolant" => rates::projection_is_the_nearest()),
-                doubles!("control_the_interpolant_is_as_near_as_the_projection" => rates::interpolant_is_as_near()),
-            ],
-        ]
-        .concat(),
-    }
+checks! {
+    plain_bound_is_that_of_theorem_3_4 => prove(&statement!(plain_bound_is_that_of_theorem_3_4, [e, h, z, s, q, k], ["always"]));
+    sharp_bound_is_that_of_theorem_9_3 => prove(&statement!(sharp_bound_is_that_of_theorem_9_3, [h, s, k], ["kappa above 1/2", "kappa at most 1/2"]));
+    projected_bound_is_that_of_theorem_9_4 => prove(&statement!(projected_bound_is_that_of_theorem_9_4, [w, z, h, s, q, k], ["always"]));
+    corollary_bound_is_that_of_corollary_3_6 => prove(&statement!(corollary_bound_is_that_of_corollary_3_6, [x, s, r, w, e, h, k], ["always"]));
+    three_facts_give_inequality_9_6 => prove(&statement!(three_facts_give_inequality_9_6, [e, h, z, s, big, k, c, d, q, r, t], ["always"]));
+    three_facts_give_the_hypothesis_of_theorem_9_4 => prove(&statement!(three_facts_give_the_hypothesis_of_theorem_9_4, [w, z, s, big, k, d, q, r, t], ["always"]));
+    the_right_side_of_9_6_is_bounded_by_the_left_one => prove(&statement!(the_right_side_of_9_6_is_bounded_by_the_left_one, [e, z, b, q, delta], ["always"]).with_hints(|v| vec![v[2] * v[1] - v[3] * v[4] * v[0]]));
+    inequality_9_6_gives_the_sharp_bound_9_5 => prove(&statement!(inequality_9_6_gives_the_sharp_bound_9_5, [l, c, x, r, w, m], ["c = 0", "c > 0"]));
+    control_kappa_for_its_root_in_corollary_3_6 => refute(&statement!(control_kappa_for_its_root_in_corollary_3_6, [s, e, h, k], fails "s + k * (e + h) <= a_priori::corollary_bound(k * k, e, [h, s])"));
+    control_9_5_with_half_the_constant => refute(&statement!(control_9_5_with_half_the_constant, [c, x, r, w], fails "x <= (r + w) / S::from(2)"));
+    the_bounds_that_the_solver_calls_are_roots_of_these => draws::hold(400, numbers(), &["always"], |draw| called(draw, |kappa| kappa));
+    control_kappa_for_its_root_in_doubles => draws::reject(numbers(), |draw| called(draw, |kappa| kappa * kappa));
+    the_projection_is_nearer_than_the_discrete_solution_and_the_interpolant => rates::projection_is_the_nearest();
+    control_the_interpolant_is_as_near_as_the_projection => rates::interpolant_is_as_near();
 }

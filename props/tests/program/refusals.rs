@@ -7,8 +7,8 @@ use signorini::certify::Rejection::{
 use signorini::certify::proof::{Certificate, Claim as Said, Edge, Role};
 use signorini::kernel::{Ball, Material, Plane, PreciseBall};
 
-use super::by_hand::{Draw, supported};
-use crate::claim::{Outcome, text};
+use crate::by_hand::{Draw, supported};
+use props::claim::{Outcome, text};
 
 /// One thing that the theorem does not allow, how it is planted, and whether this is the reason.
 type Tampering = (&'static str, fn(&mut Certificate), fn(&Rejection) -> bool);
@@ -240,7 +240,7 @@ fn refused_out_of_balance(unbalanced: &Certificate) -> Result<(), String> {
 }
 
 /// Every tampering is refused, for its own reason; without one the certificate is accepted.
-pub(super) fn refusals(tamper: bool) -> Outcome {
+pub fn refusals(tamper: bool) -> Outcome {
     let good = example().certificate();
     refused(&good, TAMPERINGS, tamper)?;
     let quadratic = quadratic_example().certificate();
@@ -308,7 +308,7 @@ const SUPPORT_TAMPERINGS: &[Tampering] = tamperings! {
 };
 
 /// Every tampering with supports is refused, and a bulge and a traction that are off by 1e-9.
-pub(super) fn refusals_of_supports(tamper: bool) -> Outcome {
+pub fn refusals_of_supports(tamper: bool) -> Outcome {
     for draw in [example(), quadratic_example()] {
         let mut pulled = supported(&draw);
         refused(&pulled, SUPPORT_TAMPERINGS, tamper)?;

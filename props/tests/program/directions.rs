@@ -17,14 +17,14 @@ use signorini::kernel::triangle::on_edge;
 use signorini::kernel::{ContactEdge, Element, Material, P1, P2, Plane, Stress};
 use signorini::nalgebra::{Matrix2, Vector2};
 
-use crate::bodies::{Body, Definition, Draw, bodies, sum};
-use crate::claim::{Claim, Outcome};
-use crate::claims::geometry;
-use crate::draws;
-use crate::numbers::Exact;
-use crate::statement::take;
-use crate::verdict::{Ordered, Verdict};
-use crate::{ensure, given};
+use props::bodies::{Body, Definition, Draw, bodies, sum};
+use props::claim::Outcome;
+use props::draws;
+use props::numbers::Exact;
+use props::proof::{prove, refute};
+use props::statement::take;
+use props::verdict::{Ordered, Verdict};
+use props::{ensure, given, statement};
 
 // The direction of contact, at a point.
 
@@ -356,44 +356,16 @@ pub fn means_by_hats_keep_integral_and_bounds<S: Ordered>([s, t, v, w, m]: [S; 5
     Verdict::Holds("always")
 }
 
-/// The row.
-pub fn claim() -> Claim {
-    Claim {
-        id: "20",
-        title: "Beyond the paper: the direction of contact as a field, materials, recovered pressures",
-        paper: "Gamma_C is a straight segment in the paper, so its normal is constant; the proof of (11) takes A as constant on each triangle; the pressure is lambda^h.",
-        statement: "With unit vectors n~ at the nodes of Gamma_C in place of n, and s(v) = n~ . sigma(v) n in place of sigma_n (docs/theory.md, 2.1): |n~ . sigma n|^2 <= (lambda + 2 mu) sigma:eps for vectors of any length, scaled, with lambda as it acts in the plane: lambda* in plane stress, for which row 9 proves lambda* + mu > 0. On an edge along which n~ turns by an angle with the cosine c >= 0, int s^2 <= (2 - c) int |sigma n|^2 for an affine traction (P2), a factor that is attained, and 1 for a constant one (P1); so (11) holds with an edge counted 2 - c times. The kernel's functionals are n~ . v - gamma s(v) and s(v) by their definitions; with n~ = n they are the paper's over rationals. Gap and direction of a plane, of a circle from outside and inside, and of a distance by its values lead to a point of the obstacle, and grow and stay one step back; a distance whose gradient is off by more than a tenth is refused. On a circle with unequal facets the normals and the middles of the curves are those of the circle. A bar of two materials, each with its own in its triangles, has one pressure in both. The nodal contact pressure is the mean of -lambda^h weighted by hats that are not negative and add up to one: it is between 0 and the largest -lambda^h, and its integral is that of -lambda^h.",
-        numbers: "every ordered field (proof); random bodies over rationals; doubles.",
-        preconditions: "mu > 0 and lambda + mu > 0 with lambda as it acts in the plane. n~ turns by no more than a right angle along an edge: by less than 40 degrees where the line is smooth, by definition.",
-        limits: "Peaks and orders of recovered pressures are measured (tests/suite/peaks.rs, parts.rs, recovered.rs), not proved.",
-        single: None,
-        checks: [
-            statements! {
-                proved traction_of_a_shape_is_d_sigma_n[gx, gy, vx, vy, nx, ny, dx, dy, lambda, mu];
-                proved traction_along_any_direction_is_bounded_by_the_energy[xx, xy, yx, yy, nx, ny, dx, dy, lambda, mu]
-                    hints(|v| across_and_strains(take(v)).to_vec());
-                proved traction_along_a_turning_direction_is_bounded_by_its_factor[a, b, s1, r, c, s]
-                    about "Lemma 3.2", "(11)" hints(|v| squared(take(v)).to_vec());
-                proved the_turning_factor_is_attained[a, c, s];
-                proved traction_of_p1_needs_no_factor[a, b, c, s] about "Lemma 3.2", "(11)"
-                    hints(|v| { let [a, b, c, s] = take(v); vec![a - (a * c + b * s), b * c - a * s] });
-                proved a_bar_of_two_materials_has_one_pressure[p, lambda, mu, other, nu];
-                proved means_by_hats_keep_integral_and_bounds[s, t, v, w, m];
-                refuted control_shear_modulus_for_the_stiffness[xx, yy, dx, dy, lambda, mu]
-                    fails "along * along <= (dx * dx + dy * dy) * mu * energy_density(stress, g)";
-                refuted control_no_factor_for_a_turning_direction[a, b, s1, r, c, s] fails "along <= whole";
-            },
-            vec![
-                exact!("functionals_along_directions_are_their_definitions_and_with_n_the_papers" => functionals_are_their_definitions()),
-                exact!("bound_11_holds_along_turning_directions" => the_bound_11_holds()).about(&["Lemma 3.2", "(11)"]),
-                doubles!("gaps_and_directions_of_obstacles_are_their_definitions" => geometry::obstacles_are_their_definitions()),
-                doubles!("the_smooth_boundary_of_a_circle_is_the_circle" => geometry::smooth_boundaries_are_exact_on_circles()),
-                doubles!("middles_of_smooth_boundaries_have_the_normals_of_their_curves" => geometry::middles_of_smooth_boundaries_have_the_normals_of_their_curves()),
-                doubles!("control_normals_of_facets_for_those_of_the_curves" => geometry::normals_of_facets_for_those_of_the_curves()),
-                doubles!("control_directions_away_from_the_obstacle" => geometry::directions_away_from_the_obstacle()),
-                doubles!("control_middles_of_facets_for_those_of_the_curves" => geometry::middles_of_facets_for_those_of_the_curves()),
-            ],
-        ]
-        .concat(),
-    }
+checks! {
+    traction_of_a_shape_is_d_sigma_n => prove(&statement!(traction_of_a_shape_is_d_sigma_n, [gx, gy, vx, vy, nx, ny, dx, dy, lambda, mu], ["always"]));
+    traction_along_any_direction_is_bounded_by_the_energy => prove(&statement!(traction_along_any_direction_is_bounded_by_the_energy, [xx, xy, yx, yy, nx, ny, dx, dy, lambda, mu], ["always"]).with_hints(|v| across_and_strains(take(v)).to_vec()));
+    traction_along_a_turning_direction_is_bounded_by_its_factor => prove(&statement!(traction_along_a_turning_direction_is_bounded_by_its_factor, [a, b, s1, r, c, s], ["always"]).with_hints(|v| squared(take(v)).to_vec()));
+    the_turning_factor_is_attained => prove(&statement!(the_turning_factor_is_attained, [a, c, s], ["always"]));
+    traction_of_p1_needs_no_factor => prove(&statement!(traction_of_p1_needs_no_factor, [a, b, c, s], ["always"]).with_hints(|v| { let [a, b, c, s] = take(v); vec![a - (a * c + b * s), b * c - a * s] }));
+    a_bar_of_two_materials_has_one_pressure => prove(&statement!(a_bar_of_two_materials_has_one_pressure, [p, lambda, mu, other, nu], ["always"]));
+    means_by_hats_keep_integral_and_bounds => prove(&statement!(means_by_hats_keep_integral_and_bounds, [s, t, v, w, m], ["always"]));
+    control_shear_modulus_for_the_stiffness => refute(&statement!(control_shear_modulus_for_the_stiffness, [xx, yy, dx, dy, lambda, mu], fails "along * along <= (dx * dx + dy * dy) * mu * energy_density(stress, g)"));
+    control_no_factor_for_a_turning_direction => refute(&statement!(control_no_factor_for_a_turning_direction, [a, b, s1, r, c, s], fails "along <= whole"));
+    functionals_along_directions_are_their_definitions_and_with_n_the_papers => functionals_are_their_definitions();
+    bound_11_holds_along_turning_directions => the_bound_11_holds();
 }

@@ -15,10 +15,10 @@ use signorini::solve::factor::Factor;
 use signorini::solve::system::System;
 use signorini::solve::{Degree, Method, discretize};
 
-use crate::claim::{Outcome, text};
-use crate::problems::mesh;
-use crate::verdict::Verdict;
-use crate::{draws, ensure, sharpness};
+use props::claim::{Outcome, noticed, text};
+use props::problems::mesh;
+use props::verdict::Verdict;
+use props::{draws, ensure, sharpness};
 
 /// `factor` times the distance from a circle, whose gradient has the length `factor`.
 struct Round {
@@ -91,7 +91,7 @@ fn places() -> impl Strategy<Value = Seen> {
     )
 }
 
-/// Row 20: obstacles.
+/// obstacles.
 pub fn obstacles_are_their_definitions() -> Outcome {
     draws::hold(500, places(), &["outside", "inside"], |draw| obstacle(draw, 1.0))
 }
@@ -149,7 +149,7 @@ fn facets() -> impl Strategy<Value = Vec<f64>> {
     prop::collection::vec(0.5_f64..1.0, 20..40)
 }
 
-/// Row 20: the smooth boundary.
+/// the smooth boundary.
 pub fn smooth_boundaries_are_exact_on_circles() -> Outcome {
     draws::hold(50, facets(), &["always"], |angles| circle(angles, false))
 }
@@ -190,7 +190,7 @@ fn ellipse(angles: &[f64], facets: bool) -> Verdict {
     Verdict::Holds("always")
 }
 
-/// Row 20: the smooth boundary where bends differ.
+/// the smooth boundary where bends differ.
 pub fn middles_of_smooth_boundaries_have_the_normals_of_their_curves() -> Outcome {
     draws::hold(50, facets(), &["always"], |angles| ellipse(angles, false))
 }
@@ -230,7 +230,7 @@ fn korn_on(degree: Degree, problem: &Problem, by: f64) -> Result<f64, String> {
     Ok(least)
 }
 
-pub(super) fn korn(by: f64) -> Outcome {
+pub fn korn(by: f64) -> Outcome {
     let strain = || Material::lame(1.0, 1.0, Plane::Strain);
     let mut bodies: Vec<Problem> =
         sharpness::small_bodies()?.into_iter().map(|body| body.problem).collect();
@@ -251,4 +251,15 @@ pub(super) fn korn(by: f64) -> Outcome {
         least = least.min(korn_on(Degree::Two, problem, by)?);
     }
     Ok(format!("{} bodies, P1 and P2; at least {least:.2} times what is attained", bodies.len()))
+}
+
+checks! {
+    gaps_and_directions_of_obstacles_are_their_definitions => obstacles_are_their_definitions();
+    the_smooth_boundary_of_a_circle_is_the_circle => smooth_boundaries_are_exact_on_circles();
+    middles_of_smooth_boundaries_have_the_normals_of_their_curves => middles_of_smooth_boundaries_have_the_normals_of_their_curves();
+    control_normals_of_facets_for_those_of_the_curves => normals_of_facets_for_those_of_the_curves();
+    control_directions_away_from_the_obstacle => directions_away_from_the_obstacle();
+    control_middles_of_facets_for_those_of_the_curves => middles_of_facets_for_those_of_the_curves();
+    nodes_move_no_further_than_korns_constants_say => korn(1.0);
+    control_korns_constants_a_twentieth_as_large => noticed(korn(20.0));
 }

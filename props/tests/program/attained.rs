@@ -30,22 +30,17 @@ use signorini::solve::factor::Factor;
 use signorini::solve::system::System;
 use signorini::solve::{Degree, Gamma0, Method, Settings, discretize, enclosure, solve};
 
-use super::certificate::factor_of;
-use super::error_bound::solved::{Draw as Floor, bodies};
-use crate::claim::{Check, Outcome, noticed, text};
-use crate::problems::{cells, diagonals, floor, held, mesh, problem, unloaded};
-use crate::proof::sampler::Random;
-use crate::verdict::Verdict;
-use crate::{draws, ensure, sharpness};
-
-/// How far the last of the two triangles is from being a line: kappa is attained up to this.
-const NARROW: f64 = 0.001;
+use crate::enclosure::factor_of;
+use crate::solved::{Draw as Floor, bodies};
+use props::claim::{Outcome, noticed, text};
+use props::claims::one_solution::{NARROW_TRAPEZOID, eigenvector, share_of_12};
+use props::problems::{cells, diagonals, floor, held, mesh, problem, unloaded};
+use props::proof::sampler::Random;
+use props::verdict::Verdict;
+use props::{draws, ensure, sharpness};
 
 /// The numbers kappa at which radii are compared with errors.
 const KAPPAS: [f64; 3] = [0.1, 0.5, 0.9];
-
-/// Steps of the inverse iteration: each multiplies what is not the eigenvector by 1 - kappa or less.
-const STEPS: usize = 400;
 
 /// The radius of the enclosure over the error in the energy norm, with the factor of A times `matrix` at hand; and the square of
 /// the error in the norm of A over what (12) says that it is at least.
@@ -59,22 +54,11 @@ fn attained(
     let d = discretize(&problem, &sharpness::at_kappa(&problem, degree, kappa)?).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
     let factor = Factor::new(&system.matrix).map_err(text)?;
-    let mut u = vec![[0.0; 2]; d.space.nodes().len()];
-    let mut x: Vec<f64> = (0..system.numbering.count).map(|k| 1.0 + k as f64 / 7.0).collect();
-    for _ in 0..STEPS {
-        let size = x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-        x.iter_mut().for_each(|x| *x *= 1e-3 / size);
-        system.numbering.scatter(&x, &mut u);
-        x = system.numbering.gather(&d.internal_forces(&u).values);
-        factor.solve(&mut x);
-    }
-    // Without loads the residual is A u where P(u) < 0.
-    let work = system.numbering.gather(&d.residual(&u).values);
-    let in_a: f64 = work.iter().zip(system.numbering.gather(&u)).map(|(r, u)| r * u).sum();
-    let energy = d.strain_energy(&u);
+    let u = eigenvector(&d, &system, &factor);
     let of_a = Some(Arc::new(factor_of(&system, matrix).map_err(text)?));
     let radius = enclosure::enclose(&system, &u, None, of_a).map_err(text)?.radius;
-    Ok([radius / energy.sqrt(), in_a / ((1.0 - kappa) * energy)])
+    let of_12 = share_of_12(&d, &system, &u, kappa);
+    Ok([radius / d.strain_energy(&u).sqrt(), of_12])
 }
 
 /// Two triangles, the second so soft that next to the field that attains kappa it has no energy.
@@ -103,7 +87,8 @@ fn radii(by: f64, constant: f64) -> Outcome {
     let mut most: [f64; 2] = [0.0; 2];
     for degree in [Degree::One, Degree::Two] {
         for kappa in KAPPAS {
-            let [radius, of_12] = attained(sharpness::trapezoid(NARROW)?, degree, kappa, 1.0)?;
+            let [radius, of_12] =
+                attained(sharpness::trapezoid(NARROW_TRAPEZOID)?, degree, kappa, 1.0)?;
             for (k, ratio) in [by * radius, of_12 / constant].into_iter().enumerate() {
                 // What rounding leaves of the eigenvector, and of sums of a dozen terms.
                 if !(ratio >= 1.0 - 1e-10) {
@@ -534,30 +519,20 @@ fn counted_once(draw: &Floor, times: usize) -> Verdict {
     Verdict::Holds("always")
 }
 
-/// The checks of row 10.
-pub(super) fn of_the_enclosure() -> [Check; 9] {
-    [
-        doubles!("the_radius_and_the_constant_of_12_are_attained" => radii(1.0, 1.0))
-            .about(&["(12)"]),
-        doubles!("control_a_radius_a_fiftieth_too_small" => noticed(radii(0.98, 1.0))),
-        doubles!("control_the_constant_of_12_a_fiftieth_too_large" => noticed(radii(1.0, 1.02))),
-        doubles!("a_radius_by_bounds_at_nodes_is_no_smaller_than_the_error_next_to_the_limit" => crude_radius(1.0)),
-        doubles!("control_such_a_radius_times_1_less_kappa" => noticed(crude_radius(1e-8))),
-        doubles!("contact_moves_reactions_by_no_more_than_is_said" => reactions(1.0)),
-        doubles!("control_a_fifth_of_what_moves_reactions" => noticed(reactions(0.2))),
-        doubles!("korns_factors_are_those_of_the_lemma" => korns_factors()),
-        doubles!("control_korns_factors_a_tenth_too_small" => draws::reject(held_bodies(), |draw| factors(draw, Degree::Two, 0.9))),
-    ]
-}
-
-/// The checks of row 24.
-pub(super) fn of_certificates() -> [Check; 6] {
-    [
-        doubles!("less_twice_the_energy_the_bound_forgets_v_where_directions_turn" => turning(|draw, degree| independent_of_v(draw, degree, 1.0))),
-        doubles!("control_less_2_2_times_the_energy" => draws::reject(pushed_bodies(), |draw| independent_of_v(draw, Degree::Two, 1.1))),
-        doubles!("a_larger_gap_costs_its_work_where_directions_turn" => turning(|draw, degree| raised_by_the_gap(draw, degree, 1.0))),
-        doubles!("control_a_larger_gap_costs_a_tenth_more" => draws::reject(pushed_bodies(), |draw| raised_by_the_gap(draw, Degree::Two, 1.1))),
-        doubles!("a_triangle_or_a_lift_counts_once" => draws::hold(10, bodies(2), &["always"], |draw| counted_once(draw, 2))),
-        doubles!("control_a_triangle_and_a_lift_that_are_there_once" => draws::reject(bodies(2), |draw| counted_once(draw, 1))),
-    ]
+checks! {
+    the_radius_and_the_constant_of_12_are_attained => radii(1.0, 1.0);
+    control_a_radius_a_fiftieth_too_small => noticed(radii(0.98, 1.0));
+    control_the_constant_of_12_a_fiftieth_too_large => noticed(radii(1.0, 1.02));
+    a_radius_by_bounds_at_nodes_is_no_smaller_than_the_error_next_to_the_limit => crude_radius(1.0);
+    control_such_a_radius_times_1_less_kappa => noticed(crude_radius(1e-8));
+    contact_moves_reactions_by_no_more_than_is_said => reactions(1.0);
+    control_a_fifth_of_what_moves_reactions => noticed(reactions(0.2));
+    korns_factors_are_those_of_the_lemma => korns_factors();
+    control_korns_factors_a_tenth_too_small => draws::reject(held_bodies(), |draw| factors(draw, Degree::Two, 0.9));
+    less_twice_the_energy_the_bound_forgets_v_where_directions_turn => turning(|draw, degree| independent_of_v(draw, degree, 1.0));
+    control_less_2_2_times_the_energy => draws::reject(pushed_bodies(), |draw| independent_of_v(draw, Degree::Two, 1.1));
+    a_larger_gap_costs_its_work_where_directions_turn => turning(|draw, degree| raised_by_the_gap(draw, degree, 1.0));
+    control_a_larger_gap_costs_a_tenth_more => draws::reject(pushed_bodies(), |draw| raised_by_the_gap(draw, Degree::Two, 1.1));
+    a_triangle_or_a_lift_counts_once => draws::hold(10, bodies(2), &["always"], |draw| counted_once(draw, 2));
+    control_a_triangle_and_a_lift_that_are_there_once => draws::reject(bodies(2), |draw| counted_once(draw, 1));
 }

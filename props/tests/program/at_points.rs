@@ -5,10 +5,10 @@ use signorini::kernel::{Material, Plane};
 use signorini::solve::iterate::Evaluated;
 use signorini::solve::{Method, Solution, discretize};
 
-use super::assembled::solver::unsolved;
-use crate::claim::{Outcome, text};
-use crate::proof::sampler::Random;
-use crate::{draws, sharpness};
+use props::claim::{Outcome, text};
+use props::claims::assembled::solver::unsolved;
+use props::proof::sampler::Random;
+use props::{draws, sharpness};
 
 /// A random displacement of a block of unequal triangles as a solution.
 fn anything(degree: Degree, problem: &Problem) -> Result<Solution, String> {
@@ -24,7 +24,7 @@ fn unequal() -> Result<Problem, String> {
 
 /// At points of triangles a displacement that is moved at the nodes by no more than is said there moves by no more than
 /// `displacement_error_at` says, times `share`; and by that much where each node moves as the sign of its shape function has it.
-pub(super) fn errors_at_points(share: f64) -> Outcome {
+pub fn errors_at_points(share: f64) -> Outcome {
     let problem = unequal()?;
     let mut count = 0;
     for degree in [Degree::One, Degree::Two] {

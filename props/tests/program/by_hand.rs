@@ -12,35 +12,35 @@ use proptest::prelude::*;
 use signorini::certify::proof::{Certificate, Curved, Edge, Piece, Role};
 use signorini::kernel::{Ball, Enclosing, Material, Plane, PreciseBall};
 
-use crate::bodies::whole;
-use crate::ensure;
-use crate::naive::{Field, Hooke, Line, integral_of_affine};
-use crate::numbers::Exact;
-use crate::verdict::Verdict;
+use props::bodies::whole;
+use props::ensure;
+use props::naive::{Field, Hooke, Line, integral_of_affine};
+use props::numbers::Exact;
+use props::verdict::Verdict;
 
 /// A certificate by hand, in sixteenths: cells of a rectangle, v, tau and the gap.
 #[derive(Clone, Debug)]
-pub(super) struct Draw {
-    pub(super) cells: [usize; 2],
+pub struct Draw {
+    pub cells: [usize; 2],
     /// Which diagonal each cell has.
-    pub(super) left: bool,
-    pub(super) lame: [i32; 2],
+    pub left: bool,
+    pub lame: [i32; 2],
     /// v at the vertices.
-    pub(super) v: Vec<[i32; 2]>,
+    pub v: Vec<[i32; 2]>,
     /// a, b, c, d, e, f, h
-    pub(super) tau: [i32; 7],
-    pub(super) gap: [i32; 2],
-    pub(super) oscillation: i32,
+    pub tau: [i32; 7],
+    pub gap: [i32; 2],
+    pub oscillation: i32,
     /// Bulges on the edges, in turn, in sixty-fourths; none where v is affine.
-    pub(super) curve: Vec<[i32; 2]>,
+    pub curve: Vec<[i32; 2]>,
 }
 
-pub(super) fn sixteenth(k: i32) -> f64 {
+pub fn sixteenth(k: i32) -> f64 {
     f64::from(k) / 16.0
 }
 
 /// `strip`: one cell beside the other, upwards, so that the triangles form a chain.
-pub(super) fn draws_of(strip: bool) -> impl Strategy<Value = Draw> {
+pub fn draws_of(strip: bool) -> impl Strategy<Value = Draw> {
     let cells = if strip { (1..=1_usize, 2..=4_usize) } else { (1..=3_usize, 1..=3_usize) };
     let tau = prop::array::uniform7(-16..=16);
     let v = prop::collection::vec([-32..=32, -32..=32], 16);
@@ -63,7 +63,7 @@ pub(super) fn draws_of(strip: bool) -> impl Strategy<Value = Draw> {
 
 impl Draw {
     /// tau at a place, xx, yy, xy.
-    pub(super) fn tau<S>(&self, [x, y]: [S; 2], unit: S) -> [S; 3]
+    pub fn tau<S>(&self, [x, y]: [S; 2], unit: S) -> [S; 3]
     where
         S: From<i32> + Copy + std::ops::Add<Output = S> + std::ops::Mul<Output = S>,
     {
@@ -72,12 +72,12 @@ impl Draw {
     }
 
     /// The body force.
-    pub(super) fn body(&self) -> [f64; 2] {
+    pub fn body(&self) -> [f64; 2] {
         let [_, b, _, _, _, f, h] = self.tau.map(sixteenth);
         [-b - h, -f]
     }
 
-    pub(super) fn certificate(&self) -> Certificate {
+    pub fn certificate(&self) -> Certificate {
         let [nx, ny] = self.cells;
         let number = |i: usize, j: usize| j * (nx + 1) + i;
         let mut vertices = Vec::new();
@@ -187,7 +187,7 @@ impl Draw {
     }
 
     /// The same with every other inner edge named from its other side.
-    pub(super) fn turned(&self) -> Certificate {
+    pub fn turned(&self) -> Certificate {
         let mut certificate = self.certificate();
         for edge in certificate.edges.iter_mut().step_by(2) {
             if let Role::Inner([start, end]) = edge.role {
@@ -200,7 +200,7 @@ impl Draw {
     }
 
     /// By the definitions, over rationals.
-    pub(super) fn by_definition(&self, certificate: &Certificate) -> Definition {
+    pub fn by_definition(&self, certificate: &Certificate) -> Definition {
         let exact = Exact::of_double;
         let [zero, one, two] = [0, 1, 2].map(Exact::from);
         let [lambda, mu] = self.lame.map(|k| exact(sixteenth(k)));
@@ -266,7 +266,7 @@ impl Draw {
 }
 
 /// The displacement with these values at the vertices and these bulges on the edges, on a triangle.
-pub(super) fn field(
+pub fn field(
     certificate: &Certificate,
     piece: &Piece,
     at: &[[f64; 2]],
@@ -287,9 +287,9 @@ pub(super) fn field(
 
 /// |C eps(v) - tau|^2 on each triangle, 2 int tau_n (v_n - g), |v|_a^2 and J(v), of which minus the work of what is given beside supports
 /// is apart.
-pub(super) struct Definition {
-    pub(super) squares: Vec<Exact>,
-    pub(super) contact: Exact,
+pub struct Definition {
+    pub squares: Vec<Exact>,
+    pub contact: Exact,
     norm: Exact,
     energy: Exact,
     supports: Exact,
@@ -305,7 +305,7 @@ fn near(a: f64, b: Exact, size: Exact) -> bool {
 }
 
 /// The checker against the definitions; the square of its bound is `share` of what it says.
-pub(super) fn evaluated<S: Enclosing>(draw: &Draw, share: f64) -> Verdict {
+pub fn evaluated<S: Enclosing>(draw: &Draw, share: f64) -> Verdict {
     evaluated_of::<S>(draw, draw.turned(), [share, 1.0])
 }
 
@@ -354,7 +354,7 @@ fn evaluated_of<S: Enclosing>(
 
 /// The square of the bound less 2 J(v) is -2 J*(tau), the same for every v: for tau in equilibrium with a load that is affine on
 /// each triangle, int tau : eps(w) is the work of the loads. With `exchanged` the vertices of the other certificate are.
-pub(super) fn duality_gap(draw: &Draw, exchanged: bool) -> Verdict {
+pub fn duality_gap(draw: &Draw, exchanged: bool) -> Verdict {
     let mut one = draw.certificate();
     for (t, piece) in one.pieces.iter_mut().enumerate() {
         piece.oscillation = 0.0;
@@ -393,17 +393,16 @@ pub(super) fn duality_gap(draw: &Draw, exchanged: bool) -> Verdict {
     Verdict::Holds("always")
 }
 
-pub(super) fn to_double(x: Exact) -> f64 {
+pub fn to_double(x: Exact) -> f64 {
     use num_traits::ToPrimitive;
     x.value().to_f64().unwrap_or(f64::NAN)
 }
 
-pub(super) const CLASSES: [&str; 3] =
-    ["exact data", "exact data, v quadratic", "data that oscillate"];
+pub const CLASSES: [&str; 3] = ["exact data", "exact data, v quadratic", "data that oscillate"];
 
 /// A certificate held along (1, 1) alone at the top and along (1, -1) at the left side, so that v . d and the parts of tau N are
 /// doubles still; tau's traction across is the one that is given.
-pub(super) fn supported(draw: &Draw) -> Certificate {
+pub fn supported(draw: &Draw) -> Certificate {
     // v is known as balls, which a margin keeps off the obstacle.
     let mut certificate = Draw { gap: [1, draw.gap[1].max(0)], ..draw.clone() }.turned();
     certificate.prescribed.fill([None; 2]);
@@ -442,13 +441,13 @@ pub(super) fn supported(draw: &Draw) -> Certificate {
 
 /// The checker against the definitions where bodies are held along directions; `work` is the share of the work of what is given
 /// beside them that is counted.
-pub(super) fn evaluated_with_supports(draw: &Draw, work: f64) -> Verdict {
+pub fn evaluated_with_supports(draw: &Draw, work: f64) -> Verdict {
     evaluated_of::<Ball>(draw, supported(draw), [1.0, work])
 }
 
 /// Tractions on inner edges and on Gamma_D that are out of balance by what the checker may add: it finds the balanced ones
 /// again, for the triangles form a chain. With `gross` something else is added too.
-pub(super) fn balanced(draw: &Draw, gross: bool) -> Verdict {
+pub fn balanced(draw: &Draw, gross: bool) -> Verdict {
     let certificate = draw.turned();
     let Ok(before) = certificate.evaluate::<PreciseBall>() else {
         return Verdict::Fails("the certificate is accepted");

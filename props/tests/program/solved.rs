@@ -8,23 +8,19 @@ use std::sync::Arc;
 use proptest::prelude::*;
 use signorini::certify::proof::{Piece, Role};
 use signorini::certify::{Certificate, Continuous, certify, certify_field};
-use signorini::fem::{
-    Condition, Diagonal, Problem, Rectangle, SharedFunction, Space, contact_line, quadrature,
-};
+use signorini::fem::{Condition, Diagonal, Problem, Rectangle, SharedFunction, quadrature};
 use signorini::io::Expression;
 use signorini::kernel::{Ball, Enclosing, Material, Plane};
 use signorini::nalgebra::Matrix2;
 use signorini::solve::{Degree, Method, Settings, solve};
-use signorini::study::Errors;
 
-use crate::claim::text;
-use crate::claims::known::Sample;
-use crate::ensure;
-use crate::naive::{Field, Hooke, integral_of_quadratics};
-use crate::numbers::Exact;
-use crate::problems::{cells, diagonals, problem};
-use crate::proof::sampler::Random;
-use crate::verdict::Verdict;
+use props::claim::text;
+use props::ensure;
+use props::naive::{Field, Hooke, integral_of_quadratics};
+use props::numbers::Exact;
+use props::problems::{cells, diagonals, problem};
+use props::proof::sampler::Random;
+use props::verdict::Verdict;
 
 /// a + b x, as a function that knows its degree.
 fn affine(a: f64, b: f64) -> SharedFunction {
@@ -37,13 +33,13 @@ fn affine(a: f64, b: f64) -> SharedFunction {
 
 /// A body of cells of size 1 that is held at the top and loaded, on a floor. Data in sixteenths.
 #[derive(Clone, Debug)]
-pub(in crate::claims) struct Draw {
-    pub(in crate::claims) cells: [usize; 2],
+pub struct Draw {
+    pub cells: [usize; 2],
     diagonal: Diagonal,
     lambda: f64,
-    pub(in crate::claims) load: [f64; 2],
+    pub load: [f64; 2],
     /// By how much it grows with x.
-    pub(in crate::claims) slope: [f64; 2],
+    pub slope: [f64; 2],
     /// g = g0 + g1 x
     gap: [f64; 2],
     /// The displacement of the top.
@@ -51,7 +47,7 @@ pub(in crate::claims) struct Draw {
     pressure: f64,
 }
 
-pub(in crate::claims) fn bodies(most: usize) -> impl Strategy<Value = Draw> {
+pub fn bodies(most: usize) -> impl Strategy<Value = Draw> {
     let part = |range: std::ops::RangeInclusive<i32>| range.prop_map(|k| f64::from(k) / 16.0);
     let lambda = prop::sample::select(&[0.0, 1.0, 4.0]);
     let data = (part(-16..=16), part(-16..=4), part(-2..=4), part(-4..=4), part(-2..=2));
@@ -92,7 +88,7 @@ impl Draw {
         Ok(problem(mesh.map_err(text)?, material, load, conditions))
     }
 
-    pub(in crate::claims) fn certified_with(
+    pub fn certified_with(
         &self,
         degree: Degree,
     ) -> Result<(Problem, Vec<[f64; 2]>, Continuous), String> {
@@ -100,7 +96,7 @@ impl Draw {
     }
 
     /// By P1, with each side of a cell divided into `finer` parts.
-    pub(in crate::claims) fn certified_on(
+    pub fn certified_on(
         &self,
         finer: usize,
     ) -> Result<(Problem, Vec<[f64; 2]>, Continuous), String> {
@@ -191,7 +187,7 @@ fn lost(certificate: &Certificate, t: usize, q: f64) -> f64 {
 
 /// The checker in the numbers `S` against the checker in rationals: no share and no bound is smaller, the energies enclose,
 /// and all that is lost is rounding.
-pub(super) fn above_the_rationals<S: Enclosing>(draw: &Draw, degree: Degree) -> Verdict {
+pub fn above_the_rationals<S: Enclosing>(draw: &Draw, degree: Degree) -> Verdict {
     let Ok((_, _, certified)) = draw.certified_with(degree) else {
         return Verdict::Fails("there is a certificate");
     };
@@ -219,7 +215,7 @@ pub(super) fn above_the_rationals<S: Enclosing>(draw: &Draw, degree: Degree) -> 
 
 /// J(u) lies in the intervals of a coarse and of a fine mesh; and so does L(u) where nothing but loads acts, where alone it
 /// is bounded. The intervals are shortened from below to a `share` of their length.
-pub(super) fn energies_agree(draw: &Draw, share: f64) -> Verdict {
+pub fn energies_agree(draw: &Draw, share: f64) -> Verdict {
     // A third each: loads alone, loads and a gap, and displacements too.
     let draw = match draw.pressure {
         p if p < 0.1875 => Draw { gap: [0.0; 2], push: [0.0; 2], ..draw.clone() },
@@ -267,7 +263,7 @@ fn distance(problem: &Problem, u: &[[f64; 2]], v: &[[f64; 2]]) -> f64 {
 }
 
 /// Our solution and the same moved at random, both with their bounds: their distance is at most the sum, times `factor`.
-pub(super) fn raised_by_a_perturbation(draw: &Draw, size: f64, factor: f64) -> Verdict {
+pub fn raised_by_a_perturbation(draw: &Draw, size: f64, factor: f64) -> Verdict {
     let moved = || -> Result<_, String> {
         let problem = draw.problem()?;
         let solved = solve(&problem, &Method::default(), &Settings::default());
@@ -290,14 +286,14 @@ pub(super) fn raised_by_a_perturbation(draw: &Draw, size: f64, factor: f64) -> V
 /// A displacement of degree 2 that is a solution: it touches the floor everywhere, without friction, the top is held as it is,
 /// and on the other sides its tractions act. Coefficients of 1, x, y, x^2, x y, y^2 in sixteenths.
 #[derive(Clone, Debug)]
-pub(super) struct Patch {
+pub struct Patch {
     cells: [usize; 2],
     diagonal: Diagonal,
     lambda: f64,
     u: [[f64; 6]; 2],
 }
 
-pub(super) fn patches() -> impl Strategy<Value = Patch> {
+pub fn patches() -> impl Strategy<Value = Patch> {
     let lambda = prop::sample::select(&[0.0, 1.0, 4.0]);
     let part = || (-8..=8_i32).prop_map(|k| f64::from(k) / 16.0);
     let all = prop::collection::vec(part(), 12);
@@ -357,7 +353,7 @@ impl Patch {
 
 /// v is u and tau is sigma(u), but for rounding: v is kept off the floor by some 1e-9, 64 units of rounding of the gap over the
 /// least part of an edge, 1e-3, and the bound has the root of what the pressure, below a thousand, does over that.
-pub(super) fn known_to_rounding(patch: &Patch, degree: Degree) -> Verdict {
+pub fn known_to_rounding(patch: &Patch, degree: Degree) -> Verdict {
     let Ok(certified) = patch.certified(degree) else {
         return Verdict::Fails("there is a certificate");
     };
@@ -373,23 +369,6 @@ pub(super) fn known_to_rounding(patch: &Patch, degree: Degree) -> Verdict {
     }
     let curved = patch.u.iter().flat_map(|u| &u[3..]).any(|&a| a != 0.0);
     Verdict::Holds(if curved { "quadratic" } else { "affine" })
-}
-
-/// The true error |u - v|_a is at most `factor` times the bound.
-pub(super) fn above_the_true_error(sample: &Sample, factor: f64) -> Verdict {
-    let ratio = || {
-        let (solution, problem) = sample.problem()?;
-        let (found, _) = solve(&problem, &sample.method(), &Settings::default()).ok()?;
-        let certified = certify(&problem, &found).ok()?;
-        let space = Space::new(&problem.mesh, sample.degree);
-        let contact = contact_line::assemble(&problem, &space, found.gamma.gamma0).ok()?;
-        let error = Errors::new(&space, &contact, &certified.displacement, &*solution).energy;
-        Some(error / certified.bound)
-    };
-    let Some(ratio) = ratio() else { return Verdict::Fails("there is a bound") };
-    // The true error is an integral known to 1e-9.
-    ensure!(ratio * (1.0 - 1e-9) <= factor);
-    Verdict::Holds(sample.class())
 }
 
 /// c x (1 - x): 0 at both ends of a side of length 1.
@@ -421,7 +400,7 @@ fn bent_body(
 
 /// Displacements that are 0 at the vertices of the coarse mesh, where v = 0: what they lack between the vertices is in its
 /// bound, and in that of the fine mesh. `lacking` tells whether that is left in.
-pub(super) fn between_the_vertices(draw: &Draw, lacking: bool) -> Verdict {
+pub fn between_the_vertices(draw: &Draw, lacking: bool) -> Verdict {
     if draw.push == [0.0; 2] {
         return Verdict::Vacuous;
     }
@@ -452,7 +431,7 @@ fn korns_constant() -> f64 {
 }
 
 /// What the load costs on each triangle of the coarse mesh, and what the bent top does, by their definitions times `share`.
-pub(super) fn costs(draw: &Draw, share: f64) -> Verdict {
+pub fn costs(draw: &Draw, share: f64) -> Verdict {
     if draw.push == [0.0; 2] {
         return Verdict::Vacuous;
     }
@@ -520,7 +499,7 @@ pub(super) fn costs(draw: &Draw, share: f64) -> Verdict {
 }
 
 /// All data times 2^-10: so is the bound. With `load` another one for the scaled body.
-pub(super) fn scaled(draw: &Draw, load: f64) -> Verdict {
+pub fn scaled(draw: &Draw, load: f64) -> Verdict {
     let scale = 2.0_f64.powi(-10);
     let (Ok((_, whole)), Ok((_, small))) =
         (bent_body(draw, 1.0, 1.0, 2), bent_body(draw, load, scale, 2))

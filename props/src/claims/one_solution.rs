@@ -1,0 +1,549 @@
+//! Existence and uniqueness of the discrete solution on a given mesh, by certificate: the solver's result u~ is taken for
+//! the rational numbers that it is, the residual r of (8) at u~ and the matrices K and A are exact (`discrete`), and A is
+//! found positive definite by elimination. Then J_h is strictly convex and coercive on a space of finite dimension: (8) has
+//! exactly one solution u^h, and with e = u~ - u^h (docs/theory.md, section 7)
+//!
+//! ```text
+//! A(e, e) + int ([P(u~)]+ - [P(u^h)]+)^2/gamma <= r(e)                        (C0)
+//! |e|_a <= |r|_a*/(1 - kappa)                                                (C1)
+//! |e|_A <= rho = |r|_A*,  int ([P(u~)]+ - [P(u^h)]+)^2/gamma <= rho^2/4       (C2)
+//! ```
+//!
+//! with |r|_A*^2 = r.A^-1 r, |r|_a*^2 = r.K^-1 r: an enclosure of u^h. Where P has no root inside an edge, or the rule is one
+//! of points, u^h itself is rational: Newton's steps in exact arithmetic end at a residual that is exactly zero, and (C0)
+//! to (C2) are compared with the error itself. Where an edge is cut, u^h is irrational; one step makes a much better point
+//! u', whose own enclosure is so small that |u~ - u'| stands for the error.
+
+use std::sync::Arc;
+
+use num_bigint::BigInt;
+use num_rational::BigRational;
+use proptest::prelude::*;
+use signorini::fem::{Condition, Diagonal, Discretization, Mesh, Problem, SharedFunction};
+use signorini::kernel::{Material, Plane};
+use signorini::solve::factor::Factor;
+use signorini::solve::system::System;
+use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, Settings, discretize, solve};
+
+use crate::claim::{Check, Outcome, noticed, text};
+use crate::discrete::{CUT, Discrete, Nodal, exactly};
+use crate::elimination::{Matrix, combined, dot, solve_definite, square};
+use crate::numbers::Exact;
+use crate::problems::{cells, constant, diagonals, floor, held, mapped, mesh, problem};
+use crate::verdict::Verdict;
+use crate::{draws, ensure, sharpness};
+
+/// The class of solutions with an edge that P cuts at an irrational point.
+pub const IRRATIONAL: &str = "an edge is cut, u^h irrational";
+
+/// The enclosure of u^h around a point.
+#[derive(Clone, Copy)]
+pub struct Certificate {
+    /// rho^2 = r . A^-1 r
+    pub rho_squared: Exact,
+    /// r . K^-1 r
+    pub dual_squared: Exact,
+}
+
+/// A field with the residual of (8).
+pub struct Point {
+    /// Its values at the nodes.
+    pub u: Nodal,
+    /// The residual.
+    pub residual: Vec<Exact>,
+}
+
+impl Point {
+    /// Whether the residual is zero.
+    pub fn is_solution(&self) -> bool {
+        self.residual.iter().all(|&r| r == Exact::from(0))
+    }
+}
+
+/// A discrete problem with its matrices.
+pub struct Certifier<'a> {
+    /// Method (8) over rationals.
+    pub problem: Discrete<'a>,
+    /// a(., .)
+    pub k: Matrix,
+    /// A_gamma(., .)
+    pub a: Matrix,
+}
+
+impl<'a> Certifier<'a> {
+    /// Of what the solver has.
+    pub fn new(d: &'a Discretization<'a>) -> Self {
+        let problem = Discrete::new(d);
+        let k = problem.stiffness();
+        let one = Exact::from(1);
+        let a = combined(one, &k, -one, &problem.stresses());
+        Certifier { problem, k, a }
+    }
+
+    /// A field with its residual.
+    pub fn point(&self, u: Nodal) -> Point {
+        Point { residual: self.problem.residual(&u), u }
+    }
+
+    /// The certificate at a point.
+    ///
+    /// # Errors
+    /// That A or K is not positive definite.
+    pub fn certify(&self, point: &Point) -> Result<Certificate, &'static str> {
+        let r = &point.residual;
+        let riesz = solve_definite(&self.a, r).ok_or("A is not positive definite")?;
+        let in_a = solve_definite(&self.k, r).ok_or("K is not positive definite")?;
+        Ok(Certificate { rho_squared: dot(r, &riesz), dual_squared: dot(r, &in_a) })
+    }
+
+    /// u less the tangent's inverse times the residual: the solution, or where it is irrational a point near it.
+    fn newton_step(&self, point: &Point) -> Result<Point, &'static str> {
+        let step = solve_definite(&self.problem.tangent(&point.u), &point.residual);
+        let u = self.problem.less(&point.u, &step.ok_or("the tangent is not positive definite")?);
+        if !self.irrational(&u) {
+            let next = self.point(u.clone());
+            if next.is_solution() {
+                return Ok(next);
+            }
+        }
+        Ok(self.point(rounded(u)))
+    }
+
+    /// P has a root inside an edge, where the contact integrals have to be cut.
+    fn irrational(&self, u: &[[Exact; 2]]) -> bool {
+        self.problem.by_pieces() && self.problem.class(u) == CUT
+    }
+
+    /// The free components of u - v.
+    fn difference(&self, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Vec<Exact> {
+        let (u, v) = (self.problem.free(u), self.problem.free(v));
+        u.iter().zip(&v).map(|(&u, &v)| u - v).collect()
+    }
+}
+
+/// A problem and the method for it, as drawn.
+#[derive(Clone, Debug)]
+pub struct Draw {
+    /// Cells along x and y.
+    pub cells: [usize; 2],
+    /// How they are cut.
+    pub diagonal: Diagonal,
+    /// The seed by which vertices are moved.
+    pub moved: Option<u64>,
+    /// Lamé's first coefficient; the second is 1.
+    pub lambda: f64,
+    /// Plane strain or stress.
+    pub plane: Plane,
+    /// The body force.
+    pub load: [f64; 2],
+    /// g0 + g1 x
+    pub gap: [f64; 2],
+    /// How far the top is moved down.
+    pub push: f64,
+    /// In twentieths.
+    pub kappa: u8,
+    /// Only guided at one side and pressed from the top by a traction of 1: contact alone stops it from falling.
+    pub by_contact: bool,
+}
+
+/// The gap at x = 0 in sixty-fourths: so wide that there is no contact, so narrow that there is nothing else, or between.
+pub type Gap = std::ops::RangeInclusive<i32>;
+/// No contact.
+pub const WIDE: Gap = 256..=256;
+/// Contact all along.
+pub const NARROW: Gap = -64..=-64;
+/// Either.
+pub const BETWEEN: Gap = -4..=8;
+
+/// Problems on up to `most` cells along each side; data in sixty-fourths.
+pub fn problems(most: [usize; 2], gap: Gap) -> impl Strategy<Value = Draw> {
+    let mesh = (1..=most[0], 1..=most[1], diagonals(), prop::option::of(0_u64..1000));
+    let lambda = prop::sample::select(&[-0.5, 0.0, 1.0, 4.0]);
+    let plane = prop::sample::select(&[Plane::Strain, Plane::Stress]);
+    let part = |range: Gap| range.prop_map(|k| f64::from(k) / 64.0);
+    let load = (part(-64..=64), part(-64..=16));
+    let line = (part(gap), part(-16..=16), part(-4..=8));
+    (mesh, lambda, plane, load, line, 1_u8..=19).prop_map(
+        |(mesh, lambda, plane, load, line, kappa)| Draw {
+            cells: [mesh.0, mesh.1],
+            diagonal: mesh.2,
+            moved: mesh.3,
+            lambda,
+            plane,
+            load: [load.0, load.1],
+            gap: [line.0, line.1],
+            push: line.2,
+            kappa,
+            by_contact: false,
+        },
+    )
+}
+
+/// Such problems of bodies that contact alone holds, on floors that are so many times as steep.
+pub fn problems_by_contact(most: [usize; 2], steeper: f64) -> impl Strategy<Value = Draw> {
+    problems(most, BETWEEN).prop_map(move |draw| {
+        let gap = [draw.gap[0], steeper * draw.gap[1]];
+        Draw { gap, by_contact: true, ..draw }
+    })
+}
+
+impl Draw {
+    fn mesh(&self) -> Result<Mesh, String> {
+        if let Some(seed) = self.moved {
+            return sharpness::moved(self.cells, seed);
+        }
+        cells(self.cells, self.diagonal).mesh().map_err(text)
+    }
+
+    /// Whether the whole problem is turned by a right angle, counter-clockwise: forces of contact are along x then.
+    pub fn is_turned(&self) -> bool {
+        self.kappa % 2 == 1
+    }
+
+    /// A vector of the problem as it is drawn.
+    pub fn turned<S: Copy + std::ops::Neg<Output = S>>(&self, [x, y]: [S; 2]) -> [S; 2] {
+        if self.is_turned() { [-y, x] } else { [x, y] }
+    }
+
+    /// A body that is held and pushed down at the top, or pressed there and guided at a side, with a body force and a gap at
+    /// the bottom.
+    ///
+    /// # Errors
+    /// That there is no such mesh.
+    pub fn problem(&self) -> Result<Problem, String> {
+        let ([g0, g1], turned) = (self.gap, self.is_turned());
+        let along = move |[x, y]: [f64; 2]| if turned { y } else { x };
+        let gap: SharedFunction = Arc::new(move |x: [f64; 2]| g0 + g1 * along(x));
+        let floor = ("bottom", Condition::Contact { gap });
+        let mesh = mapped(&self.mesh()?, |x| self.turned(x))?;
+        let material = Material::lame(self.lambda, 1.0, self.plane);
+        let load = self.turned(self.load).map(constant);
+        Ok(if self.by_contact {
+            let traction = [0.0; 2].map(constant);
+            let guided = self.turned([1, 0]).map(|c| (c != 0).then(|| constant(0.0)));
+            let guided = Condition::Mixed { displacement: guided, traction };
+            let pressed = Condition::Traction(self.turned([0.0, -1.0]).map(constant));
+            problem(mesh, material, load, [floor, ("left", guided), ("top", pressed)])
+        } else {
+            let pushed = held(self.turned([0.0, -self.push]));
+            problem(mesh, material, load, [floor, ("top", pushed)])
+        })
+    }
+}
+
+/// The solver's result, and what it solved.
+pub struct Solved {
+    /// The problem.
+    pub problem: Problem,
+    /// The method.
+    pub method: Method,
+    /// The result.
+    pub u: Vec<[f64; 2]>,
+}
+
+impl Solved {
+    /// Solves a drawn problem.
+    ///
+    /// # Errors
+    /// That there is no such problem or no solution.
+    pub fn new(
+        draw: &Draw,
+        degree: Degree,
+        quadrature: ContactQuadrature,
+    ) -> Result<Solved, String> {
+        let problem = draw.problem()?;
+        let kappa = f64::from(draw.kappa) / 20.0;
+        let method = sharpness::at_kappa(&problem, degree, kappa)?;
+        let method = Method { quadrature, allow_noncoercive: false, ..method };
+        let (solution, _) = solve(&problem, &method, &Settings::default()).map_err(text)?;
+        Ok(Solved { problem, method, u: solution.displacement })
+    }
+}
+
+/// 2^-n
+pub fn power(n: i32) -> Exact {
+    Exact::of_double(2.0_f64.powi(-n))
+}
+
+/// The same field to 2^-200: a refined point need not be known better.
+fn rounded(u: Nodal) -> Nodal {
+    let scale = BigRational::from_integer(BigInt::from(1) << 200);
+    let round = |x: Exact| Exact::new((x.value() * &scale).round() / &scale);
+    u.into_iter().map(|v| v.map(round)).collect()
+}
+
+/// The inequalities of Theorem 7.1.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Bound {
+    /// (C0)
+    Monotone,
+    /// (C1)
+    Energy,
+    /// (C2)
+    Displacement,
+    /// (C2)
+    Pressure,
+}
+
+/// What is asked of the certificate.
+#[derive(Clone, Copy)]
+pub struct Asked {
+    /// rho is at most 2^-share |u~|_a.
+    pub share: i32,
+    /// A planted mistake: a tenth of the right side of this bound.
+    pub tenth: Option<Bound>,
+}
+
+impl Asked {
+    /// The factor of a right side.
+    fn factor(self, bound: Bound) -> Exact {
+        if self.tenth == Some(bound) { Exact::ratio(1, 10) } else { Exact::from(1) }
+    }
+}
+
+impl Certifier<'_> {
+    /// Compares the certificate of u~ with u^h, or with a point whose own enclosure is a thousand times smaller than it and than
+    /// `radii`; and whatever stands `beside` it with that point, which is u^h up to so many times each of these.
+    ///
+    /// # Errors
+    /// What the certificate lacks.
+    pub fn compared(
+        &self,
+        found: &[[Exact; 2]],
+        asked: Asked,
+        by_contact: bool,
+        radii: &[Exact],
+        beside: impl Fn(&[[Exact; 2]], Exact) -> Verdict,
+    ) -> Result<Verdict, &'static str> {
+        let scale = square(&self.k, &self.problem.free(found));
+        let mut start = found.to_vec();
+        self.problem.prescribe(&mut start);
+        let start = self.point(start);
+        // Where contact alone holds the body A is not definite: only a rational solution will do.
+        let certified = |point: &Point| (!by_contact).then(|| self.certify(point)).transpose();
+        let certificate = certified(&start)?;
+        if certificate
+            .is_some_and(|of| of.rho_squared > power(asked.share) * power(asked.share) * scale)
+        {
+            return Err("rho <= 2^-share |u~|_a");
+        }
+        let millionth = Exact::ratio(1, 1_000_000);
+        let kept = Exact::from(1) - self.problem.kappa();
+        let mut point = Point { u: start.u.clone(), residual: start.residual.clone() };
+        for step in 0..=8 {
+            let is_solution = point.is_solution();
+            let refined = if is_solution { None } else { certified(&point)? };
+            let is_better = step > 0
+                && certificate.zip(refined).is_some_and(|(of, refined)| {
+                    refined.rho_squared <= millionth * of.rho_squared
+                        && refined.dual_squared <= millionth * of.dual_squared
+                        && radii.iter().all(|&r| refined.rho_squared <= kept * millionth * r * r)
+                });
+            if !is_solution && !is_better {
+                point = self.newton_step(&point)?;
+                continue;
+            }
+            let slack = Exact::ratio(i64::from(is_better), 1000);
+            if let Some(certificate) = &certificate {
+                let verdict = self.inside(certificate, &start, &point, slack, asked);
+                if verdict.fails() {
+                    return Ok(verdict);
+                }
+            }
+            let verdict = beside(&point.u, slack);
+            if verdict.fails() {
+                return Ok(verdict);
+            }
+            let class = if is_solution { self.problem.class(&point.u) } else { IRRATIONAL };
+            return Ok(Verdict::Holds(class));
+        }
+        if by_contact {
+            return Ok(Verdict::Vacuous);
+        }
+        Err("Newton's steps settle on no better point")
+    }
+
+    /// |e|_A <= rho and |e|_a <= |r|_a*/(1 - kappa), kappa < 1, where e is known up to `slack` times these; and all bounds where it
+    /// is known exactly.
+    fn inside(
+        &self,
+        certificate: &Certificate,
+        found: &Point,
+        point: &Point,
+        slack: Exact,
+        asked: Asked,
+    ) -> Verdict {
+        let error = self.difference(&found.u, &point.u);
+        let kept = Exact::from(1) - self.problem.kappa();
+        ensure!(kept > Exact::from(0));
+        let factor = asked.factor(Bound::Displacement) + slack;
+        ensure!(square(&self.a, &error) <= factor * factor * certificate.rho_squared);
+        let factor = asked.factor(Bound::Energy) + slack;
+        let in_energy = square(&self.k, &error);
+        ensure!(kept * kept * in_energy <= factor * factor * certificate.dual_squared);
+        if slack == Exact::from(0)
+            && let Some(apart) = self.problem.pressures_apart(&found.u, &point.u)
+        {
+            let left = square(&self.a, &error) + apart;
+            ensure!(left <= asked.factor(Bound::Monotone) * dot(&found.residual, &error));
+            let half = asked.factor(Bound::Pressure) / Exact::from(2);
+            ensure!(apart <= half * half * certificate.rho_squared);
+        }
+        Verdict::Holds("inside")
+    }
+}
+
+/// The solver's result on a drawn problem, certified: A is positive definite, and u^h is as near as (C0) to (C2) say.
+fn certified(
+    draw: &Draw,
+    (degree, quadrature): (Degree, ContactQuadrature),
+    tenth: Option<Bound>,
+) -> Verdict {
+    let Ok(solved) = Solved::new(draw, degree, quadrature) else {
+        return Verdict::Fails("the solver has no solution");
+    };
+    let Ok(d) = discretize(&solved.problem, &solved.method) else {
+        return Verdict::Fails("there is no discrete problem");
+    };
+    let (asked, nothing) = (Asked { share: 40, tenth }, |_: &[[Exact; 2]], _| Verdict::Holds(""));
+    let found = Certifier::new(&d).compared(&exactly(&solved.u), asked, false, &[], nothing);
+    found.unwrap_or_else(Verdict::Fails)
+}
+
+/// P1 without quadrature error, and P1 and P2 by points.
+pub const P1: (Degree, ContactQuadrature) = (Degree::One, ContactQuadrature::Exact);
+/// P1 by Gauss points.
+pub const P1_BY_POINTS: (Degree, ContactQuadrature) = (Degree::One, ContactQuadrature::Gauss(3));
+/// P2 by Gauss points.
+pub const P2_BY_POINTS: (Degree, ContactQuadrature) = (Degree::Two, ContactQuadrature::Gauss(3));
+
+fn on_small_meshes() -> Outcome {
+    let mut text = Vec::new();
+    for (cases, rule, most, gap, class) in [
+        (6, P1, [2, 2], WIDE, "open"),
+        (6, P1, [2, 2], NARROW, "pressed"),
+        (12, P1, [2, 2], BETWEEN, IRRATIONAL),
+        (4, P1_BY_POINTS, [2, 1], BETWEEN, CUT),
+        (4, P2_BY_POINTS, [1, 1], BETWEEN, CUT),
+    ] {
+        let drawn = problems(most, gap);
+        text.push(draws::hold(cases, drawn, &[class], |draw| certified(draw, rule, None))?);
+    }
+    Ok(text.join("; "))
+}
+
+/// A tenth of the right side of each bound in turn, in full contact, where u^h is rational.
+fn a_tenth() -> Outcome {
+    let mut text = Vec::new();
+    for bound in [Bound::Monotone, Bound::Energy, Bound::Displacement, Bound::Pressure] {
+        for (rule, most) in [(P1, [2, 1]), (P2_BY_POINTS, [1, 1])] {
+            let drawn = problems(most, NARROW);
+            text.push(draws::reject(drawn, |draw| certified(draw, rule, Some(bound)))?);
+        }
+    }
+    Ok(text.join("; "))
+}
+
+/// The triangle (0, 0), (3, 0), (0, 4) in contact at y = 0, all but (3, 0) clamped, lambda = mu = 1, with the body force
+/// (-1/2, 0), whose load is (-1, 0).
+///
+/// # Errors
+/// None: the mesh is one.
+pub fn triangle() -> Result<Problem, String> {
+    let named = [("bottom", [0, 1]), ("left", [2, 0])];
+    let mesh = mesh(vec![[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]], vec![[0, 1, 2]], named)?;
+    let mut problem = sharpness::clamped(mesh, Material::lame(1.0, 1.0, Plane::Strain), &["left"]);
+    problem.body_force = [constant(-0.5), constant(0.0)];
+    Ok(problem)
+}
+
+/// On the triangle with gamma0 = 8/5, twelve times the limit, both u = (3/2, 0) and u = (-19/32, 3/8) are solutions, and
+/// the certificate refuses both; with gamma0 = 1/15 it accepts any point.
+fn refused_beyond_the_limit() -> Outcome {
+    let problem = triangle()?;
+    Exact::scope(|| {
+        let zero = [0; 2].map(Exact::from);
+        for (gamma0, unique) in [(1.6, false), (1.0 / 15.0, true)] {
+            let gamma0 = Gamma0::Value(gamma0);
+            let method = Method { gamma0, allow_noncoercive: true, ..Method::default() };
+            let d = discretize(&problem, &method).map_err(text)?;
+            let certifier = Certifier::new(&d);
+            // The solver's load, -1 up to rounding; with it the solutions are scaled.
+            let scale = -Exact::of_double(d.load[1][0]);
+            for u in [[(3, 2), (0, 1)], [(-19, 32), (3, 8)]] {
+                let field = vec![zero, u.map(|(n, d)| scale * Exact::ratio(n, d)), zero];
+                let field = certifier.point(field);
+                if !unique && !field.is_solution() {
+                    return Err(format!("{u:?} is no solution"));
+                }
+                if certifier.certify(&field).is_ok() != unique {
+                    return Err(format!("gamma0 = {gamma0:?}: the certificate is wrong"));
+                }
+            }
+        }
+        Ok("gamma0 = 8/5: two solutions, refused; gamma0 = 1/15: accepted".to_owned())
+    })
+}
+
+/// How far the last of the two triangles of [`sharpness::trapezoid`] is from being a line: kappa is attained up to this.
+pub const NARROW_TRAPEZOID: f64 = 0.001;
+
+/// The eigenvector of A for its least eigenvalue beside a(., .), by inverse iteration: each of 400 steps multiplies what is not
+/// that by 1 - kappa or less.
+pub fn eigenvector(d: &Discretization<'_>, system: &System, factor: &Factor) -> Vec<[f64; 2]> {
+    let mut u = vec![[0.0; 2]; d.space.nodes().len()];
+    let mut x: Vec<f64> = (0..system.numbering.count).map(|k| 1.0 + k as f64 / 7.0).collect();
+    for _ in 0..400 {
+        let size = x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        x.iter_mut().for_each(|x| *x *= 1e-3 / size);
+        system.numbering.scatter(&x, &mut u);
+        x = system.numbering.gather(&d.internal_forces(&u).values);
+        factor.solve(&mut x);
+    }
+    u
+}
+
+/// A(u, u) over (1 - kappa) a(u, u), for a field that an obstacle does not touch: without loads the residual is A u.
+pub fn share_of_12(d: &Discretization<'_>, system: &System, u: &[[f64; 2]], kappa: f64) -> f64 {
+    let work = system.numbering.gather(&d.residual(u).values);
+    let in_a: f64 = work.iter().zip(system.numbering.gather(u)).map(|(r, u)| r * u).sum();
+    in_a / ((1.0 - kappa) * d.strain_energy(u))
+}
+
+/// (12) with v^h = 0 is A(u, u) >= (1 - kappa) a(u, u), which two triangles attain up to a hundredth; `constant` multiplies 1 - kappa.
+fn attained(constant: f64) -> Outcome {
+    let mut most: f64 = 0.0;
+    for degree in [Degree::One, Degree::Two] {
+        for kappa in [0.1, 0.5, 0.9] {
+            let mut problem = sharpness::trapezoid(NARROW_TRAPEZOID)?;
+            problem.conditions.insert("bottom".to_owned(), floor(1.0));
+            let method = sharpness::at_kappa(&problem, degree, kappa)?;
+            let d = discretize(&problem, &method).map_err(text)?;
+            let system = System::new(&d).map_err(text)?;
+            let factor = Factor::new(&system.matrix).map_err(text)?;
+            let u = eigenvector(&d, &system, &factor);
+            let share = share_of_12(&d, &system, &u, kappa) / constant;
+            // What rounding leaves of the eigenvector, and of sums of a dozen terms.
+            if !(share >= 1.0 - 1e-10) {
+                return Err(format!("kappa = {kappa}: {share} times the bound"));
+            }
+            most = most.max(share);
+        }
+    }
+    if most > 1.01 {
+        return Err(format!("not attained: {most}"));
+    }
+    Ok(format!("two triangles, P1 and P2: attained up to {:.1e}", most - 1.0))
+}
+
+/// The checks, for the row of Theorem 3.3.
+pub fn checks() -> [Check; 5] {
+    [
+        exact!("a_is_positive_definite_and_the_one_solution_is_found_by_elimination" => on_small_meshes())
+            .about(&["Theorem 3.3"]),
+        exact!("control_a_tenth_of_the_radius_encloses" => a_tenth()),
+        exact!("control_certificate_beyond_the_limit" => refused_beyond_the_limit()),
+        doubles!("the_constant_of_12_is_attained" => attained(1.0)).about(&["(12)"]),
+        doubles!("control_the_constant_of_12_a_fiftieth_too_large" => noticed(attained(1.02))),
+    ]
+}

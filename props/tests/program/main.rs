@@ -1,0 +1,38 @@
+//! What the program promises beyond the paper, beside exact rationals: the enclosure that each solve reports, the certificates of the
+//! error and of forces, balls and double-doubles, directions of contact. Data are drawn by `props::draws`; each check has a
+//! control, a planted mistake that it must reject.
+//!
+//! A part of it alone: `cargo test -p props --test program balls::`.
+
+/// Tests by their names: `NAME => OUTCOME;`.
+macro_rules! checks {
+    ($($name:ident => $run:expr;)+) => {$(
+        mod $name {
+            #[allow(unused_imports, reason = "an outcome may need nothing")]
+            use super::*;
+
+            #[test]
+            fn check() {
+                if let Err(why) = props::draws::named(stringify!($name), || $run) {
+                    panic!("{why}");
+                }
+            }
+        }
+    )+};
+}
+
+mod a_priori;
+mod at_points;
+mod attained;
+mod balls;
+mod by_hand;
+mod directions;
+mod enclosure;
+mod error_bound;
+mod forces;
+mod geometry;
+mod pressed;
+mod quantities;
+mod refusals;
+mod rounding;
+mod solved;
