@@ -117,7 +117,7 @@ mod tests {
         let middle = |t: usize| mesh.triangle(t).point([1.0 / 3.0; 3]).into();
         let (a, b) = (0..mesh.triangles().len()).partition(|&t| holds(middle(t)));
         let surfaces = BTreeMap::from([("a".to_owned(), a), ("b".to_owned(), b)]);
-        mesh.clone().with_names(surfaces, BTreeMap::new())
+        mesh.clone().with_names(surfaces, BTreeMap::new()).unwrap()
     }
 
     fn parts(mesh: &Mesh) -> usize {
@@ -173,7 +173,7 @@ mod tests {
             };
             surfaces.entry(name.to_owned()).or_default().push(t);
         }
-        let glued = mesh.with_names(surfaces, BTreeMap::new());
+        let glued = mesh.with_names(surfaces, BTreeMap::new()).unwrap();
         let mesh = glued.split_between(&names(["a", "b"])).unwrap();
         assert_eq!((parts(&mesh), mesh.vertices().len()), (1, glued.vertices().len() + 1));
         assert_eq!(mesh.edges_of("a|b").unwrap().len(), 1);
