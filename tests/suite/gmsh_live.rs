@@ -105,7 +105,8 @@ fn older_files_and_straight_elements_of_second_order_give_the_same_mesh() {
         }
     }
     let curved = mesh("cases/disk.geo", "curved.msh", &["-order", "2"]);
-    let message = gmsh::read(&curved, None, &[]).err().map_or("no error".to_owned(), |e| e.to_string());
+    let message =
+        gmsh::read(&curved, None, &[]).err().map_or("no error".to_owned(), |e| e.to_string());
     assert!(message.contains("is curved: node"), "{message}");
 }
 
