@@ -136,7 +136,7 @@ fn meshes_of_every_variant_are_the_square_that_they_are() {
 #[test]
 fn meshes_that_are_refused_say_what_they_are_and_what_helps() {
     for (name, words) in REFUSED {
-        let error = gmsh::read(&file(name), None).map(|_| ()).unwrap_err().to_string();
+        let error = gmsh::read(&file(name), None, &[]).map(|_| ()).unwrap_err().to_string();
         assert!(error.contains(words), "{name}: {error}");
     }
 }
@@ -161,13 +161,13 @@ fn every_variant_is_in_one_of_the_lists() {
 
 #[test]
 fn a_first_partition_may_be_a_part_and_is_read_with_a_remark() {
-    let made = gmsh::read(&file("first_partition_22"), None).unwrap();
+    let made = gmsh::read(&file("first_partition_22"), None, &[]).unwrap();
     assert!(made.remarks[0].starts_with("all triangles are in partition 1"), "{:?}", made.remarks);
 }
 
 #[test]
 fn rectangles_are_split_along_one_diagonal_and_the_number_is_said() {
-    let made = gmsh::read(&file("meshio_quadrangles"), None).unwrap();
+    let made = gmsh::read(&file("meshio_quadrangles"), None, &[]).unwrap();
     assert_eq!(made.mesh.triangles().len(), 6);
     let expected = format!("3 quadrangles {SPLIT}");
     assert_eq!(made.remarks, [expected]);
@@ -243,11 +243,11 @@ fn triangles_that_run_both_ways_on_one_surface_are_refused() {
     words.swap(5, 6);
     lines[first] = words.join(" ");
     let mixed = lines.join("\n") + "\n";
-    let error = gmsh::from_bytes(mixed.as_bytes(), Path::new("x.msh"), None).map(|_| ());
+    let error = gmsh::from_bytes(mixed.as_bytes(), Path::new("x.msh"), None, &[]).map(|_| ());
     let error = error.unwrap_err().to_string();
     let expected = "list its vertices counter-clockwise (the numbers are tags of the file; others of its surface run counter-clockwise)";
     assert!(error.contains(expected), "{error}");
-    assert!(gmsh::from_bytes(text.as_bytes(), Path::new("x.msh"), None).is_ok(), "control");
+    assert!(gmsh::from_bytes(text.as_bytes(), Path::new("x.msh"), None, &[]).is_ok(), "control");
 }
 
 #[test]
