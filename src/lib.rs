@@ -2,7 +2,7 @@
 //! for unilateral contact problems: numerical analysis*, SIAM J. Numer. Anal. 51 (2013) 1295-1307 ("the paper").
 //!
 //! A block on a rigid floor, whose right half the load lifts off; more in the folder
-//! `examples`.
+//! `examples`, where `first_contact.rs` is a tutorial.
 //!
 //! ```
 //! use signorini::{Condition, Diagonal, Material, Method, Obstacle, Plane, Problem, Rectangle, Settings, solve};
