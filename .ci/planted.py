@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Plants the mistakes of `props/planted.toml` in the sources, one at a time, and asks what is named there: a check of VERIFY.md
-(`row` and `check`) or a test of `tests/suite` (`test`).
+(`row` and `check`), a test of `tests/suite` (`test`), or one of `props/tests/program` (`program`).
 
-    python3 .ci/planted.py                    every mistake must be noticed by its check, and no check without one
+    python3 .ci/planted.py --all              every mistake must be noticed by its check, and no check without one; date and count
+                                              of the run are written into props/mutants.md
     python3 .ci/planted.py --only TEXT        those with TEXT in their name
     python3 .ci/planted.py --check            none is planted: only that each text is found in the sources
     python3 .ci/planted.py --survey           all rows for each: which checks notice it (hours)
@@ -17,7 +18,7 @@ nothing is run. Mistakes whose texts overlap are built one after the other. What
 """
 
 import argparse
-import json
+import datetime
 import os
 import pathlib
 import re
@@ -54,17 +55,27 @@ def is_a_test(path):
     return f"fn {name}(" in text or f"    {name}:" in text
 
 
+def is_of_the_program(path):
+    """Whether a line of `checks!` in props/tests/program has this name."""
+    module, _, name = path.partition("::")
+    file = ROOT / f"props/tests/program/{module}.rs"
+    return file.is_file() and f"    {name} => " in file.read_text()
+
+
 def mistakes(path):
     """The mistakes, numbered from 1, each with the place of its text."""
     found, wrong, names = [], [], set()
     claims = "".join(file.read_text() for file in (ROOT / "props/src").rglob("*.rs"))
     for k, entry in enumerate(tomllib.loads(path.read_text())["mistake"], 1):
         what = f"{path.name}, mistake {k} ({entry.get('name')})"
-        if missing := (KEYS | ({"test"} if "test" in entry else {"row", "check"})) - entry.keys():
+        asked = next(({key} for key in ("test", "program") if key in entry), {"row", "check"})
+        if missing := (KEYS | asked) - entry.keys():
             wrong.append(f"{what}: no {', '.join(sorted(missing))}")
             continue
         if "test" in entry and not is_a_test(entry["test"]):
             wrong.append(f"{what}: no test {entry['test']}")
+        if "program" in entry and not is_of_the_program(entry["program"]):
+            wrong.append(f"{what}: no test {entry['program']} of props/tests/program")
         if "check" in entry and not re.search(rf"\b{entry['check']}\b", claims):
             wrong.append(f"{what}: no check {entry['check']}")
         if any(re.search(r"^let |[;=]$", entry[key]) for key in ("old", "new")):
@@ -162,26 +173,35 @@ def ask(number, row=None, check=None, seconds=600):
     shutil.copytree(ROOT / "props/regressions", regressions)
     environment = os.environ | {"CARGO_TARGET_DIR": str(TARGET), "PLANTED": str(number), "NO_COLOR": "1"}
     command = [str(PROGRAM), "audit"] + [part for part in (row, check) if part]
-    stem = "-".join(["row", row] + ([check] if check else [])) if row else "index"
-    report = TARGET / f"audit/{stem}.json"
-    report.unlink(missing_ok=True)
     try:
         done = subprocess.run(command, cwd=TREE, env=environment, capture_output=True, text=True, timeout=seconds)
     except subprocess.TimeoutExpired:
         return None
-    if not report.is_file():
+    if done.returncode not in (0, 1):
         return {"(no report)": (done.stderr or done.stdout).strip().splitlines()[-1:]}
-    checks = json.loads(report.read_text())["checks"]
-    return {c["name"]: c["said"] for c in checks if not c["passed"]}
+    return dict(re.findall(r"^FAILED in row \d+: [a-zA-Z ]+? (\w+): (.*)$", done.stdout, re.M))
+
+
+def keep(noticed, count):
+    """Writes when the whole list was planted last, and what came of it."""
+    page = ROOT / "props/mutants.md"
+    said = f"The whole list was run last on {datetime.date.today().isoformat()}: {noticed} of {count} were noticed."
+    text, places = re.subn(r"The whole list was run last on [-\d]+: \d+ of \d+ were noticed\.", said, page.read_text())
+    if places != 1:
+        sys.exit(f"{page}: expected one sentence 'The whole list was run last on ..'")
+    page.write_text(text)
 
 
 def main():
     arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    arguments.add_argument("--all", action="store_true")
     arguments.add_argument("--only", default="", metavar="TEXT")
     arguments.add_argument("--check", action="store_true")
     arguments.add_argument("--survey", action="store_true")
     arguments.add_argument("--seconds", type=float, default=600)
     options = arguments.parse_args()
+    if options.all == bool(options.only or options.check or options.survey):
+        arguments.error("expected one of --all, --only TEXT, --check and --survey")
     entries = [e for e in mistakes(ROOT / "props/planted.toml") if options.only in e["name"]]
     if options.check:
         print(f"{len(entries)} mistakes, each found in the sources")
@@ -191,20 +211,26 @@ def main():
         plant(group)
         if options.survey or any("row" in entry for entry in group):
             build("build", "--quiet", "-p", "props")
-        if not options.survey and any("test" in entry for entry in group):
-            said = build("test", "--test", "suite", "--no-run")
-            tests = str(TREE / said.rsplit("(", 1)[1].split(")")[0])
+        programs = {}
+        for key, of in (("test", ["--test", "suite"]), ("program", ["-p", "props", "--test", "program"])):
+            if not options.survey and any(key in entry for entry in group):
+                said = build("test", *of, "--no-run")
+                programs[key] = str(TREE / said.rsplit("(", 1)[1].split(")")[0])
         for entry in group:
-            row, check, test = (None if options.survey else entry.get(key) for key in ("row", "check", "test"))
+            row, check, test, program = (None if options.survey else entry.get(key) for key in ("row", "check", "test", "program"))
 
             def asking(number):
-                return ask_test(tests, number, test, options.seconds) if test else ask(number, row, check, options.seconds)
+                if test:
+                    return ask_test(programs["test"], number, test, options.seconds)
+                if program:
+                    return ask_test(programs["program"], number, f"{program}::check", options.seconds)
+                return ask(number, row, check, options.seconds)
 
-            if (row, check, test) not in asked:
-                asked.add((row, check, test))
+            if (row, check, test, program) not in asked:
+                asked.add((row, check, test, program))
                 if (failed := asking(0)) != {}:
                     bad += 1
-                    print(f"WITHOUT A MISTAKE, {test or check or 'all checks'}: {failed}", flush=True)
+                    print(f"WITHOUT A MISTAKE, {test or program or check or 'all checks'}: {failed}", flush=True)
             start = time.monotonic()
             failed = asking(entry["number"])
             took = time.monotonic() - start
@@ -216,9 +242,11 @@ def main():
                 verdict = f"SURVIVES {failed or ''}"
             bad += not verdict.startswith("noticed")
             print(f"{entry['name']}: {verdict} ({took:.0f} s)", flush=True)
-            table.append(f"| {entry['name']} | `{entry['file']}` | {entry.get('row', 'test')} | {verdict} |")
+            table.append(f"| {entry['name']} | `{entry['file']}` | {entry.get('row', entry.get('program', 'test'))} | {verdict} |")
     head = ["| mistake | file | row | found |", "| --- | --- | --- | --- |"]
     (TARGET / "table.md").write_text("\n".join(head + table) + "\n")
+    if options.all:
+        keep(sum("| noticed" in line for line in table), len(table))
     print(f"{len(table)} mistakes, {bad} not noticed; written: {TARGET / 'table.md'}")
     sys.exit(1 if bad else 0)
 

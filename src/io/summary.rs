@@ -599,3 +599,36 @@ fn written(files: &[PathBuf]) -> String {
         files.iter().flat_map(|f| f.file_name()).map(|n| n.to_string_lossy()).collect();
     format!("{}: {}", quote::path(folder), names.join(", "))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_interval_is_printed_around_itself_with_two_digits_of_its_width() {
+        let printed = |ends: [f64; 2]| -> [f64; 2] {
+            let text = between(ends);
+            let words: Vec<&str> = text.split(' ').collect();
+            assert_eq!((words[0], words[2]), ("between", "and"), "{text}");
+            [1, 3].map(|k| words[k].replace('\u{2212}', "-").parse().unwrap())
+        };
+        let mut wider = 0;
+        for k in 1..400 {
+            // Ends all over the decades, of either sign, near to each other and far apart.
+            let low =
+                f64::from(k) * 0.777 * 10_f64.powi(k % 9 - 4) * if k % 2 == 0 { 1.0 } else { -1.0 };
+            let high = low + low.abs() * 10_f64.powi(-(k % 7));
+            let [a, b] = printed([low, high]);
+            assert!(a <= low && high <= b, "[{low}, {high}] is printed as [{a}, {b}]");
+            // By half of a digit for each end and as much for its rounding, of two digits of the width or of four of the number.
+            let most = (0.1 * (high - low)).max(2e-3 * low.abs().max(high.abs()));
+            assert!(
+                low - a <= most && b - high <= most,
+                "[{low}, {high}] is printed as [{a}, {b}]"
+            );
+            wider += i32::from(a < low && high < b);
+        }
+        assert!(wider > 100, "{wider} are wider at both ends");
+        assert_eq!(between([0.0, 0.0]), "between 0 and 0");
+    }
+}

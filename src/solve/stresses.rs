@@ -15,6 +15,12 @@ pub fn von_mises([xx, yy, zz, xy]: Components) -> f64 {
     (squares / 2.0 + 3.0 * xy * xy).sqrt()
 }
 
+/// The largest and the smallest principal stress, that across the plane among them.
+fn principal(stress: Components) -> [f64; 2] {
+    let [first, second] = principal_in_plane(stress);
+    [first.max(stress[2]), second.min(stress[2])]
+}
+
 /// The principal stresses in the plane, the larger first.
 pub(crate) fn principal_in_plane([xx, yy, _, xy]: Components) -> [f64; 2] {
     let (mean, radius) = ((xx + yy) / 2.0, ((xx - yy) / 2.0).hypot(xy));
@@ -62,11 +68,11 @@ impl Solution {
                 self.nodes.iter().zip(means).filter_map(|(x, mean)| Some((x, mean?)))
             {
                 let extreme = |value| Extreme { value, at, triangle };
-                let [first, second] = principal_in_plane(stress);
+                let [most, least] = principal(stress);
                 let here = LargestStresses {
                     von_mises: extreme(von_mises(stress)),
-                    principal_max: extreme(first.max(stress[2])),
-                    principal_min: extreme(second.min(stress[2])),
+                    principal_max: extreme(most),
+                    principal_min: extreme(least),
                 };
                 let so_far = largest.get_or_insert(here);
                 if here.von_mises.value > so_far.von_mises.value {
@@ -129,5 +135,20 @@ mod tests {
         assert_relative_eq!(von_mises([0.0, 0.0, 0.0, 2.0]), 12.0_f64.sqrt());
         assert_eq!(von_mises([3.0, 3.0, 3.0, 0.0]), 0.0);
         assert_eq!(principal_in_plane([0.0, 0.0, 9.0, 2.0]), [2.0, -2.0]);
+    }
+
+    #[test]
+    fn the_stress_across_the_plane_is_a_principal_one() {
+        // Plane strain, u = (a x, b y), lambda = mu = 1: sigma_zz = a + b lies below, between and above the others.
+        for (xx, yy, zz, expected) in [
+            (5.0, 4.0, 3.0, [5.0, 3.0]),
+            (2.0, -4.0, -1.0, [2.0, -4.0]),
+            (-5.0, -4.0, -3.0, [-3.0, -5.0]),
+        ] {
+            assert_eq!(principal([xx, yy, zz, 0.0]), expected);
+        }
+        // A shear alone has the principal stresses 2 and -2.
+        assert_eq!(principal([0.0, 0.0, 9.0, 2.0]), [9.0, -2.0]);
+        assert_eq!(principal([0.0, 0.0, -9.0, 2.0]), [2.0, -9.0]);
     }
 }

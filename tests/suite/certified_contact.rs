@@ -195,3 +195,96 @@ fn a_field_that_misses_what_is_prescribed_is_measured() {
     // The energy norm of both is the same.
     assert!((missed(1e3) - 1e3).abs() < 1e-9, "{}", missed(1e3));
 }
+
+/// A place of a certificate: of a vertex, or of a cut, which is numbered after these.
+fn place(certificate: &Certificate, k: usize) -> [f64; 2] {
+    certificate.vertices.get(k).copied().unwrap_or_else(|| {
+        let cut = certificate.cuts[k - certificate.vertices.len()];
+        let [a, b] = cut.ends.map(|end| certificate.vertices[end]);
+        [0, 1].map(|c| a[c] + cut.at * (b[c] - a[c]))
+    })
+}
+
+/// The gap in the middle of each edge of Gamma_C as a certificate has it, less `expected` of the places of its ends, its directions and
+/// its gaps there: the largest one, with the number of edges.
+fn off_in_the_middle(
+    certificate: &Certificate,
+    expected: impl Fn([[f64; 2]; 2], Option<[[f64; 2]; 2]>) -> f64,
+) -> (f64, usize) {
+    let data = &certificate.curved.as_ref().expect("v is quadratic").data;
+    let mut found = (0.0_f64, 0);
+    for (edge, bulge) in certificate.edges.iter().zip(data) {
+        let Role::Contact { gap, along, .. } = edge.role else { continue };
+        let places = edge.ends.map(|k| place(certificate, k));
+        let middle = (gap[0] + gap[1]) / 2.0 + bulge[0];
+        found = (found.0.max((middle - expected(places, along)).abs()), found.1 + 1);
+    }
+    found
+}
+
+const FLOOR: &str = "[method]\ndegree = 2\n[load]\nbody = [\"0\", \"-0.1\"]\n[boundary.top]\ndisplacement = [\"0\", \"-0.05 + 0.02*x\"]\n";
+
+#[test]
+fn a_gap_of_degree_two_is_itself_on_both_parts_of_an_edge_that_is_cut() {
+    let text =
+        format!("{SQUARE}{FLOOR}[boundary.bottom]\ncontact = {{ gap = \"0.3*(x - 0.37)^2\" }}\n");
+    let certificate = certified(&text, &[]).certificate;
+    let gap = |x: f64| 0.3 * (x - 0.37).powi(2);
+    let middle = |places: [[f64; 2]; 2]| (places[0][0] + places[1][0]) / 2.0;
+    let (off, count) = off_in_the_middle(&certificate, |places, _| gap(middle(places)));
+    assert!(off <= 1e-14 && count >= 8, "{off}, {count} edges");
+    let cut = certificate.edges.iter().filter(|edge| matches!(edge.role, Role::Contact { .. }));
+    let first = certificate.vertices.len();
+    let lengths: Vec<f64> = (cut.filter(|edge| edge.ends.iter().any(|&k| k >= first)))
+        .map(|edge| {
+            let [p, q] = edge.ends.map(|k| place(&certificate, k)[0]);
+            (q - p).abs()
+        })
+        .collect();
+    // At least one is cut elsewhere than in the middle: there the two parts differ.
+    assert!(lengths.iter().any(|l| (l - 0.0625).abs() > 1e-3), "{lengths:?}");
+    // Control: a gap that is steeper by a hundredth.
+    let (off, _) = off_in_the_middle(&certificate, |places, _| 1.01 * gap(middle(places)));
+    assert!(off > 1e-5, "{off}");
+}
+
+#[test]
+fn the_gap_in_the_middle_of_an_edge_along_which_the_direction_turns_is_that_along_the_mean_direction()
+ {
+    let (center, radius) = ([0.45, -3.0], 3.0);
+    let round = "[obstacle.round]\ncircle = { center = [0.45, -3.0], radius = 3.0, side = \"outside\" }\n[boundary.bottom]\ncontact = { obstacle = \"round\" }\n";
+    let certificate = certified(&format!("{SQUARE}{FLOOR}{round}"), &[]).certificate;
+    // At x: the distance from the circle, and the unit vector towards its centre.
+    let seen = |x: [f64; 2]| {
+        let to = [center[0] - x[0], center[1] - x[1]];
+        let away = to[0].hypot(to[1]);
+        (away - radius, to.map(|c| c / away))
+    };
+    // Beside a v of degree two an edge is cut in its middle: there is the gap of both parts.
+    let first = certificate.vertices.len();
+    let off = |factor: f64| {
+        let (mut most, mut count) = (0.0_f64, 0);
+        for edge in &certificate.edges {
+            let Role::Contact { gap, along: Some(_), .. } = edge.role else { continue };
+            for (gap, k) in gap.into_iter().zip(edge.ends) {
+                let Some(cut) = k.checked_sub(first).map(|k| certificate.cuts[k]) else { continue };
+                let [p, q] = cut.ends.map(|end| place(&certificate, end));
+                if cut.at != 0.5 || cut.ends.iter().any(|&end| end >= first) {
+                    continue;
+                }
+                let ((_, d), (_, e)) = (seen(p), seen(q));
+                let (there, direction) = seen(place(&certificate, k));
+                let cosine = (0..2).map(|c| (d[c] + e[c]) / 2.0 * direction[c]).sum::<f64>();
+                most = most.max((gap - there * (1.0 + factor * (cosine - 1.0))).abs());
+                count += 1;
+            }
+        }
+        (most, count)
+    };
+    // A distance of 3 is known to some roundings.
+    let (most, count) = off(1.0);
+    assert!(most <= 1e-14 && count >= 8, "{most}, {count} ends");
+    // Control: without the cosine.
+    let (most, _) = off(0.0);
+    assert!(most > 1e-9, "{most}");
+}

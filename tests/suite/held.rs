@@ -2,7 +2,9 @@
 //! equilibrium, and from the same bodies on supports that happen to carry nothing.
 
 use approx::assert_abs_diff_eq;
-use signorini::fem::{Condition, DataError, Mesh, Obstacle, PointSupport, Problem, Side};
+use signorini::fem::{
+    Condition, DataError, Mesh, Obstacle, PointSupport, Problem, Side, Space, contact_line,
+};
 use signorini::kernel::{Material, Plane};
 use signorini::solve::{
     Course, Degree, RouteName, Settings, Solution, SolveError, solve, solve_along,
@@ -156,6 +158,11 @@ fn a_block_between_walls_that_it_does_not_touch_is_where_its_displacement_is_lea
             // Until P is zero somewhere: at the gap but for gamma times a stress.
             assert_abs_diff_eq!(play.least.unwrap(), -gap - least, epsilon = 1e-3);
             assert_eq!(play.most.is_some(), gaps[1].is_some());
+            let side = s.displacement.iter().zip(&s.nodes);
+            let most = side.filter(|(_, x)| x[0] == 1.0).map(|(u, _)| u[0]).fold(-1.0, f64::max);
+            if let Some(gap) = gaps[1] {
+                assert_abs_diff_eq!(play.most.unwrap(), gap - most, epsilon = 1e-3);
+            }
             assert!(s.enclosure.is_ok(), "{:?}", s.enclosure.err());
         }
     }
@@ -178,4 +185,92 @@ fn a_shaft_that_the_loads_turn_in_its_bearing_is_refused_with_the_moment() {
     assert_abs_diff_eq!(drive.unwrap(), -0.01 * std::f64::consts::PI / 4.0, epsilon = 2e-4);
     assert!(error.to_string().contains("rotation about (0, 0)"), "{error}");
     assert!(error.to_string().contains("drive it with a moment of -0.007"), "{error}");
+}
+
+#[test]
+fn how_far_a_body_may_slide_does_not_depend_on_where_it_is() {
+    for degree in DEGREES {
+        let plays = |[p, q]: [f64; 2]| {
+            let problem = beside_walls([Some(0.1), Some(0.2)]);
+            let mesh = moved_to(&problem.mesh, |[x, y]| [x + p, y + q]);
+            let mut moved = Problem { mesh, ..problem };
+            moved.body_force[1] = function(move |[x, _]| -0.02 - 0.01 * (x - p));
+            let s = solved(&moved, degree);
+            let [play] = s.plays[..] else { panic!("{:?}", s.plays) };
+            (play.along, play.least.unwrap(), play.most.unwrap())
+        };
+        let (along, least, most) = plays([0.0; 2]);
+        assert!(along.is_some() && least < -0.05 && most > 0.1, "{least} {most}");
+        for by in [[16.0, 0.0], [-3.0, 5.0], [0.0, -40.0]] {
+            let there = plays(by);
+            assert_eq!(there.0, along);
+            // Coordinates that are 40 times as large lose as many digits.
+            assert_abs_diff_eq!(there.1, least, epsilon = 1e-9);
+            assert_abs_diff_eq!(there.2, most, epsilon = 1e-9);
+        }
+        // Control: it does depend on the gap.
+        let nearer = solved(&beside_walls([Some(0.1), Some(0.15)]), degree);
+        assert!((nearer.plays[0].most.unwrap() - most).abs() > 0.04);
+    }
+}
+
+#[test]
+fn a_traction_along_a_component_that_is_held_does_nothing() {
+    for degree in DEGREES {
+        let solve_with = |[x, y]: [f64; 2]| {
+            let side = Condition::Mixed {
+                displacement: [Some(constant(0.0)), None],
+                traction: [constant(x), constant(y)],
+            };
+            let parts = vec![("left", side), ("bottom", Condition::contact(|_| 0.0))];
+            solved(&block_under(unit_square(4).mesh().unwrap(), [0.01, -0.1], parts), degree)
+        };
+        let (without, with) = (solve_with([0.0, -0.02]), solve_with([0.5, -0.02]));
+        assert_eq!(without.displacement, with.displacement);
+        assert_eq!(without.quantities.reactions, with.quantities.reactions);
+        // What holds it carries the load along x, the floor what acts along y.
+        assert_abs_diff_eq!(with.quantities.reactions["left"][0], -0.01, epsilon = SOLVED);
+        assert_abs_diff_eq!(with.quantities.contact_force, 0.12, epsilon = SOLVED);
+        // Control: along the free one it does.
+        assert!(solve_with([0.0, -0.03]).displacement != without.displacement);
+    }
+}
+
+#[test]
+fn on_a_round_obstacle_u_n_and_gap_are_along_the_radius() {
+    let (center, radius) = ([0.03, -0.02], 1.2);
+    let bearing = Obstacle::Circle { center, radius, side: Side::Inside };
+    let condition = Condition::Obstacle("bearing".to_owned(), bearing);
+    let s =
+        solved(&block_under(polygon(24, 2), [0.02, -0.1], vec![("rim", condition)]), Degree::One);
+    let mut off_the_normal = 0.0_f64;
+    for edge in &s.contact {
+        for point in &edge.points {
+            let (x, u) = (s.nodes[point.node], s.displacement[point.node]);
+            let away = [x[0] - center[0], x[1] - center[1]];
+            let far = away[0].hypot(away[1]);
+            let u_n = (u[0] * away[0] + u[1] * away[1]) / far;
+            assert_abs_diff_eq!(point.u_n, u_n, epsilon = SOLVED);
+            assert_abs_diff_eq!(point.gap, radius - far, epsilon = SOLVED);
+            let along_normal = u[0] * edge.normal[0] + u[1] * edge.normal[1];
+            off_the_normal = off_the_normal.max((u_n - along_normal).abs());
+        }
+    }
+    // Control: along the normals of the facets it would be something else.
+    assert!(off_the_normal > 1e-3, "{off_the_normal}");
+}
+
+#[test]
+fn an_edge_that_faces_away_is_refused_inside_an_obstacle_and_not_where_it_only_begins_there() {
+    // The upper half of a disk faces away from a floor.
+    let contact = |height: f64| {
+        let floor = Obstacle::Plane { point: [0.0, height], normal: [0.0, 1.0] };
+        let condition = Condition::Obstacle("floor".to_owned(), floor);
+        let problem = block_under(polygon(12, 1), [0.0, 0.0], vec![("rim", condition)]);
+        let space = Space::new(&problem.mesh, Degree::One);
+        contact_line::assemble(&problem, &space, 0.01).map(|line| line.len())
+    };
+    // The first edge of the upper half goes from height 0 to 1/2.
+    assert_eq!(contact(0.2), Ok(12));
+    assert!(matches!(contact(0.6), Err(DataError::WrongSide { .. })), "{:?}", contact(0.6));
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use signorini::certify::dual::WrongPair;
 use signorini::certify::forces::{self, Evidence, Motion, WrongLifting};
-use signorini::certify::proof::Role;
+use signorini::certify::proof::{Certificate, Role};
 use signorini::certify::quantities::{Limit, Name};
 use signorini::certify::{Asked, Continuous, Ramp, Target, adapt, adapt_to, certify, certify_with};
 use signorini::fem::{Condition, Perturbation, Problem, Structured};
@@ -422,5 +422,145 @@ fn evidence_that_is_wrong_at_one_vertex_of_the_boundary_is_refused() {
                 other => panic!("vertex {vertex}: {other:?}"),
             }
         }
+    }
+}
+
+/// The places on Gamma_C, y = 0, where v is known, with g - v_n there: the vertices and the cuts of a v that is affine.
+fn gaps_of(certificate: &Certificate) -> Vec<(f64, f64)> {
+    let at = |k: usize| (certificate.vertices[k], certificate.displacement[k]);
+    let vertices = (0..certificate.vertices.len()).map(at);
+    let cuts = certificate.cuts.iter().map(|cut| {
+        let [(x, v), (y, w)] = cut.ends.map(at);
+        let between = |a: [f64; 2], b: [f64; 2]| [0, 1].map(|c| a[c] + cut.at * (b[c] - a[c]));
+        (between(x, y), between(v, w))
+    });
+    vertices.chain(cuts).filter(|(x, _)| x[1] == 0.0).map(|(x, v)| (x[0], v[1])).collect()
+}
+
+/// The edges of Gamma_C with tau_n at their ends.
+fn pressures_of(certificate: &Certificate) -> Vec<([f64; 2], [f64; 2])> {
+    let at = |k: usize| {
+        certificate.vertices.get(k).map_or_else(
+            || {
+                let cut = certificate.cuts[k - certificate.vertices.len()];
+                let [a, b] = cut.ends.map(|end| certificate.vertices[end][0]);
+                a + cut.at * (b - a)
+            },
+            |x| x[0],
+        )
+    };
+    let edges = certificate.edges.iter().filter_map(|edge| match edge.role {
+        Role::Contact { pressure, .. } => Some((edge.ends.map(at), pressure)),
+        _ => None,
+    });
+    edges.collect()
+}
+
+#[test]
+fn limits_of_zones_and_the_peak_are_what_the_theorem_says_of_the_certificate() {
+    for n in [8, 16] {
+        let c = certified(&tilted_punch(n), Degree::One);
+        let square = c.quantities.mean_stress.powi(2);
+        let (gaps, pressures) = (gaps_of(&c.certificate), pressures_of(&c.certificate));
+        let mut limits = [0, 0];
+        let [force, _] = interval(&c, Name::ContactForce, "bottom");
+        let (mut peak, mut forgetful) = (force, force);
+        for zone in &c.quantities.zones {
+            let [from, to] = zone.ends.map(|x| x[0]);
+            let (told, least) = match zone.limit {
+                Limit::Force(most) => {
+                    limits[0] += 1;
+                    peak = peak.max((force - most) / (1.0 - (to - from)));
+                    forgetful = forgetful.max(force / (1.0 - (to - from)));
+                    let inside = gaps.iter().filter(|(x, _)| from <= *x && *x <= to);
+                    (most, inside.fold(f64::INFINITY, |least, (_, gap)| least.min(*gap)))
+                }
+                Limit::Opening(most) => {
+                    limits[1] += 1;
+                    let inside =
+                        pressures.iter().filter(|([a, b], _)| from <= a.min(*b) && a.max(*b) <= to);
+                    let least =
+                        inside.fold(f64::INFINITY, |least, (_, [p, q])| least.min(-p).min(-q));
+                    (most, least)
+                }
+            };
+            // M^2 over the least gap, or over the least pressure: known to the balls in which it is found.
+            approx::assert_relative_eq!(told, square / least, max_relative = 1e-9);
+        }
+        assert!(limits[0] > 0 && limits[1] > 0, "n = {n}: zones of both kinds");
+        let [found, _] = interval(&c, Name::PeakPressure, "bottom");
+        approx::assert_relative_eq!(found, peak, max_relative = 1e-9);
+        // Control: without what may be elsewhere it would be another number.
+        assert!(forgetful > (1.0 + 1e-6) * peak, "n = {n}: {forgetful} {peak}");
+    }
+}
+
+#[test]
+fn a_weight_with_kinks_inside_edges_has_the_force_of_a_uniform_pressure_times_its_integral() {
+    let p = 0.25;
+    let patch: Exact = Arc::new(Patch::compression(unit_material(), p));
+    for degree in DEGREES {
+        for n in [4, 5, 7] {
+            let kinds = [("top", Kind::Displacement), ("bottom", Kind::Contact)];
+            let sides = [("left", Kind::Traction), ("right", Kind::Traction)];
+            let kinds = kinds.into_iter().chain(sides).map(|(name, kind)| (name.to_owned(), kind));
+            let problem = exact::problem(&patch, unit_square(n).mesh().unwrap(), &kinds.collect());
+            let weight = Ramp { axis: 0, between: [0.31, 0.62], width: 0.17 };
+            let asked = Asked { forces: vec![("bottom".to_owned(), Some(weight))] };
+            let c = certify_with(&problem, &solved(&problem, degree), &asked).unwrap();
+            let of = |q: &&_| {
+                let q: &signorini::certify::quantities::Quantity = q;
+                q.name == Name::ContactForce && q.weight == Some(weight)
+            };
+            let quantity = c.quantities.list.iter().find(of).unwrap();
+            let [low, high] = quantity.interval.clone().unwrap();
+            let force = p * (0.31 + 0.17);
+            assert!(low <= force && force <= high, "{degree:?}, n = {n}: [{low}, {high}], {force}");
+            // What w misses between the vertices is some hundredths of the force.
+            assert!(high - low < 0.5 * force, "{degree:?}, n = {n}: [{low}, {high}]");
+            // Control: the weight that is straight between the vertices has another force, which is not in the middle.
+            let nodes: Vec<f64> =
+                (0..=n).map(|k| weight.at(Ball::exactly(k as f64 / n as f64)).centre()).collect();
+            let straight: f64 =
+                nodes.windows(2).map(|w| (w[0] + w[1]) / 2.0 / n as f64).sum::<f64>() * p;
+            assert!((straight - force).abs() > 1e-4, "n = {n}: {straight} {force}");
+        }
+    }
+}
+
+#[test]
+fn the_value_beside_the_interval_of_a_weighted_force_is_that_of_the_discrete_pressure() {
+    let problem = tilted_punch(16);
+    let weight = Ramp { axis: 0, between: [0.25, 1.0], width: 0.25 };
+    let asked = Asked { forces: vec![("bottom".to_owned(), Some(weight))] };
+    for degree in DEGREES {
+        let solution = solved(&problem, degree);
+        let c = certify_with(&problem, &solution, &asked).unwrap();
+        let of = |q: &&_| {
+            let q: &signorini::certify::quantities::Quantity = q;
+            q.name == Name::ContactForce && q.weight == Some(weight)
+        };
+        let value = c.quantities.list.iter().find(of).unwrap().value;
+        // Straight between the nodes.
+        let mut expected = 0.0;
+        for edge in &solution.contact {
+            for pair in edge.points.windows(2) {
+                let [a, b] = [0, 1].map(|k| {
+                    let x = solution.nodes[pair[k].node][0];
+                    -pair[k].lambda * (4.0 * x).min(1.0)
+                });
+                expected += (a + b) / 2.0 * (pair[1].arc - pair[0].arc);
+            }
+        }
+        approx::assert_relative_eq!(value, expected, max_relative = 1e-12);
+        // Control: with the pressure of one end it is another number.
+        let of_the_start: f64 = (solution.contact.iter())
+            .flat_map(|edge| edge.points.windows(2))
+            .map(|pair| {
+                let [a, b] = [0, 1].map(|k| (4.0 * solution.nodes[pair[k].node][0]).min(1.0));
+                -pair[0].lambda * (a + b) / 2.0 * (pair[1].arc - pair[0].arc)
+            })
+            .sum();
+        assert!((of_the_start - expected).abs() > 1e-3 * expected, "{of_the_start} {expected}");
     }
 }

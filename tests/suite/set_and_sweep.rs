@@ -358,3 +358,42 @@ fn the_error_that_is_asked_for_on_the_command_line_is_met() {
         assert!(said.contains(message), "{said}");
     }
 }
+
+/// The first line of numbers of a sweep of the case, by the names of their columns.
+fn swept(test: &str, edits: &[[&str; 2]]) -> Vec<(String, f64)> {
+    let folder = folder(test, edits);
+    let output = signorini(&folder, &["sweep", "case.toml", "--set", "method.degree=1,2"]);
+    assert_eq!(ended(&output), (Some(0), ""));
+    let csv = fs::read_to_string(folder.join("out/case/sweep.csv")).unwrap();
+    let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+    let numbers = lines[0].iter().zip(&lines[1]);
+    numbers.filter_map(|(name, x)| Some(((*name).to_owned(), x.parse().ok()?))).collect()
+}
+
+#[test]
+fn forces_reactions_and_energies_of_a_sweep_are_those_of_the_whole_thickness() {
+    let thick = swept("sweep-thick", &[["[load]", "[body]\nthickness = 20\n[load]"]]);
+    let thin = swept("sweep-thin", &[]);
+    let mut wholes = Vec::new();
+    for ((name, whole), (_, per_thickness)) in thick.iter().zip(&thin) {
+        let of_the_whole =
+            ["force", "energy", "reaction_x", "reaction_y", "force_low", "force_high"];
+        let last = name.rsplit(['.', '_']).next().unwrap();
+        let is_whole = of_the_whole.iter().any(|of| name.ends_with(of)) || last == "force";
+        let expected = if is_whole { 20.0 * per_thickness } else { *per_thickness };
+        // A product that is rounded, and ends that go outwards by a double.
+        approx::assert_relative_eq!(*whole, expected, max_relative = 1e-15);
+        wholes.extend(is_whole.then_some(name.as_str()));
+    }
+    let expected = [
+        "contact_force",
+        "energy",
+        "bottom.force",
+        "bottom.force_low",
+        "bottom.force_high",
+        "top.reaction_x",
+        "top.reaction_y",
+    ];
+    assert_eq!(wholes, expected);
+    assert_eq!(thick.len(), thin.len());
+}
