@@ -208,7 +208,7 @@ pub(crate) fn unit(v: Vector2<f64>) -> Vector2<f64> {
 }
 
 /// v turned left by a right angle.
-fn left_of(v: Vector2<f64>) -> Vector2<f64> {
+pub(crate) fn left_of(v: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-v.y, v.x)
 }
 

@@ -33,6 +33,7 @@ pub mod moments;
 pub mod obstacle;
 #[doc(hidden)]
 pub mod pairs;
+mod path;
 pub mod piece;
 #[doc(hidden)]
 pub mod problem;
@@ -62,8 +63,9 @@ pub use law::{EdgeRule, Law};
 pub use material::Materials;
 pub use mesh::bisection::Refinement;
 pub use mesh::{BoundaryEdge, Mesh, MeshError};
-pub use obstacle::{Closest, Distance, Obstacle, Side};
-pub use pairs::{Pair, PairError, PairLaw, PairPiece, PairSide};
+pub use obstacle::{Closest, Distance, Hand, Obstacle, Side};
+pub use pairs::{Pair, PairError, PairPiece, PairSide};
+pub use path::{Path, PathError};
 pub use piece::Piece;
 pub use problem::{Condition, PointSupport, Problem, SurfaceForce};
 pub use rigid::{FreeMotion, Parts};

@@ -91,7 +91,7 @@ pub(super) fn cut(from: Vector2<f64>, direction: Vector2<f64>, curve: &SmoothEdg
 }
 
 /// A boundary of a pair.
-pub(super) struct Boundary {
+pub(in crate::fem) struct Boundary {
     pub edges: Vec<BoundaryEdge>,
     pub curves: Vec<SmoothEdge>,
     /// The vertices at start and end of each edge.
@@ -214,7 +214,7 @@ impl Boundary {
     }
 
     /// The least distance of a place from the chords, and where.
-    fn closest(&self, from: Vector2<f64>, most: f64) -> Option<(f64, Vector2<f64>)> {
+    pub fn closest(&self, from: Vector2<f64>, most: f64) -> Option<(f64, Vector2<f64>)> {
         let mut radius = self.curves.first()?.length().min(most);
         loop {
             let mut best: Option<(f64, Vector2<f64>)> = None;
