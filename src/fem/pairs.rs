@@ -31,24 +31,12 @@ use super::boundary_normals::{SmoothBoundary, unit};
 use super::data::{DataError, finite};
 use super::element::Degree;
 use super::function::SharedFunction;
+pub use super::law::Law as PairLaw;
 use super::mesh::{BoundaryEdge, Mesh, MeshError, length};
 use super::problem::Problem;
 use super::rigid::Parts;
 use super::tree::Bounds;
 use crate::quote::quoted;
-
-/// What holds between the two boundaries of a pair.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum PairLaw {
-    /// They may part and slide, but not penetrate: (2) for the jump.
-    #[default]
-    Contact,
-    /// They may slide, but not part.
-    Sliding,
-    /// They may neither slide nor part.
-    Bonded,
-}
 
 /// Two boundaries that touch each other.
 #[derive(Clone)]
