@@ -66,6 +66,11 @@ pub fn number(x: f64) -> String {
     }
 }
 
+/// A number to three digits, for lengths that are the result of a computation.
+pub fn short(x: f64) -> String {
+    number(format!("{x:.2e}").parse().unwrap_or(x))
+}
+
 /// A number with so many decimals, unless that were a row of zeros.
 pub fn fixed(x: f64, decimals: usize) -> String {
     if x.abs() < 1e16 { format!("{x:.decimals$}") } else { number(x) }

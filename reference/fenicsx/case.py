@@ -9,7 +9,7 @@ import numpy as np
 
 from . import exact
 from .expression import Expression, ExpressionError
-from .obstacle import Circle, Distance, Plane
+from .obstacle import Circle, Distance, NoLine, Plane, Polyline
 
 MOST_CELLS = 4_000_000  # nx * ny of a rectangle, checked before anything is allocated
 KINDS = ("displacement", "traction", "contact")  # beside [exact]
@@ -258,6 +258,8 @@ def read_case(path):
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise CaseError(f"{path}: not a TOML file: {error}") from None
     root = _Table("", content, path)
+    if root.has("pair"):
+        root.refuse("pair", "a pair of boundaries", "contact with rigid obstacles only: this engine has no contact between bodies")
     materials = _materials(root.table("material"))
     if root.has("exact") and None not in materials:
         root.fail("material", ", ".join(materials), "one material for the whole body beside [exact]")
@@ -468,10 +470,12 @@ def _obstacles(root):
 
 
 def _obstacle(table):
-    shapes = [shape for shape in ("plane", "circle", "distance") if table.has(shape)]
+    shapes = [shape for shape in ("plane", "circle", "points", "distance") if table.has(shape)]
+    if shapes == ["points"]:
+        return _polyline(table)
     table.finish()
     if len(shapes) != 1:
-        table.refuse("", ", ".join(shapes), "exactly one of plane, circle, distance")
+        table.refuse("", ", ".join(shapes), "exactly one of plane, circle, points, distance")
     if shapes == ["distance"]:
         return Distance(table.expression("distance", table.content["distance"]))
     inner = table.table(shapes[0])
@@ -486,6 +490,23 @@ def _obstacle(table):
         obstacle = Circle(inner.place_of("center"), radius, inner.choice("side", ("outside", "inside")))
     inner.finish()
     return obstacle
+
+
+def _polyline(table):
+    points = table.need("points", "a list of points")
+    is_point = lambda p: isinstance(p, list) and len(p) == 2 and all(map(_is_number, p))
+    if not isinstance(points, list) or not all(map(is_point, points)):
+        table.fail("points", points, "a list of points [x, y]")
+    radius = table.get("radius", [])
+    radii = radius if isinstance(radius, list) else [radius]
+    if not all(_is_number(r) and r >= 0 for r in radii):
+        table.fail("radius", radius, "a radius, or a list of radii, 0 or more")
+    side = table.choice("side", ("left", "right"))
+    table.finish()
+    try:
+        return Polyline.through(np.array(points, float), radii, side)
+    except NoLine as error:
+        table.refuse("points", str(error), "another line")
 
 
 def _points(root):

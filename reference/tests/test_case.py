@@ -14,7 +14,7 @@ CONTACT = '[boundary.bottom]\ncontact = { gap = "0" }\n'
 
 # (what is replaced in BLOCK, by what, message behind the file's name)
 REFUSED = [
-    ("[mesh]", "titel = 1\n[mesh]", "titel: unknown key; known here: material, exact, load, method, solver, output, units, body, title, mesh, boundary, obstacle, point"),
+    ("[mesh]", "titel = 1\n[mesh]", "titel: unknown key; known here: pair, material, exact, load, method, solver, output, units, body, title, mesh, boundary, obstacle, point"),
     ("[mesh]", "[mesh", "not a TOML file: Expected ']' at the end of a table declaration (at line 2, column 6)"),
     ("[material]\nlambda = 1.0\nmu = 1.0\n", "", "material: found nothing, expected a table"),
     ("mu = 1.0", "mu = -1.0", "material.mu: found -1.0, expected a positive number"),
@@ -49,7 +49,11 @@ REFUSED = [
      "obstacle.o.plane.normal: found [0.0, 0.0], expected a vector that is not zero"),
     ("[load]", '[obstacle.o]\ncircle = { center = [0, 0], radius = 0, side = "inside" }\n[load]',
      "obstacle.o.circle.radius: found 0, expected a positive number"),
-    ("[load]", "[obstacle.o]\n[load]", "obstacle.o: found nothing, expected exactly one of plane, circle, distance"),
+    ("[load]", "[obstacle.o]\n[load]", "obstacle.o: found nothing, expected exactly one of plane, circle, points, distance"),
+    ("[load]", '[obstacle.o]\npoints = [[0, 0], [1, 0], [1, 1]]\nradius = 2\nside = "left"\n[load]',
+     "obstacle.o.points: found arcs that are longer than the side between them, expected another line"),
+    ("[load]", '[[pair]]\nboundaries = ["left", "right"]\n[load]',
+     "pair: found a pair of boundaries, expected contact with rigid obstacles only: this engine has no contact between bodies"),
     ('[load]\nbody = ["0", "-4 + 10*x"]', '[obstacle.o]\ndistance = "2*y"\n[boundary.right]\ncontact = { obstacle = "o" }',
      "boundary.right.contact.obstacle: found 0.0 with a gradient of length 2.0 at (1.0, 0.0), expected a distance"),
     ("[load]", "[point.peg]\ndisplacement = [0, 0]\n[load]", "mesh: no point named 'peg'; this mesh has: none"),

@@ -8,7 +8,7 @@ from mpi4py import MPI
 
 from fenicsx.constraints import Constraints, Demand
 from fenicsx.expression import Expression
-from fenicsx.obstacle import Circle, Distance, NoDistance, Plane
+from fenicsx.obstacle import Circle, Distance, NoDistance, Plane, Polyline
 from fenicsx.plane import PlaneMesh
 from fenicsx.smooth import SmoothBoundary
 from fenicsx.solve import solve
@@ -68,6 +68,11 @@ class Obstacles(TestCase):
             (Plane(np.array([0.0, 1.0]), np.array([0.0, 1.0])), [3, 1.5], 0.5, [0, -1]),
             (Circle(np.array([1.0, 0.0]), 2.0, "outside"), [4, 4], 3, [-0.6, -0.8]),
             (Circle(np.array([1.0, 0.0]), 2.0, "inside"), [2.2, 1.6], 0, [0.6, 0.8]),
+            (Polyline.through(np.array([[0.0, 0.0], [2.0, 0.0]]), [], "left"), [7, 1.5], 1.5, [0, -1]),
+            (Polyline.through(np.array([[0.0, 0.0], [2.0, 0.0]]), [], "right"), [-7, -0.5], 0.5, [0, 1]),
+            (Polyline.through(np.array([[-1.0, 0.0], [0.0, 1.0], [1.0, 0.0]]), [], "left"), [0, 3], 2, [0, -1]),
+            (Polyline.through(np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 5.0]]), [1.0], "left"), [2.3, 0.6], 0.5, [0.6, -0.8]),
+            (Polyline.through(np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 5.0]]), [1.0], "left"), [2.5, 3], 0.5, [1, 0]),
             (Distance(Expression("sqrt((x - 1)^2 + y^2) - 2")), [4, 4], 3, [-0.6, -0.8]),
             (Distance(Expression("1.05*(sqrt((x - 1)^2 + y^2) - 2)")), [4, 4], 3, [-0.6, -0.8]),
         ]:

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::boundary_normals::{left_of, unit};
 use super::mesh::{NO_ANGLE, ROUNDED, length};
-use crate::quote::number;
+use crate::quote::{number, short};
 
 /// Why points are no line.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -24,7 +24,7 @@ pub enum PathError {
     TurnsBack { place: [f64; 2] },
     #[error(
         "the arcs of radius {} at ({}, {}) and of its neighbour take {} of the side between them, which is {} long; expected smaller radii",
-        number(*radius), number(place[0]), number(place[1]), number(*needed), number(*length)
+        number(*radius), number(place[0]), number(place[1]), short(*needed), short(*length)
     )]
     TooRound { radius: f64, place: [f64; 2], needed: f64, length: f64 },
 }

@@ -45,7 +45,7 @@ fn blocks(gap: f64, joined: bool) -> String {
         for element in &mut elements {
             let numbers: Vec<usize> =
                 element.split(' ').map(|word| word.parse().unwrap()).collect();
-            if numbers[0] == 2 && numbers[4..].iter().sum::<usize>() > 3 * (4 * 7) + 8 {
+            if numbers[0] == 2 && numbers[4..].iter().all(|&node| node > 4 * 7) {
                 *element = element.replacen("2 2 5 5", "2 2 6 6", 1);
             }
         }

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::quote::{number, quoted};
+use crate::quote::{number, quoted, short};
 
 /// Why two boundaries are no pair. A pair is called by the names of its boundaries.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -54,11 +54,6 @@ const SPLIT: &str = "expected a mesh in which each body has vertices of its own 
 /// A pair in a message.
 fn named([first, second]: &[String; 2]) -> String {
     format!("the pair of {} and {}", quoted(first, '\''), quoted(second, '\''))
-}
-
-/// A length to three digits.
-fn short(length: f64) -> String {
-    number(format!("{length:.2e}").parse().unwrap_or(length))
 }
 
 fn at([x, y]: &[f64; 2]) -> String {
