@@ -5,7 +5,7 @@ use super::discretization::Discretization;
 use super::piece::Piece;
 use super::rigid::{FreeMotion, NEGLIGIBLE, Parts, null_space};
 use super::solvability::{Slides, all, joined, negligible, rows};
-use crate::kernel::Response;
+use crate::kernel::{DoubleDouble, Response};
 
 /// An edge presses where P is above this share of the largest; below it P is what the tolerance of Newton's method leaves. With a
 /// hundredth of it, edges that touch without a force are taken to hold the body.
@@ -13,11 +13,23 @@ const PRESSES: f64 = 1e-8;
 
 impl Slides {
     /// All motions that nothing stops where `u` solves (8), within the clearance of the edges that do not press. `None` where
-    /// supports hold the body.
-    pub fn around(d: &Discretization, u: &[[f64; 2]]) -> Option<Slides> {
+    /// supports hold the body. P is `known` where it belongs to a displacement that is known to more than doubles: P of that in
+    /// doubles may have no digit.
+    pub fn around(
+        d: &Discretization,
+        u: &[[f64; 2]],
+        known: Option<&[DoubleDouble]>,
+    ) -> Option<Slides> {
         let idle = &d.slides.as_ref()?.idle;
         let size = |v: &[f64]| v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        let p: Vec<Vec<f64>> = d.contact.iter().map(|edge| edge.p(u)).collect();
+        let of_piece = |piece: &Piece| match known {
+            Some(p) => p[piece.functionals()].iter().map(|p| p.head()).collect(),
+            None => piece.p(u),
+        };
+        let p: Vec<Vec<f64>> = d.contact.iter().map(of_piece).collect();
+        // Tails are there if P is known to them.
+        let is_fine = known.is_some_and(|p| p.iter().any(|p| p.tail() != 0.0));
+        let unit = if is_fine { f64::EPSILON * f64::EPSILON } else { f64::EPSILON };
         let degree = d.space.degree();
         let most = |p: &[f64]| degree.bernstein(p).into_iter().fold(0.0, f64::max);
         let pushing = p.iter().zip(&d.contact).filter(|(_, piece)| !pulls(piece));
@@ -25,7 +37,7 @@ impl Slides {
         let far = size(u.as_flattened());
         let presses = |(p, piece): (&Vec<f64>, &Piece)| {
             let gap = piece.geometry.gaps().fold(0.0, |m: f64, g| m.max(g.abs()));
-            let rounding = 8.0 * f64::EPSILON * (far + gap);
+            let rounding = 8.0 * unit * (far + gap);
             let active = piece.contribution(&d.rule, p).active;
             pulls(piece) || (most(p) > rounding.max(PRESSES * largest) && active > 0.0)
         };

@@ -158,6 +158,13 @@ impl Constraints {
         &self.values
     }
 
+    /// The components that supports prescribe at a node, in the node's frame; not those that are held so that a motion that changes
+    /// nothing is stopped.
+    pub(super) fn supported(&self, node: usize) -> [Option<f64>; 2] {
+        let is_pinned = |c: usize| self.pins.contains(&(node, c));
+        [0, 1].map(|c| self.values[node][c].filter(|_| !is_pinned(c)))
+    }
+
     /// The first axes of the frames that are not those of the coordinates, by node; the second is the first turned left.
     pub fn frames(&self) -> &BTreeMap<usize, [f64; 2]> {
         &self.frames

@@ -8,7 +8,6 @@ use super::contact_line::{Coercivity, ContactLine, Gamma};
 use super::data::DataError;
 use super::dense::inner;
 use super::element::Degree;
-use super::held;
 use super::law::EdgeRule;
 use super::loads::{self, LoadVector};
 use super::material;
@@ -112,7 +111,6 @@ impl<'a> Discretization<'a> {
         let mut constraints = Constraints::new(problem, &space)?;
         let LoadVector { in_doubles: load, in_balls: enclosed_load } =
             loads::assemble_twice(problem, &space)?;
-        held::check(&constraints, &space, &line)?;
         let contact = line.with_gamma(problem, &space, gamma);
         let (parts, motions) = constraints.free_motions(&space);
         let mut slides = None;

@@ -17,7 +17,7 @@ mod function;
 #[doc(hidden)]
 pub mod graded_quadrature;
 mod groups;
-mod held;
+pub(crate) mod held;
 #[doc(hidden)]
 pub mod korn;
 pub mod law;

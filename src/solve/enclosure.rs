@@ -30,6 +30,7 @@ use super::pressed::{self, Pressed, SHARES};
 use super::system::System;
 use super::times::Stopwatch;
 use crate::fem::korn::Korn;
+use crate::fem::residual;
 use crate::fem::solvability::Slides;
 use crate::fem::{Discretization, Piece};
 use crate::kernel::DoubleDouble;
@@ -201,7 +202,10 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         arithmetic: Arithmetic,
     ) -> Result<Enclosure, Unproved> {
         let d = self.system.d;
-        let Some(loose) = Slides::around(d, u) else { return self.around(u, u, near, arithmetic) };
+        let known: Option<Vec<DoubleDouble>> = near.map(|near| residual::p(d, near).collect());
+        let Some(loose) = Slides::around(d, u, known.as_deref()) else {
+            return self.around(u, u, near, arithmetic);
+        };
         let mut reported = u.to_vec();
         loose.least_norm(&mut reported);
         let stopped = d.slides.as_ref().map_or(0, |slides| slides.basis.len());

@@ -163,7 +163,8 @@ impl Evaluated {
     /// Goes to the solution of least norm, where contact holds the body and there are several: neither the forces nor P where it
     /// presses change by it. Gives how far the body may move from there.
     pub fn settle(&mut self, d: &Discretization) -> Vec<Play> {
-        let Some(slides) = Slides::around(d, &self.u) else { return Vec::new() };
+        let p: Vec<DoubleDouble> = self.p.iter().flatten().copied().collect();
+        let Some(slides) = Slides::around(d, &self.u, Some(&p)) else { return Vec::new() };
         if slides.basis.is_empty() {
             return Vec::new();
         }

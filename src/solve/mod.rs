@@ -70,6 +70,7 @@ use self::times::Stopwatch;
 pub use self::times::Times;
 pub use crate::fem::Degree;
 use crate::fem::contact_line::{Coercivity, Gamma};
+use crate::fem::held;
 use crate::fem::material::largest_entry;
 use crate::fem::{Discretization, EdgeRule, Problem};
 use crate::memory;
@@ -114,11 +115,23 @@ pub fn solve_along(
     watch.lap();
     let solution = Solution::new(&d, evaluated, report);
     let displacement = solution.quantities.max_displacement;
-    if is_out_of_range(stiffest(problem) * displacement * displacement, 1e270) {
+    let size = stiffest(problem) * displacement * displacement;
+    if is_out_of_range(size, 1e270) {
         return Err(SolveError::OutOfRange);
+    }
+    let EnergyBalance { strain, loads, supports, contact, imbalance } = solution.balance;
+    let is_rounding =
+        [strain, loads, supports, contact].iter().all(|e| e.abs() <= f64::EPSILON * size);
+    let unproved = solution.verdict != Verdict::Proved;
+    if unproved && !is_rounding && !(imbalance.abs() <= MOST_IMBALANCE) {
+        let MethodReport { condition, .. } = solution.method;
+        return Err(SolveError::IllConditioned { condition, forward_error: imbalance.abs() });
     }
     Ok((solution, Times { discretize, evaluate: watch.lap(), ..times }))
 }
+
+/// Energies that are more out of balance than this are no result.
+const MOST_IMBALANCE: f64 = 0.1;
 
 /// Solves a discretization: the displacement with its forces, how it was found, and how long that took.
 ///
@@ -223,8 +236,22 @@ impl Outline {
 /// Method (8) on the problem's mesh.
 ///
 /// # Errors
-/// Data that don't make a problem, and kappa >= 1 without leave.
+/// Data that don't make a problem, supports that hold the body inside its obstacle, and kappa >= 1 without leave.
 pub fn discretize<'a>(
+    problem: &'a Problem,
+    method: &Method,
+) -> Result<Discretization<'a>, SolveError> {
+    let d = discretize_any(problem, method)?;
+    held::check(&d)?;
+    Ok(d)
+}
+
+/// As [`discretize`], of a problem that no displacement of finite energy solves, too: (8) has a solution on every mesh.
+///
+/// # Errors
+/// As [`discretize`].
+#[doc(hidden)]
+pub fn discretize_any<'a>(
     problem: &'a Problem,
     method: &Method,
 ) -> Result<Discretization<'a>, SolveError> {

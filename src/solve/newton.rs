@@ -70,7 +70,12 @@ pub fn minimise(
 ) -> Result<f64, SolveError> {
     let mut stiffness = 1.0;
     if first {
-        residuals.push(body.residual(&derivatives(edges, &body.y())).norm);
+        let before = body.residual(&derivatives(edges, &body.y())).norm;
+        residuals.push(before);
+        if before == 0.0 {
+            // Nothing acts on the body, or it moves as a whole.
+            return Ok(0.0);
+        }
         match body.start(edges)? {
             Some(contact) => stiffness = f64::min(SOFT / contact, 1.0),
             None => residuals.push(body.residual(&derivatives(edges, &body.y())).norm),

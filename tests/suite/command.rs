@@ -417,15 +417,22 @@ fn cases_that_cannot_be_solved_or_written_end_with_exit_code_1() {
 }
 
 #[test]
-fn a_body_that_may_slide_is_certified_but_for_that() {
-    // A corner that is held inside the obstacle: no displacement is admissible.
-    let pressed = [["[boundary.bottom]", "[boundary.left]"], ["gap = \"0\"", "gap = \"-0.1\""]];
-    let folder = folder("no-certificate", &pressed);
+fn a_case_without_a_certificate_has_all_other_results_and_exit_code_3() {
+    // A point is held, which a true solution does not feel.
+    let case = r#"
+title = "Shoe"
+mesh.gmsh = "pivot.msh"
+material = { young = 1, poisson = 0.3 }
+point.pivot.displacement = ["0", "-0.01"]
+boundary.foot.contact.gap = "0.002*x"
+"#;
+    let mesh = include_str!("../meshes/pivot.msh");
+    let folder = with_files("no-certificate", &[("pivot.msh", mesh), ("case.toml", case)]);
     fs::create_dir_all(folder.join("out/case")).unwrap();
     fs::write(folder.join("out/case/certificate.json"), "of an earlier run").unwrap();
     let output = signorini(&folder, &["solve", "case.toml", "--certificate"]);
     assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
-    assert!(text(&output.stdout).starts_with("Block: proved; NO certificate: "));
+    assert!(text(&output.stdout).starts_with("Shoe: proved; NO certificate: "));
     let names = names(&folder.join("out/case"));
     assert!(names.contains(&"result.json".to_owned()), "{names:?}");
     assert!(!names.contains(&"certificate.json".to_owned()), "{names:?}");

@@ -19,7 +19,7 @@ use sha2::{Digest, Sha256};
 use signorini::io::Case;
 use signorini::io::outputs::{self, Extra};
 use signorini::io::result::result_json;
-use signorini::solve::solve;
+use signorini::solve::{Solution, discretize_any, solve_discrete};
 
 const TOLERANCE: f64 = 1e-10;
 const TOLERANCE_OF_ERRORS: f64 = 1e-8;
@@ -119,7 +119,10 @@ fn compared(results: &Value) -> Vec<(String, f64, f64)> {
 
 fn ours(case: &Path) -> Value {
     let case = Case::read(case).unwrap();
-    let solved = solve(&case.problem, &case.method, &case.settings).unwrap().into();
+    // The support of the lug moves a corner into the wall, which `solve` refuses: the discrete problem has a solution all the same.
+    let d = discretize_any(&case.problem, &case.method).unwrap();
+    let (evaluated, report, times) = solve_discrete(&d, &case.settings).unwrap();
+    let solved = (Solution::new(&d, evaluated, report), times).into();
     let results = outputs::results(&case, &solved, Duration::ZERO, Extra::default()).unwrap();
     serde_json::from_str(&result_json(&results).unwrap()).unwrap()
 }

@@ -163,8 +163,9 @@ fn a_sweep_prints_and_writes_one_line_for_each_combination() {
     let (_, force) = json.split_once("\"contact_force\": ").unwrap();
     let force = format!(",{},", force.split_once(',').unwrap().0);
     assert!(lines[4].contains(&force) && !lines[3].contains(&force), "{csv}{force}");
-    let table = text(&output.stdout);
-    assert!(table.lines().count() == 1 + 1 + 5 + 1 + 1, "{table}");
+    let (table, remarks) = text(&output.stdout).split_once("\nremark on row ").unwrap();
+    assert!(table.lines().count() == 1 + 1 + 5, "{table}");
+    assert!(remarks.ends_with("\n\nwritten: out/case: sweep.svg, sweep.csv\n"), "{remarks}");
 }
 
 #[test]
