@@ -3,6 +3,7 @@
 mod arguments;
 mod certify;
 mod engine;
+mod new;
 mod progress;
 mod signals;
 mod solve;
@@ -14,12 +15,15 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::CommandFactory;
+use signorini::fem::DataError;
 use signorini::io::Failure;
 use signorini::io::input::reason;
-use signorini::io::{Case, summary};
+use signorini::io::{Case, checked};
+use signorini::solve::SolveError;
 use signorini::{quote, solve as library};
 
 use self::arguments::{Arguments, CaseArguments, Task};
+use self::progress::Phases;
 
 /// The case is wrong.
 const WRONG: u8 = 2;
@@ -56,6 +60,7 @@ pub fn run() -> ExitCode {
             certify::certify(case, displacement, out.as_deref(), quiet)
         }
         Task::Check { case } => check(case, quiet),
+        Task::New { mesh, out } => new::run(mesh, out.as_deref(), quiet),
         Task::Sweep { case, axes, files, out } => {
             sweep::run(case, axes, *files, out.as_deref(), quiet)
         }
@@ -138,10 +143,22 @@ fn folder(file: &Path, out: Option<&Path>) -> PathBuf {
 }
 
 fn check(arguments: &CaseArguments, quiet: bool) -> Result<Done, Failure> {
+    let phases = Phases::start(quiet);
+    phases.enter("reading the case and its mesh");
     let case = read(arguments)?;
-    let outline = library::check(&case.problem, &case.method)
-        .map_err(|error| Failure::from(error).of(&case.file))?;
-    Ok(summarised(&summary::checked(&case, &outline), quiet))
+    phases.enter("checking loads, supports and the contact line");
+    let outline = library::check(&case.problem, &case.method);
+    drop(phases);
+    match outline {
+        Ok(outline) => Ok(summarised(&checked::checked(&case, &outline), quiet)),
+        Err(error) => {
+            if matches!(error, SolveError::Data(DataError::RigidMotion { .. })) && !quiet {
+                // What is held and what is not shows in the list.
+                say(&quote::lines(&checked::listed(&case)))?;
+            }
+            Err(Failure::from(error).of(&case.file))
+        }
+    }
 }
 
 fn completions(shell: clap_complete::Shell) -> Done {

@@ -68,6 +68,15 @@
 //! `cli` (default) is the command; it needs `files`: case files ([`io::case`]), result.json and pictures. Without both
 //! (`default-features = false`), the library depends on no parser and writes no files but VTU and CSV.
 //!
+//! # Speed
+//!
+//! A dev build of a program solves some 80 times slower than a release build. This in its `Cargo.toml` has the solver optimised there, too:
+//!
+//! ```toml
+//! [profile.dev.package."*"]
+//! opt-level = 2
+//! ```
+//!
 //! Proofs of what the code relies on are in `docs/theory.md`; what has been verified, and how, is in `VERIFY.md`.
 
 /// The vectors and matrices of the interface.

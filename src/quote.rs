@@ -97,6 +97,31 @@ fn escaped(text: impl Iterator<Item = char>) -> String {
     shown
 }
 
+/// A text for a page: spaces in place of control characters (a table of bytes above 127 has some, too) and of those that turn
+/// the direction of the text round or are not seen; line breaks and tabs stay.
+pub(crate) fn on_page(text: &str) -> String {
+    let is_kept = |c: char| {
+        matches!(c, '\n' | '\t') || !(is_hidden(c) || matches!(c, '\u{fffe}' | '\u{ffff}'))
+    };
+    text.chars().map(|c| if is_kept(c) { c } else { ' ' }).collect()
+}
+
+/// A text in JSON, in which the characters that a terminal obeys are escaped: the text that it stands for is the same.
+pub(crate) fn in_json(json: &str) -> String {
+    let mut shown = String::with_capacity(json.len());
+    for c in json.chars() {
+        if c != '\n' && is_hidden(c) {
+            let mut units = [0; 2];
+            for unit in c.encode_utf16(&mut units) {
+                shown.push_str(&format!("\\u{unit:04x}"));
+            }
+        } else {
+            shown.push(c);
+        }
+    }
+    shown
+}
+
 /// Control characters, and those that format text without being seen.
 fn is_hidden(c: char) -> bool {
     c.is_control()
@@ -137,6 +162,15 @@ mod tests {
         let long = |count: usize| "x".repeat(count);
         assert_eq!([cut(&long(60)), cut(&long(61))], [long(60), long(60) + "..."]);
         assert_eq!(line(&long(201)), long(200) + "...");
+    }
+
+    #[test]
+    fn pages_and_json_hold_no_character_that_a_terminal_obeys() {
+        assert_eq!(on_page("a\u{202e}b\u{9b}\tc\u{feff}\n"), "a b \tc \n");
+        let text = "{\n  \"a\": \"x\u{202e}y\u{9b}\u{e0001}é\"\n}";
+        let shown = in_json(text);
+        assert_eq!(shown, "{\n  \"a\": \"x\\u202ey\\u009b\\udb40\\udc01é\"\n}");
+        assert_eq!(lines(&shown), shown, "nothing is left to escape");
     }
 
     #[test]

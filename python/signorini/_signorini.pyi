@@ -1,4 +1,4 @@
-from typing import List, Tuple, TypedDict
+from typing import Callable, Dict, List, Tuple, TypedDict
 
 __version__: str
 
@@ -31,12 +31,22 @@ class Solved:
     def picture(self) -> str: ...
     def write(self, folder: str, report: bool) -> List[str]: ...
 
-def solve_case(path: str, settings: List[str]) -> Solved: ...
+class PlaneMesh(TypedDict):
+    points: bytes
+    triangles: bytes
+    boundaries: Dict[str, bytes]
+    surfaces: Dict[str, bytes]
+    named_points: Dict[str, int]
+    remarks: List[str]
+
+def solve_case(path: str, settings: List[str], certificate: bool) -> Solved: ...
 def solve(
     text: str,
-    points: bytes,
-    triangles: bytes,
-    boundaries: List[Tuple[str, bytes]],
-    surfaces: List[Tuple[str, bytes]],
-    named_points: List[Tuple[str, int]],
+    arrays: Tuple[bytes, bytes, List[Tuple[str, bytes]], List[Tuple[str, bytes]], List[Tuple[str, int]]],
+    functions: List[Callable[[float, float], float]],
+    remarks: List[str],
+    certificate: bool,
 ) -> Solved: ...
+def plane_mesh(
+    nodes: bytes, blocks: List[Tuple[int, bytes, bytes]], names: List[List[Tuple[int, List[str]]]], pairs: List[List[str]]
+) -> PlaneMesh: ...

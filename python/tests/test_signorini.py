@@ -2,8 +2,10 @@
 
 import json
 import pickle
+import signal
 import subprocess
 import sys
+import time
 import typing
 from pathlib import Path
 
@@ -72,7 +74,7 @@ def test_degree_2_has_nodes_on_the_edges():
     solution = signorini.solve(*square(4), **{**BLOCK, "method": {"degree": 2}})
     assert solution.elements.shape == (32, 6)
     a, b, c, d, e, f = (solution.nodes[solution.elements[:, i]] for i in range(6))
-    for middle, ends in [(d, (b, c)), (e, (c, a)), (f, (a, b))]:
+    for middle, ends in [(d, (a, b)), (e, (b, c)), (f, (c, a))]:
         assert np.abs(middle - sum(ends) / 2).max() < 1e-15
 
 
@@ -125,7 +127,7 @@ def test_wrong_arrays_are_refused_by_name():
         ((points[:, :1], triangles, boundaries), r"points has shape \(9, 1\); expected \(n, 2\)"),
         ((points, triangles[:, :2], boundaries), r"triangles has shape \(8, 2\); expected \(n, 3\)"),
         ((points, triangles + 0.5, boundaries), "triangles is of float64; expected whole numbers"),
-        ((points, triangles - 1, boundaries), "found point number -1; expected one from 0 on"),
+        ((points, triangles - 1, boundaries), "triangles: found the number -1; expected one from 0 on"),
         ((points, triangles + 1, boundaries), "names vertex 9"),
         ((points, triangles[:, ::-1], boundaries), "list its vertices counter-clockwise"),
     ]:
@@ -188,7 +190,7 @@ def test_named_points_hold_a_body():
 
 def test_a_solution_is_shown_compared_pickled_and_written(tmp_path):
     solution, other = (signorini.solve(*square(4), **BLOCK) for _ in range(2))
-    assert repr(solution).startswith("case\n  contact      bottom: force ") and "written" not in repr(solution)
+    assert repr(solution).startswith("Contact problem\n  contact      bottom: force ") and "written" not in repr(solution)
     assert solution._repr_svg_().startswith("<svg") and "peak" in solution._repr_svg_()
     assert solution == solution and solution != other and solution.contact != other.contact
     assert solution.verdict == "proved" and solution.certified == {}
@@ -255,6 +257,133 @@ def test_the_types_are_what_mypy_expects(tmp_path):
     run = subprocess.run([sys.executable, "-m", "mypy", "--strict", str(program)], capture_output=True, text=True)
     assert "floating" in run.stdout or "float64" in run.stdout, run.stdout
     assert "Found 1 error" in run.stdout and "Incompatible types in assignment" in run.stdout, run.stdout
+
+
+def meshio_square(change=lambda triangles: triangles, top=None, kind="triangle"):
+    points, triangles, boundaries = square(4)
+    lines = [boundaries["bottom"], boundaries["top"] if top is None else top]
+    count = [len(line) for line in lines]
+    return meshio.Mesh(
+        np.c_[points, np.zeros(len(points))],
+        [(kind, change(triangles)), ("line", lines[0]), ("line", lines[1])],
+        cell_sets={"bottom": [[], list(range(count[0])), []], "top": [[], [], list(range(count[1]))]},
+    )
+
+
+def test_wrong_meshes_are_refused_as_the_command_refuses_them():
+    points, triangles, boundaries = square(4)
+    half = list(range(16))
+    both = {"a": {"lambda": 1.0, "mu": 1.0}, "b": {"lambda": 1.0, "mu": 100.0}}
+    whole = list(range(32))
+    arrays = lambda **more: signorini.solve(points, triangles, boundaries, **{**BLOCK, **more})
+    top = square(4)[2]["top"]
+    for solve, message in [
+        (lambda: arrays(surfaces={"a": whole, "b": half}, material=both), "share a triangle"),
+        (lambda: arrays(surfaces={"b": half, "a": whole}, material=both), "share a triangle"),
+        (lambda: arrays(surfaces={"a": whole + [99]}, material={"a": both["a"]}), "surface 'a' names triangle 99; expected numbers from 0 on of the 32"),
+        (lambda: arrays(surfaces={"a": np.ones(32, dtype=bool)}, material={"a": both["a"]}), "surface 'a' is of bool; expected whole numbers"),
+        (lambda: arrays(named_points={"p": 1.9}), "point 'p' is 1.9; expected the number of a point"),
+        (lambda: arrays(named_points={"p": True}), "point 'p' is True"),
+        (lambda: arrays(named_points={"p": 99}), "point 'p' names vertex 99"),
+        (lambda: arrays(named_points={"p": -1}), "point 'p': found the number -1"),
+        (lambda: signorini.solve(points, triangles, {**boundaries, "x": [[0, 99]]}, **BLOCK), "boundary 'x' names vertex 99"),
+        (lambda: signorini.solve(np.ma.masked_array(points, points > 0.5), triangles, boundaries, **BLOCK), "points has masked entries"),
+        (lambda: signorini.solve(points + 0j, triangles, boundaries, **BLOCK), "points is of complex128; expected real numbers"),
+        (lambda: signorini.solve([[0, 0], [1]], triangles, boundaries, **BLOCK), "points is no array of numbers"),
+        (lambda: signorini.solve(meshio_square(lambda t: np.where(t == 24, -1, t)), **BLOCK), "names points from -1 to 23; expected 0 to 24"),
+        (lambda: signorini.solve(meshio_square(top=np.where(top == 24, -1, top)), **BLOCK), "names points from -1 to 23"),
+        (lambda: signorini.solve(meshio_square(lambda t: t + 0.5), **BLOCK), "is of float64; expected whole numbers"),
+        (lambda: signorini.solve(meshio_square(lambda t: t + 1), **BLOCK), "names points from 1 to 25; expected 0 to 24"),
+        (lambda: signorini.solve(meshio.Mesh(np.eye(4, 3), [("tetra", [[0, 1, 2, 3]])]), **BLOCK), "3D is not solved"),
+    ]:
+        with pytest.raises(signorini.CaseError, match=message):
+            solve()
+    solution = signorini.solve(meshio_square(), **BLOCK)
+    assert solution.verdict == "proved", "control"
+
+
+def test_quadrangles_second_order_and_sets_that_no_table_names_are_read():
+    points, triangles, boundaries = square(4)
+    corner = np.arange(25).reshape(5, 5)
+    quads = np.column_stack([corner[:-1, :-1].ravel(), corner[:-1, 1:].ravel(), corner[1:, 1:].ravel(), corner[1:, :-1].ravel()])
+    theirs = signorini.solve(points, triangles, boundaries, **BLOCK)
+    with pytest.warns(UserWarning, match="16 quadrangles of the mesh are split"):
+        ours = signorini.solve(meshio_square(lambda _: quads, kind="quad"), **BLOCK)
+    assert np.abs(ours.displacement - theirs.displacement).max() < 1e-12
+    # The same with a middle on each edge, and with a set of all lines and one of lines inside the body.
+    flat = meshio_square()
+    middles = [(points[triangles[:, i]] + points[triangles[:, (i + 1) % 3]]) / 2 for i in range(3)]
+    six = np.column_stack([triangles] + [25 + 32 * i + np.arange(32) for i in range(3)])
+    lines = [block.data for block in flat.cells[1:]]
+    cells = [("triangle6", six), ("line", lines[0]), ("line", lines[1]), ("line", [[0, 6]])]
+    sets = {"bottom": [[], range(4), [], []], "top": [[], [], range(4), []], "all": [[], range(4), range(4), [0]], "Line9": [[], [], [], [0]]}
+    mesh = meshio.Mesh(np.vstack([points] + middles), cells, cell_sets={name: [list(part) for part in parts] for name, parts in sets.items()})
+    ours = signorini.solve(mesh, **BLOCK)
+    assert np.abs(ours.displacement - theirs.displacement).max() < 1e-12
+    for unusable in ("all", "Line9"):
+        with pytest.raises(signorini.CaseError, match="lies inside the body"):
+            signorini.solve(mesh, **{**BLOCK, "boundary": {**BLOCK["boundary"], unusable: {"traction": [0, 0]}}})
+
+
+def test_a_gap_may_be_an_array_or_a_function():
+    points, triangles, boundaries = square(8)
+    contact = lambda gap: {"top": {"displacement": [0, -0.1]}, "bottom": {"contact": {"gap": gap}}}
+    case = {**BLOCK, "load": {}, "method": {"degree": 2}}
+    solved = lambda mesh, gap: signorini.solve(*mesh, **{**case, "boundary": contact(gap)}).displacement
+    mesh = (points, triangles, boundaries)
+    expected = solved(mesh, "0.1*x")
+    assert np.abs(solved(mesh, lambda x, y: 0.1 * x) - expected).max() < 1e-12
+    assert np.abs(solved(mesh, 0.1 * points[:, 0]) - expected).max() < 1e-12, "linear between the points"
+    assert np.abs(solved(mesh, 0.05 * points[:, 0]) - expected).max() > 1e-4, "control"
+    shifted = meshio_square()
+    assert np.abs(solved((shifted,), 0.1 * shifted.points[:, 0]) - solved(square(4), "0.1*x")).max() < 1e-12
+    with pytest.raises(signorini.CaseError, match="has 3 values; expected one for each of the 81 points"):
+        solved(mesh, [0, 1, 2])
+    with pytest.raises(ZeroDivisionError):
+        solved(mesh, lambda x, y: 1 / 0)
+
+
+def test_a_certificate_is_made_where_it_is_asked_for():
+    solution = signorini.solve(*square(4), **BLOCK, certificate=True)
+    low, high = solution.certified["contact force", "bottom"]
+    assert low <= solution.results["quantities"]["contact_force"] <= high
+    asked = signorini.solve(*square(4), **BLOCK, certify={"quantities": ["force bottom"]})
+    assert asked.certified["contact force", "bottom"][1] <= high, "the table alone asks for it"
+    assert signorini.solve(*square(4), **BLOCK).certified == {}, "control"
+
+
+def test_a_solution_becomes_a_mesh_of_meshio(tmp_path):
+    solution = signorini.solve(*square(4), **{**BLOCK, "method": {"degree": 2}}, title="Block")
+    assert repr(solution).startswith("Block\n")
+    mesh = solution.to_meshio()
+    assert mesh.cells[0].type == "triangle6"
+    mesh.write(tmp_path / "block.vtu")
+    again = meshio.read(tmp_path / "block.vtu")
+    assert np.abs(again.point_data["displacement"][:, :2] - solution.displacement).max() == 0
+    a, b, middle = (again.points[again.cells[0].data[:, i]] for i in (0, 1, 3))
+    assert np.abs(middle - (a + b) / 2).max() < 1e-15, "in the order of VTK"
+
+
+def test_remarks_are_warnings():
+    large = {**BLOCK, "boundary": {"top": {"displacement": [0, -0.5]}, "bottom": {"contact": {}}}}
+    with pytest.warns(UserWarning, match="strains are taken to be small"):
+        solution = signorini.solve(*square(4), **large)
+    assert solution.results["remarks"]
+
+
+def test_ctrl_c_ends_a_solve(tmp_path):
+    program = tmp_path / "long.py"
+    program.write_text(
+        "import signorini, sys\nprint('ready', flush=True)\n"
+        f"signorini.solve_case({str(CASES / 'block.toml')!r}, set={{'mesh.rectangle.nx': 1200, 'mesh.rectangle.ny': 1200}})\n"
+    )
+    run = subprocess.Popen([sys.executable, str(program)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert run.stdout.readline() == "ready\n"
+    time.sleep(1)
+    run.send_signal(signal.SIGINT)
+    # A solve of this size takes a minute and more.
+    _, errors = run.communicate(timeout=20)
+    assert "KeyboardInterrupt" in errors
 
 
 def test_results_are_plain_json():

@@ -19,6 +19,7 @@ use super::quantities::Name;
 use super::{Asked, Continuous, certify_with};
 use crate::fem::piece::PieceGeometry;
 use crate::fem::{Condition, ContactLine, Mesh, Problem, Space};
+use crate::quote::quoted;
 use crate::solve::{
     Course, Degree, Method, Phase, Settings, Solution, SolveError, Times, solve_along,
 };
@@ -100,7 +101,8 @@ pub enum AdaptError {
     #[error("no mesh can be adapted to a proved target: {0}")]
     Certify(#[from] CertifyError),
     #[error(
-        "no mesh can be adapted: '{boundary}' is curved and has a gap along its normal, and bisection keeps the straight edges of the mesh; expected a straight boundary, or an [obstacle]"
+        "no mesh can be adapted: {} is curved and has a gap along its normal, and bisection keeps the straight edges of the mesh; expected a straight boundary, or an [obstacle]",
+        quoted(boundary, '\'')
     )]
     Curved { boundary: String },
 }
@@ -254,7 +256,7 @@ fn force_of(certified: &Continuous, boundary: &str) -> Result<[f64; 2], String> 
         q.name == Name::ContactForce && q.boundary == boundary && q.weight.is_none()
     };
     all.find(is).map_or_else(
-        || Err(format!("there is no contact on '{boundary}'")),
+        || Err(format!("there is no contact on {}", quoted(boundary, '\''))),
         |quantity| quantity.interval.clone(),
     )
 }

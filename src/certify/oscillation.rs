@@ -27,6 +27,7 @@ use crate::fem::material::least_eigenvalue;
 use crate::fem::mesh::length;
 use crate::fem::{Condition, SharedFunction, quadrature};
 use crate::kernel::{Material, Triangle};
+use crate::quote::quoted;
 
 /// The parts of a problem's data that a certificate leaves out.
 #[derive(Clone, Debug)]
@@ -51,7 +52,7 @@ impl Oscillation {
         let measured = (!inexact.is_empty())
             .then(|| format!("{}: its oscillation is measured by quadrature", inexact.join("; ")));
         let named = (!turning.is_empty()).then(|| {
-            let names: Vec<String> = turning.iter().map(|name| format!("'{name}'")).collect();
+            let names: Vec<String> = turning.iter().map(|name| quoted(name, '\'')).collect();
             format!(
                 "the problem that is bounded has on {} a direction and a gap that are {} between its vertices",
                 names.join(", "),
@@ -134,7 +135,7 @@ fn given<'a>(parts: &ProblemParts<'a>, quadratic: bool) -> Vec<Given<'a>> {
             let edges = mesh.edges_of(name).unwrap_or_default().iter();
             let vertices = edges.flat_map(|&edge| mesh.ends(edge)).collect();
             given.push(Given {
-                name: format!("the {what} of '{name}'"),
+                name: format!("the {what} of {}", quoted(name, '\'')),
                 functions,
                 degree,
                 vertices,

@@ -13,6 +13,7 @@ use crate::fem::boundary_normals::SmoothBoundary;
 use crate::fem::constraints::Constraints;
 use crate::fem::{BoundaryEdge, Condition, Degree, Mesh, Piece, Problem, SharedFunction, Space};
 use crate::kernel::Material;
+use crate::quote::quoted;
 
 /// The condition on a boundary edge.
 #[derive(Clone, Copy)]
@@ -102,7 +103,8 @@ impl<'a> ProblemParts<'a> {
                         let given = [normal, tangential].into_iter().flatten();
                         if smooth.at_ends(edge).is_some() && !given.clone().all(vanishes) {
                             return unsupported(format!(
-                                "'{name}' is curved, and what its support prescribes turns with it"
+                                "{} is curved, and what its support prescribes turns with it",
+                                quoted(name, '\'')
                             ));
                         }
                         let n = <[f64; 2]>::from(mesh.length_and_normal(edge).1);
@@ -117,7 +119,8 @@ impl<'a> ProblemParts<'a> {
                             (Some(f), None) | (None, Some(f)) => {
                                 if smooth.at_ends(edge).is_some() {
                                     return unsupported(format!(
-                                        "'{name}' is curved, and the direction that its support holds turns"
+                                        "{} is curved, and the direction that its support holds turns",
+                                        quoted(name, '\'')
                                     ));
                                 }
                                 let d = directions.one_like(if normal.is_some() { n } else { t });
@@ -211,7 +214,8 @@ impl<'a> ProblemParts<'a> {
                     None => self.prescribed[vertex].iter().all(Option::is_some),
                 };
                 if !self.mesh.ends(edge).into_iter().all(is_held) {
-                    let why = format!("the direction that the support of '{name}' holds turns");
+                    let name = quoted(name, '\'');
+                    let why = format!("the direction that the support of {name} holds turns");
                     return Err(CertifyError::Unsupported(why));
                 }
             }

@@ -44,7 +44,7 @@ impl Arguments {
                     "a case is solved by 'signorini solve CASE.toml'"
                 }
                 ErrorKind::InvalidSubcommand if !is_similar => {
-                    "the commands are solve, check, sweep, certify, audit, convergence, completions"
+                    "the commands are new, check, solve, sweep, certify, audit, convergence, completions"
                 }
                 ErrorKind::UnknownArgument if word(ContextKind::InvalidArg) == "-o" => {
                     "the folder to write to is set by '--out DIR'"
@@ -102,7 +102,17 @@ pub enum Task {
         #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
         out: Option<PathBuf>,
     },
-    /// Read a case and report the size of its mesh and the limit of gamma0, without solving or writing anything
+    /// Write a case file to begin with, from a Gmsh mesh: its boundaries, a support and a floor
+    New {
+        /// The mesh (.msh)
+        #[arg(value_name = "PART.msh", value_hint = ValueHint::FilePath)]
+        mesh: PathBuf,
+        /// The case file to write, which must not be there [default: that of the mesh with the ending .toml]
+        #[arg(long, value_name = "CASE.toml", value_hint = ValueHint::FilePath)]
+        out: Option<PathBuf>,
+    },
+    /// Read a case and list its boundaries with condition, length, load and gap, whether the body is held, the size of the mesh and
+    /// the limit of gamma0, without solving or writing anything
     Check {
         #[command(flatten)]
         case: CaseArguments,

@@ -63,6 +63,7 @@ fn solve(
     let file = case.file.clone();
     let watcher = |stage| match stage {
         Stage::Solve(phase) => phases.enter_solve(phase),
+        Stage::Certify(0) => phases.enter("certifying"),
         Stage::Certify(level) => phases.enter(format!("certifying level {level}")),
         _ => phases.enter("refining the mesh"),
     };

@@ -94,6 +94,7 @@ impl<'a> Discretization<'a> {
         for &material in problem.material.distinct() {
             material::stable(material)?;
         }
+        problem.mesh.check_apart(problem.conditions.keys().map(String::as_str))?;
         let space = Space::new(&problem.mesh, degree);
         let line = ContactLine::new(problem, &space)?;
         let coercivity = line.coercivity(problem)?;

@@ -2,12 +2,11 @@
 //! match look like cracks, and would be solved as such; parts of the body that only a vertex joins are refused.
 //!
 //! Triangles that are counter-clockwise and share whole edges cover a point as often as their outline winds around it. Where
-//! that is twice, some edge of the outline has a triangle on either side. So it is enough to look at the outline, in nearly
-//! linear time:
+//! that is twice, some edge of the outline has the body on either side. So it is enough to look at the outline, in time
+//! proportional to N log N for any mesh of N edges (`plane_sweep`):
 //!
 //! - no two edges of the outline cross;
-//! - no triangle but its own has the middle of an edge of the outline: what lies just outside an edge that nothing crosses is
-//!   the same all along;
+//! - on each upright line, edges with the body above them and edges with the body below them take turns;
 //! - no vertex of the outline lies on an edge that is not its own, or beside it across a void narrower than
 //!   `TOUCHING` times the local edge, and no two vertices are that close across a void.
 //!
@@ -18,11 +17,14 @@
 
 mod bodies;
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector2;
 
 use self::bodies::Linked;
-use super::mesh::{BoundaryEdge, Mesh, MeshError, TOUCHING, length};
+use super::mesh::{Mesh, MeshError, TOUCHING};
 use super::pairs::Pair;
+use super::plane_sweep::{Edges, Fault, Question, sweep, turn};
 use super::rigid::connected_by_edges;
 use super::tree::{Bounds, Tree};
 
@@ -31,10 +33,11 @@ struct SearchableOutline<'m> {
     mesh: &'m Mesh,
     /// Start and end of each edge of the outline.
     ends: Vec<[usize; 2]>,
-    tree: Tree,
-    /// The shortest edge of the outline at each vertex.
+    /// The edges of the outline that begin and end at each vertex.
+    at: BTreeMap<usize, Vec<usize>>,
+    /// The shortest edge of the outline at each vertex; infinite inside the body.
     shortest: Vec<f64>,
-    /// The triangles around each vertex.
+    /// The triangles around each vertex of the outline.
     around: Vec<Vec<usize>>,
 }
 
@@ -81,11 +84,7 @@ impl Mesh {
 /// # Errors
 /// [`MeshError::Hanging`], [`MeshError::Near`], [`MeshError::Overlapping`], [`MeshError::JoinedAtVertex`].
 fn check(mesh: &Mesh) -> Result<(), MeshError> {
-    let outline = SearchableOutline::new(mesh);
-    // What nearly touches often crosses too, and is better called by its name: it comes first.
-    (0..outline.ends.len()).try_for_each(|e| outline.check_vertices(e))?;
-    (0..outline.ends.len()).try_for_each(|e| outline.check_crossings(e))?;
-    outline.check_outside()?;
+    SearchableOutline::new(mesh).check()?;
     check_joints(mesh)
 }
 
@@ -112,15 +111,17 @@ impl<'m> SearchableOutline<'m> {
             let length = mesh.length_and_normal(edge).0;
             ends.iter().for_each(|&v| shortest[v] = shortest[v].min(length));
         }
-        let boxes = ends.iter().map(|ends| Bounds::around(ends.map(|v| mesh.vertices()[v])));
-        let tree = Tree::new(boxes.collect());
+        let mut at: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (e, ends) in ends.iter().enumerate() {
+            ends.iter().for_each(|&v| at.entry(v).or_default().push(e));
+        }
         let mut around = vec![Vec::new(); mesh.vertices().len()];
         for (t, corners) in mesh.triangles().iter().enumerate() {
-            for &vertex in corners {
+            for &vertex in corners.iter().filter(|&&v| shortest[v].is_finite()) {
                 around[vertex].push(t);
             }
         }
-        SearchableOutline { mesh, ends, tree, shortest, around }
+        SearchableOutline { mesh, ends, at, shortest, around }
     }
 
     fn place(&self, vertex: usize) -> Vector2<f64> {
@@ -131,44 +132,89 @@ impl<'m> SearchableOutline<'m> {
         self.ends[e].map(|v| self.place(v))
     }
 
-    /// The other edges of the outline near edge `e`, in order.
-    fn near(&self, e: usize) -> Vec<usize> {
-        let [a, b] = self.places(e);
-        let margin = TOUCHING * length(b - a);
-        let mut near = Vec::new();
-        self.tree.meeting(Bounds::around([a, b].map(Into::into)).widened(margin), |f| near.push(f));
-        near.sort_unstable();
-        near.retain(|&f| f != e);
-        near
-    }
-
-    fn check_vertices(&self, e: usize) -> Result<(), MeshError> {
-        let edge = self.mesh.outline()[e];
-        let length = self.mesh.length_and_normal(edge).0;
-        self.near(e).into_iter().try_for_each(|f| self.check_vertex(edge, self.ends[e], length, f))
-    }
-
-    fn check_crossings(&self, e: usize) -> Result<(), MeshError> {
-        let places = self.places(e);
-        for f in self.near(e).into_iter().filter(|&f| e < f) {
-            let apart = self.ends[f].iter().all(|v| !self.ends[e].contains(v));
-            if apart && cross(places, self.places(f)) {
-                let triangles = [e, f].map(|e| self.mesh.outline()[e].triangle);
-                let [x, y] = crossing(places, self.places(f));
-                return Err(MeshError::Overlapping { triangles, x, y });
+    /// Checks each vertex against the edges near it, and the outline as a whole. What nearly touches often crosses too, and is
+    /// better called by its name: it comes first.
+    fn check(&self) -> Result<(), MeshError> {
+        let mut near = Near { outline: self, pairs: Vec::new(), found: 0, error: None };
+        let fault = self.search(&mut near);
+        if let Err(Fault::Crossing([e, f]) | Fault::Covered { edge: e, below: Some(f) }) = fault {
+            // The sweep ended before it could ask about these.
+            for [e, f] in [[e, f], [f, e]] {
+                self.ends[f].iter().all(|&vertex| near.add(vertex, e));
             }
+        }
+        near.check();
+        match (near.error, fault) {
+            (Some(error), _) => Err(error),
+            (None, Err(fault)) => Err(self.named(fault)),
+            (None, Ok(())) => Ok(()),
+        }
+    }
+
+    /// Finds the edges near each vertex, and the first fault of the outline. An edge is near a vertex if it meets the square
+    /// around that of [`TOUCHING`] times the shortest edge there: if it crosses one of its sides or has an end inside.
+    fn search(&self, near: &mut Near) -> Result<(), Fault> {
+        // A little more than that, for the sake of rounding.
+        let reach = |v: usize| 1.001 * TOUCHING * self.shortest[v];
+        let vertices: Vec<usize> = self.at.keys().copied().collect();
+        let points = vertices.iter().map(|&v| Bounds::around([self.place(v).into()]));
+        let tree = Tree::new(points.collect());
+        for &v in &vertices {
+            let mut goes_on = true;
+            tree.meeting(Bounds::around([self.place(v).into()]).widened(reach(v)), |i| {
+                if vertices[i] != v && goes_on {
+                    goes_on = self.at[&vertices[i]].iter().all(|&e| near.add(v, e));
+                }
+            });
+            if !goes_on {
+                return Ok(());
+            }
+        }
+        for (axis, body_on_left) in [(0, true), (1, false)] {
+            // Adding 0.0 makes -0 and 0 the same place.
+            let place = |[x, y]: &[f64; 2]| match axis {
+                0 => Vector2::new(x + 0.0, y + 0.0),
+                _ => Vector2::new(y + 0.0, x + 0.0),
+            };
+            let places: Vec<Vector2<f64>> = self.mesh.vertices().iter().map(place).collect();
+            let question = |&vertex: &usize| {
+                let ([x, y], r): ([f64; 2], f64) = (places[vertex].into(), reach(vertex));
+                [x - r, x + r].map(|x| Question { vertex, x, between: [y - r, y + r] })
+            };
+            let questions: Vec<Question> = vertices.iter().flat_map(question).collect();
+            let edges = Edges { places: &places, ends: &self.ends, body_on_left };
+            sweep(&edges, &questions, |vertex, e| near.add(vertex, e))?;
         }
         Ok(())
     }
 
-    /// The first vertex of edge `f` against `edge`.
-    fn check_vertex(
-        &self,
-        edge: BoundaryEdge,
-        ends: [usize; 2],
-        length: f64,
-        f: usize,
-    ) -> Result<(), MeshError> {
+    /// The error that a fault of the outline is.
+    fn named(&self, fault: Fault) -> MeshError {
+        match fault {
+            Fault::Crossing([e, f]) => {
+                let triangles = [e, f].map(|e| self.mesh.outline()[e].triangle);
+                let [x, y] = crossing(self.places(e), self.places(f));
+                MeshError::Overlapping { triangles, x, y }
+            }
+            Fault::Covered { edge, below } => {
+                // What lies just outside an edge that nothing crosses is the same all along.
+                let [a, b] = self.places(edge);
+                let middle = a / 2.0 + b / 2.0;
+                let own = self.mesh.outline()[edge].triangle;
+                let covers = |&t: &usize| t != own && self.is_in(t, middle, |turn| turn >= 0.0);
+                let other = (0..self.mesh.triangles().len()).find(covers);
+                let below = below.map(|e| self.mesh.outline()[e].triangle);
+                let [x, y] = middle.into();
+                let triangles = [own, other.or(below).unwrap_or(own)];
+                MeshError::Overlapping { triangles, x, y }
+            }
+        }
+    }
+
+    /// The first vertex of edge `f` against edge `e`.
+    fn check_vertex(&self, e: usize, f: usize) -> Result<(), MeshError> {
+        let (edge, ends) = (self.mesh.outline()[e], self.ends[e]);
+        let length = self.mesh.length_and_normal(edge).0;
         let vertex = self.ends[f][0];
         if ends.contains(&vertex) {
             return Ok(());
@@ -239,54 +285,44 @@ impl<'m> SearchableOutline<'m> {
         let corners = self.mesh.triangles()[t].map(|v| self.place(v));
         (0..3).all(|i| is_within(turn(corners[i], corners[(i + 1) % 3], p)))
     }
+}
 
-    /// The middle of each edge of the outline against the triangles beside it along the longer side of the body.
-    fn check_outside(&self) -> Result<(), MeshError> {
-        let vertices = self.mesh.vertices();
-        let Bounds { low, high } = Bounds::around(vertices.iter().copied());
-        let c = usize::from(high[1] - low[1] > high[0] - low[0]);
-        let edges = self.mesh.outline().iter().enumerate();
-        let mut middles: Vec<(Vector2<f64>, usize)> = edges
-            .map(|(e, edge)| {
-                let [a, b] = self.places(e);
-                (a / 2.0 + b / 2.0, edge.triangle)
-            })
-            .collect();
-        middles.sort_unstable_by(|(a, _), (b, _)| a[c].total_cmp(&b[c]));
-        for (t, corners) in self.mesh.triangles().iter().enumerate() {
-            let Bounds { low, high } = Bounds::around(corners.map(|v| vertices[v]));
-            let first = middles.partition_point(|(middle, _)| middle[c] < low[c]);
-            for (middle, own) in &middles[first..] {
-                if middle[c] > high[c] {
-                    break;
-                }
-                if t != *own && self.is_in(t, *middle, |turn| turn >= 0.0) {
-                    let [x, y] = (*middle).into();
-                    return Err(MeshError::Overlapping { triangles: [*own, t], x, y });
-                }
-            }
+/// Pairs of an edge and an edge whose first vertex is near to it, to be checked in their order, some at a time: of vertices that are
+/// near each other there may be many, and one pair that is wrong is enough.
+struct Near<'o, 'm> {
+    outline: &'o SearchableOutline<'m>,
+    pairs: Vec<[usize; 2]>,
+    /// How many there have been.
+    found: usize,
+    error: Option<MeshError>,
+}
+
+impl Near<'_, '_> {
+    /// Takes note that an edge is near a vertex. Returns whether the search is to go on.
+    fn add(&mut self, vertex: usize, e: usize) -> bool {
+        // More than there are in most meshes.
+        const AT_A_TIME: usize = 16;
+        let outline = self.outline;
+        let begin = outline.at[&vertex].iter().filter(|&&f| outline.ends[f][0] == vertex);
+        self.pairs.extend(begin.filter(|&&f| f != e).map(|&f| [e, f]));
+        if self.pairs.len() > AT_A_TIME * outline.ends.len() {
+            self.check();
         }
-        Ok(())
+        self.error.is_none()
+    }
+
+    /// Checks those at hand.
+    fn check(&mut self) {
+        let mut pairs = std::mem::take(&mut self.pairs);
+        self.found += pairs.len();
+        pairs.sort_unstable();
+        pairs.dedup();
+        let wrong = pairs.into_iter().find_map(|[e, f]| self.outline.check_vertex(e, f).err());
+        self.error = self.error.take().or(wrong);
     }
 }
 
-/// Twice the area of the triangle a b c, positive if it is counter-clockwise; 0 where rounding could change the sign.
-fn turn(a: Vector2<f64>, b: Vector2<f64>, c: Vector2<f64>) -> f64 {
-    // The two products of `perp`, each on its own for the sake of the bound.
-    let (to_b, to_c) = (b - a, c - a);
-    let (left, right) = (to_b.x * to_c.y, to_b.y * to_c.x);
-    // Four times the bound of Shewchuk's filter.
-    let rounding = 8.0 * f64::EPSILON * (left.abs() + right.abs());
-    if (left - right).abs() <= rounding { 0.0 } else { left - right }
-}
-
-/// The inner parts of two segments cross.
-pub(super) fn cross([a, b]: [Vector2<f64>; 2], [c, d]: [Vector2<f64>; 2]) -> bool {
-    let opposite = |s: f64, t: f64| (s > 0.0 && t < 0.0) || (s < 0.0 && t > 0.0);
-    opposite(turn(a, b, c), turn(a, b, d)) && opposite(turn(c, d, a), turn(c, d, b))
-}
-
-/// Where.
+/// The place where two segments cross.
 fn crossing([a, b]: [Vector2<f64>; 2], [c, d]: [Vector2<f64>; 2]) -> [f64; 2] {
     let (s, t) = (turn(c, d, a), turn(c, d, b));
     (a + (b - a) * (s / (s - t))).into()
@@ -413,6 +449,31 @@ mod tests {
         let removed = |i: usize| [6, 9].contains(&(i / 2));
         let t = t.into_iter().enumerate().filter(|(i, _)| !removed(*i)).map(|(_, t)| t).collect();
         assert!(together(&[(v, t)]).is_ok());
+    }
+
+    #[test]
+    fn slender_triangles_at_any_angle_have_few_neighbours() {
+        // Boxes around long edges at an angle meet all others; the squares around vertices meet few edges.
+        let slender = |n| grid([1, n], [0.0, 0.0], [1.0, 1.0], turned);
+        // Teeth of a comb: long triangles on a bar.
+        let comb = |n: usize| {
+            let (mut v, mut t) = grid([2 * n, 1], [0.0, -1e-3], [1.0, 0.0], turned);
+            for k in 0..n {
+                let [a, b] = [2 * n + 1 + 2 * k, 2 * n + 2 + 2 * k];
+                t.push([a, b, v.len()]);
+                v.push(turned([(2.0 * k as f64 + 0.5) / (2 * n) as f64, 1.0]));
+            }
+            (v, t)
+        };
+        for (vertices, triangles) in [slender(500), comb(200)] {
+            let mesh = Mesh::new(vertices, triangles, []).unwrap();
+            let outline = SearchableOutline::new(&mesh);
+            let mut near = Near { outline: &outline, pairs: Vec::new(), found: 0, error: None };
+            assert_eq!(outline.search(&mut near), Ok(()));
+            near.check();
+            let (found, edges) = (near.found, outline.ends.len());
+            assert!(found < 8 * edges, "{found} pairs of {edges} edges");
+        }
     }
 
     #[test]

@@ -38,5 +38,19 @@ impl<F: Fn([f64; 2]) -> f64 + Send + Sync> Function for F {
     }
 }
 
+/// A function that is the same everywhere, and knows it.
+#[derive(Clone, Copy, Debug)]
+pub struct Constant(pub f64);
+
+impl Function for Constant {
+    fn at(&self, _: [f64; 2]) -> f64 {
+        self.0
+    }
+
+    fn degree(&self) -> Option<u32> {
+        Some(0)
+    }
+}
+
 /// A [`Function`] that problems own together.
 pub type SharedFunction = Arc<dyn Function>;

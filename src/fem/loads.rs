@@ -1,5 +1,7 @@
 //! L(v) = int_Omega f . v + int_{Gamma_N} t . v for every basis function v.
 
+use std::collections::BTreeMap;
+
 use super::data::{DataError, checked};
 use super::element::{Degree, with_element};
 use super::function::{Function, SharedFunction};
@@ -120,6 +122,34 @@ impl Force<'_> {
     }
 }
 
+/// The resultants of the loads.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Resultants {
+    /// That of the forces on the body and on parts of it.
+    pub body: [f64; 2],
+    /// Those of the boundaries on which a traction or a pressure is given, by name.
+    pub boundaries: BTreeMap<String, [f64; 2]>,
+}
+
+/// The resultants of the loads of a problem.
+///
+/// # Errors
+/// As [`assemble`].
+pub fn resultants(problem: &Problem, space: &Space) -> Result<Resultants, DataError> {
+    let mut all = Resultants::default();
+    let points = |load: &dyn Function| points(load, space.degree().number());
+    each_force_on_body(problem, space, &points, |force| all.body[force.c] += force.value)?;
+    for (name, condition) in &problem.conditions {
+        let mut sum = [0.0; 2];
+        let add = |force: Force| sum[force.c] += force.value;
+        each_force_of(name, condition, space, &points, add)?;
+        if condition.has_load() {
+            all.boundaries.insert(name.clone(), sum);
+        }
+    }
+    Ok(all)
+}
+
 /// Calls `add` with each force at each point.
 fn each_force(
     problem: &Problem,
@@ -127,42 +157,68 @@ fn each_force(
     points: impl Fn(&dyn Function) -> usize,
     mut add: impl FnMut(Force),
 ) -> Result<(), DataError> {
-    let rule = |load: &dyn Function| {
-        Rule::new(Features { kink: load.kink(), singular: None }, points(load))
-    };
+    each_force_on_body(problem, space, &points, &mut add)?;
+    for (name, condition) in &problem.conditions {
+        each_force_of(name, condition, space, &points, &mut add)?;
+    }
+    Ok(())
+}
+
+/// The rule for a load, with as many points along each direction as `points` says.
+fn rule(load: &dyn Function, points: impl Fn(&dyn Function) -> usize) -> Rule {
+    Rule::new(Features { kink: load.kink(), singular: None }, points(load))
+}
+
+fn each_force_on_body(
+    problem: &Problem,
+    space: &Space,
+    points: impl Fn(&dyn Function) -> usize,
+    mut add: impl FnMut(Force),
+) -> Result<(), DataError> {
+    let rule = |load: &dyn Function| rule(load, &points);
     for (c, f) in acting(&problem.body_force) {
         let what = || format!("[load] body[{c}]");
         each_body_force(c, f, &rule(f), space, 0..space.elements().len(), what, &mut add)?;
     }
     for SurfaceForce { surface, triangles, force } in &problem.surface_forces {
         for (c, f) in acting(force) {
-            let what = || format!("[load.{surface}] body[{c}]");
+            let what = || format!("[load.{}] body[{c}]", key(surface));
             let triangles = triangles.iter().copied();
             each_body_force(c, f, &rule(f), space, triangles, what, &mut add)?;
         }
     }
-    for (name, condition) in &problem.conditions {
-        match condition {
-            Condition::Traction(traction) | Condition::Mixed { traction, .. } => {
-                let is_held = |c: usize| match condition {
-                    Condition::Mixed { displacement, .. } => displacement[c].is_some(),
-                    _ => false,
-                };
-                for (c, t) in acting(traction).filter(|(c, _)| !is_held(*c)) {
-                    let what = || format!("[boundary.{}] traction[{c}]", key(name));
-                    let value = |x, n| checked(t.on_boundary(x, n), x, what);
-                    each_force_on_boundary(name, c, value, &rule(t), space, &mut add)?;
-                }
+    Ok(())
+}
+
+/// Calls `add` with each force on a boundary with this name and condition.
+fn each_force_of(
+    name: &str,
+    condition: &Condition,
+    space: &Space,
+    points: impl Fn(&dyn Function) -> usize,
+    mut add: impl FnMut(Force),
+) -> Result<(), DataError> {
+    let rule = |load: &dyn Function| rule(load, &points);
+    match condition {
+        Condition::Traction(traction) | Condition::Mixed { traction, .. } => {
+            let is_held = |c: usize| match condition {
+                Condition::Mixed { displacement, .. } => displacement[c].is_some(),
+                _ => false,
+            };
+            for (c, t) in acting(traction).filter(|(c, _)| !is_held(*c)) {
+                let what = || format!("[boundary.{}] traction[{c}]", key(name));
+                let value = |x, n| checked(t.on_boundary(x, n), x, what);
+                each_force_on_boundary(name, c, value, &rule(t), space, &mut add)?;
             }
-            Condition::Pressure(p) => {
-                let what = || format!("[boundary.{}] pressure", key(name));
-                for c in 0..2 {
-                    let value = |x, n: [f64; 2]| Ok(-n[c] * checked(p.on_boundary(x, n), x, what)?);
-                    each_force_on_boundary(name, c, value, &rule(&**p), space, &mut add)?;
-                }
-            }
-            _ => {}
         }
+        Condition::Pressure(p) => {
+            let what = || format!("[boundary.{}] pressure", key(name));
+            for c in 0..2 {
+                let value = |x, n: [f64; 2]| Ok(-n[c] * checked(p.on_boundary(x, n), x, what)?);
+                each_force_on_boundary(name, c, value, &rule(&**p), space, &mut add)?;
+            }
+        }
+        _ => {}
     }
     Ok(())
 }

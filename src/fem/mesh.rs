@@ -47,10 +47,12 @@ struct MeshTopology {
     edge_count: usize,
     outline: Vec<BoundaryEdge>,
     boundaries: BTreeMap<String, Vec<BoundaryEdge>>,
-    /// Named curves with an edge inside the body, and where that is: no boundary.
-    inner: BTreeMap<String, [[f64; 2]; 2]>,
+    /// Named curves that are no boundaries, as one has an edge inside the body, and why.
+    faults: BTreeMap<String, MeshError>,
+    /// Named curves beside the body, by the ends of their edges.
+    curves: BTreeMap<String, Vec<[[f64; 2]; 2]>>,
     surfaces: BTreeMap<String, Vec<usize>>,
-    points: BTreeMap<String, usize>,
+    points: BTreeMap<String, Vec<usize>>,
 }
 
 /// An edge on the boundary, by the triangle that owns it: edge `local` lies opposite the triangle's vertex `local`.
@@ -80,37 +82,91 @@ impl Mesh {
         let (edges, triangle_edges) = match_edges(vertices.len(), &triangles)?;
         let outline: Vec<BoundaryEdge> =
             edges.edges.iter().filter(|e| !e.inner).map(|e| e.owner).collect();
-        let (boundaries, inner) = name_boundaries(&edges, &vertices, named)?;
+        let (boundaries, faults) = name_boundaries(&edges, &vertices, named)?;
         let topology = MeshTopology {
             triangles,
             triangle_edges,
             edge_count: edges.edges.len(),
             outline,
             boundaries,
-            inner,
+            faults,
+            curves: BTreeMap::new(),
             surfaces: BTreeMap::new(),
             points: BTreeMap::new(),
         };
         Ok(Mesh { vertices, topology: Arc::new(topology), boxes: OnceLock::new() })
     }
 
-    /// Names parts of the body, as lists of triangles, and named points, as vertices. Numbers beyond the
-    /// last triangle or vertex are passed over.
-    #[must_use]
+    /// Names parts of the body, as lists of triangles, and points, as lists of vertices. A triangle may have several names; which of
+    /// them matters is said by what uses them.
+    ///
+    /// # Errors
+    /// [`MeshError::Beyond`] for a number that no triangle or vertex has.
     pub fn with_names(
         mut self,
         surfaces: BTreeMap<String, Vec<usize>>,
-        points: BTreeMap<String, usize>,
-    ) -> Mesh {
-        let (triangles, vertices) = (self.triangles().len(), self.vertices.len());
-        let inside = |(name, mut members): (String, Vec<usize>)| {
-            members.retain(|&t| t < triangles);
-            (name, members)
-        };
+        points: BTreeMap<String, Vec<usize>>,
+    ) -> Result<Mesh, MeshError> {
+        check_numbers(&surfaces, ["surface", "triangle", "triangles"], self.triangles().len())?;
+        check_numbers(&points, ["point", "vertex", "vertices"], self.vertices.len())?;
         let topology = Arc::make_mut(&mut self.topology);
-        topology.surfaces = surfaces.into_iter().map(inside).collect();
-        topology.points = points.into_iter().filter(|(_, v)| *v < vertices).collect();
+        topology.surfaces = surfaces;
+        topology.points = points;
+        Ok(self)
+    }
+
+    /// Names curves that are no boundaries, and says why.
+    #[must_use]
+    pub(crate) fn with_faults(mut self, faults: BTreeMap<String, MeshError>) -> Mesh {
+        let topology = Arc::make_mut(&mut self.topology);
+        topology.boundaries.retain(|name, _| !faults.contains_key(name));
+        topology.faults.extend(faults);
         self
+    }
+
+    /// Names curves beside the body, by the ends of their edges: a rigid obstacle may be one.
+    #[must_use]
+    pub(crate) fn with_curves(mut self, curves: BTreeMap<String, Vec<[[f64; 2]; 2]>>) -> Mesh {
+        Arc::make_mut(&mut self.topology).curves = curves;
+        self
+    }
+
+    /// The ends of the edges of a named curve beside the body.
+    ///
+    /// # Errors
+    /// [`MeshError::NoSuchCurve`], with the names that there are.
+    pub(crate) fn curve(&self, name: &str) -> Result<&[[[f64; 2]; 2]], MeshError> {
+        let curves = &self.topology.curves;
+        curves.get(name).map(Vec::as_slice).ok_or_else(|| MeshError::NoSuchCurve {
+            name: name.to_owned(),
+            known: listed(
+                curves.keys(),
+                "none (in Gmsh a Physical Curve that bounds no surface is one)",
+            ),
+        })
+    }
+
+    /// Names the edges of the boundary whose two ends are places where `holds`.
+    ///
+    /// # Errors
+    /// [`MeshError::NameTaken`] if the mesh has a boundary of this name, [`MeshError::Nowhere`] if there is no such edge.
+    pub fn with_boundary(
+        mut self,
+        name: &str,
+        holds: impl Fn([f64; 2]) -> bool,
+    ) -> Result<Mesh, MeshError> {
+        let topology = &self.topology;
+        if topology.boundaries.contains_key(name) || topology.faults.contains_key(name) {
+            return Err(MeshError::NameTaken { name: name.to_owned() });
+        }
+        let is_part = |&edge: &BoundaryEdge| self.places_of_ends(edge).into_iter().all(&holds);
+        let edges: Vec<BoundaryEdge> = self.outline().iter().copied().filter(is_part).collect();
+        if edges.is_empty() {
+            let Bounds { low, high } = Bounds::around(self.vertices.iter().copied());
+            return Err(MeshError::Nowhere { low, high });
+        }
+        Arc::make_mut(&mut self.topology).boundaries.insert(name.to_owned(), edges);
+        Ok(self)
     }
 
     /// The named parts of the body with their triangles, in alphabetical order.
@@ -133,12 +189,25 @@ impl Mesh {
     /// The vertex of a named point.
     ///
     /// # Errors
-    /// [`MeshError::NoSuchPoint`], with the names that there are.
+    /// [`MeshError::NoSuchPoint`], with the names that there are; [`MeshError::NotOnePoint`] where several vertices, or none, have
+    /// the name.
     pub fn point(&self, name: &str) -> Result<usize, MeshError> {
-        self.topology.points.get(name).copied().ok_or_else(|| MeshError::NoSuchPoint {
-            name: name.to_owned(),
-            known: listed(self.topology.points.keys(), "none (in Gmsh a Physical Point is one)"),
-        })
+        let points = &self.topology.points;
+        match points.get(name).map(Vec::as_slice) {
+            Some(&[vertex]) => Ok(vertex),
+            Some(several) => {
+                Err(MeshError::NotOnePoint { name: name.to_owned(), count: several.len() })
+            }
+            None => {
+                let known = listed(points.keys(), "none (in Gmsh a Physical Point is one)");
+                Err(MeshError::NoSuchPoint { name: name.to_owned(), known })
+            }
+        }
+    }
+
+    /// The names of points, in alphabetical order.
+    pub fn point_names(&self) -> impl Iterator<Item = &str> {
+        self.topology.points.keys().map(String::as_str)
     }
 
     /// The vertices.
@@ -175,16 +244,38 @@ impl Mesh {
     ///
     /// # Errors
     /// [`MeshError::NoSuchBoundary`], with the names that there are; [`MeshError::InnerEdge`] for a named curve inside the
-    /// body.
+    /// body, [`MeshError::NoSuchEdge`] for one that no triangle has an edge on.
     pub fn edges_of(&self, boundary: &str) -> Result<&[BoundaryEdge], MeshError> {
-        if let Some(&ends) = self.topology.inner.get(boundary) {
-            return Err(MeshError::InnerEdge { boundary: boundary.to_owned(), ends });
+        if let Some(fault) = self.topology.faults.get(boundary) {
+            return Err(fault.clone());
         }
         let boundaries = &self.topology.boundaries;
         boundaries.get(boundary).map(Vec::as_slice).ok_or_else(|| {
-            let known = listed(boundaries.keys(), "none (in Gmsh a Physical Curve is one)");
+            let none = "none (in Gmsh a Physical Curve is one, in a case file where = \"abs(y) < 1e-9\" makes one)";
+            let known = listed(boundaries.keys(), none);
             MeshError::NoSuchBoundary { name: boundary.to_owned(), known }
         })
+    }
+
+    /// Checks that no edge has two of these names: an edge that has two may be used by one of them.
+    ///
+    /// # Errors
+    /// [`MeshError::NamedTwice`]; as [`Mesh::edges_of`].
+    pub fn check_apart<'n>(
+        &self,
+        names: impl IntoIterator<Item = &'n str>,
+    ) -> Result<(), MeshError> {
+        let mut name_of: BTreeMap<usize, &str> = BTreeMap::new();
+        for name in names {
+            for &edge in self.edges_of(name)? {
+                let number = self.topology.triangle_edges[edge.triangle][edge.local];
+                if let Some(first) = name_of.insert(number, name) {
+                    let names = [first, name].map(str::to_owned);
+                    return Err(MeshError::NamedTwice { ends: self.places_of_ends(edge), names });
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Triangle `t` with its coordinates.
@@ -346,6 +437,21 @@ fn check_triangles(vertices: &[[f64; 2]], triangles: &[[usize; 3]]) -> Result<()
     Ok(())
 }
 
+fn check_numbers(
+    named: &BTreeMap<String, Vec<usize>>,
+    [kind, member, members]: [&'static str; 3],
+    count: usize,
+) -> Result<(), MeshError> {
+    let mut all = named.iter().flat_map(|(name, numbers)| numbers.iter().map(move |&n| (name, n)));
+    match all.find(|(_, number)| *number >= count) {
+        None => Ok(()),
+        Some((name, number)) => {
+            let of = [kind, member, members];
+            Err(MeshError::Beyond { of, name: name.clone(), number, count })
+        }
+    }
+}
+
 fn listed<'a>(names: impl Iterator<Item = &'a String>, none: &str) -> String {
     let mut names = names.map(String::as_str).peekable();
     if names.peek().is_none() { none.to_owned() } else { quote::names(names) }
@@ -404,7 +510,7 @@ mod tests {
         let e = named(&[]).unwrap().edges_of("a").unwrap_err().to_string();
         assert_eq!(
             e,
-            "no boundary named 'a'; this mesh has: none (in Gmsh a Physical Curve is one)"
+            "no boundary named 'a'; this mesh has: none (in Gmsh a Physical Curve is one, in a case file where = \"abs(y) < 1e-9\" makes one)"
         );
     }
 

@@ -35,6 +35,7 @@ pub mod obstacle;
 pub mod pairs;
 mod path;
 pub mod piece;
+mod plane_sweep;
 #[doc(hidden)]
 pub mod problem;
 #[doc(hidden)]

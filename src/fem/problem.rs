@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::function::SharedFunction;
+use super::function::{Constant, SharedFunction};
 use super::material::Materials;
-use super::mesh::Mesh;
 use super::mesh::bisection::Refinement;
+use super::mesh::{Mesh, MeshError};
 use super::obstacle::Obstacle;
 use super::pairs::Pair;
 
@@ -88,6 +88,28 @@ impl Condition {
     /// Contact at this initial gap (a length along the outward normal).
     pub fn contact(gap: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static) -> Self {
         Condition::Contact { gap: Arc::new(gap) }
+    }
+
+    /// The displacement u . n along the normal, at any angle; free along the boundary.
+    pub fn normal(u_n: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static) -> Self {
+        Condition::Support { normal: Some(Arc::new(u_n)), tangential: None }
+    }
+
+    /// A total force (per unit of thickness), spread evenly over the length of this boundary of the mesh.
+    ///
+    /// # Errors
+    /// As [`Mesh::edges_of`].
+    pub fn force(force: [f64; 2], mesh: &Mesh, boundary: &str) -> Result<Self, MeshError> {
+        let edges = mesh.edges_of(boundary)?;
+        let length: f64 = edges.iter().map(|&edge| mesh.length_and_normal(edge).0).sum();
+        Ok(Condition::Traction(
+            force.map(|force| Arc::new(Constant(force / length)) as SharedFunction),
+        ))
+    }
+
+    /// A load is given on this part.
+    pub(crate) fn has_load(&self) -> bool {
+        matches!(self, Condition::Traction(_) | Condition::Pressure(_) | Condition::Mixed { .. })
     }
 
     /// This is a part of Gamma_C.

@@ -30,7 +30,7 @@ use self::source::Source;
 use self::table::{Table, Value};
 use super::input::{self, Failure, FileError, MOST_OF_A_CASE, Position};
 use crate::certify::{Asked, Target};
-use crate::fem::{Mesh, Pair, Perturbation, Problem, Structured};
+use crate::fem::{Mesh, Pair, Perturbation, Problem, SharedFunction, Structured};
 use crate::memory;
 use crate::quote;
 use crate::solve::{Method, Settings};
@@ -69,6 +69,8 @@ pub struct Case {
     pub exact: Option<ExactCase>,
     /// The text that it was read from, with a comment for each setting laid over it.
     pub text: String,
+    /// What was decided when the mesh was read, in sentences for people.
+    pub remarks: Vec<String>,
     /// The files that all this was read from.
     pub sources: Vec<PathBuf>,
 }
@@ -126,6 +128,11 @@ pub struct ExactCase {
 }
 
 impl Case {
+    /// Returns whether the case itself asks for a certificate: it has quantities in \[certify\], which nothing else proves.
+    pub fn asks_for_certificate(&self) -> bool {
+        !self.asked.forces.is_empty()
+    }
+
     /// The case in this file, its mesh made or read.
     ///
     /// # Errors
@@ -158,25 +165,35 @@ impl Case {
     /// # Errors
     /// As [`Case::read`]; for a mistake in a setting, the place is that setting.
     pub fn parse(file: &Path, text: &str, settings: &[String]) -> Result<Case, FileError> {
-        parse(Source { file, text, settings }, None)
+        parse(Source { file, text, settings, functions: &[] }, None)
     }
 
-    /// The pairs of boundaries that the case with this text has, by which its mesh is checked.
+    /// The pairs of boundaries that the case with this text has, by which its mesh is checked; `functions` as in [`Case::on_mesh`].
     ///
     /// # Errors
     /// As [`Case::parse`].
-    pub fn pairs(file: &Path, text: &str) -> Result<Vec<Pair>, FileError> {
-        let source = Source { file, text, settings: &[] };
+    pub fn pairs(
+        file: &Path,
+        text: &str,
+        functions: &[SharedFunction],
+    ) -> Result<Vec<Pair>, FileError> {
+        let source = Source { file, text, settings: &[], functions };
         let entries = source.entries(&[])?;
         Ok(pairs::of_boundaries(&pairs::read_pairs(&Table::whole(source, &entries))?))
     }
 
-    /// The case with this text, which has no \[mesh\], on this mesh.
+    /// The case with this text, which has no \[mesh\], on this mesh. Where the text has `"@0"`, `"@1"`, .. in place of an expression,
+    /// these `functions` stand.
     ///
     /// # Errors
     /// As [`Case::parse`].
-    pub fn on_mesh(file: &Path, text: &str, mesh: Mesh) -> Result<Case, FileError> {
-        parse(Source { file, text, settings: &[] }, Some(mesh))
+    pub fn on_mesh(
+        file: &Path,
+        text: &str,
+        mesh: Mesh,
+        functions: &[SharedFunction],
+    ) -> Result<Case, FileError> {
+        parse(Source { file, text, settings: &[], functions }, Some(mesh))
     }
 }
 
@@ -220,7 +237,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
     let thickness = root.optional_section("body", read_thickness)?;
     let folder = file.parent().unwrap_or(Path::new(""));
     let declared = pairs::read_pairs(root)?;
-    let Meshed { mesh, structured, perturbation, file: mesh_file } =
+    let Meshed { mesh, structured, perturbation, file: mesh_file, remarks } =
         read_mesh(root, given, folder, &pairs::of_boundaries(&declared))?;
     let mesh = pairs::split(mesh, &declared)?;
     let table = root.required_section("material", &format!("{} in it", body::EXPECTED))?;
@@ -232,8 +249,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
         return Err(pair.at.found("a pair beside [exact]", "the contact of the exact solution"));
     }
     let pairs = pairs::on_mesh(root, declared, &mesh)?;
-    let (conditions, kinds) =
-        read_boundaries(root, solution.as_ref(), &mesh, thickness, !pairs.is_empty())?;
+    let (conditions, kinds) = read_boundaries(root, solution.as_ref(), &mesh, thickness, &pairs)?;
     let points = read_points(root, &mesh)?;
     let adapt = root.optional_section("adapt", |table| read_target(table, &conditions))?;
     let asked = root.optional_section("certify", |table| read_quantities(table, &conditions))?;
@@ -254,6 +270,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
         probes,
         exact: solution.map(|solution| ExactCase { solution, kinds, structured, perturbation }),
         text: String::new(),
+        remarks,
         sources: std::iter::once(file.to_owned()).chain(mesh_file).collect(),
     })
 }

@@ -6,6 +6,7 @@ use super::input;
 use super::input::Failure;
 use crate::certify::format::{self, Refused};
 pub use crate::certify::format::{Audit, Header, decode, encode, hash};
+use crate::memory;
 use crate::quote;
 
 /// The names of the files: the claim, and the arrays beside it.
@@ -13,6 +14,9 @@ pub const FILES: [&str; 2] = ["certificate.json", "certificate.bin"];
 
 /// The most bytes of a file: some ten million triangles.
 const MOST: u64 = 4 << 30;
+
+/// The bytes of memory that a byte of certificate.bin takes while it is verified, beside itself: up to 6 as measured.
+const MEMORY_PER_BYTE: u64 = 7;
 
 /// Reads certificate.json and the arrays beside it, and verifies everything anew.
 pub fn audit(path: &Path) -> Result<Audit, Failure> {
@@ -27,5 +31,8 @@ pub fn audit(path: &Path) -> Result<Audit, Failure> {
     };
     let read = |file: &Path| input::read(file, MOST).map_err(Failure::failed);
     let header = format::read_header(&read(path)?).map_err(refused)?;
-    format::audit(header, &read(&arrays)?).map_err(refused)
+    let bytes = read(&arrays)?;
+    let needed = MEMORY_PER_BYTE.saturating_mul(bytes.len() as u64);
+    memory::check(needed).map_err(|lack| Failure::failed(lack).of(&arrays))?;
+    format::audit(header, &bytes).map_err(refused)
 }

@@ -22,8 +22,10 @@
 //! [`MOST_LEVELS`] bounds what nests.
 
 mod algebra;
+mod condition;
 mod parser;
 
+pub use condition::PlaceCondition;
 use thiserror::Error;
 
 use crate::fem::Function;

@@ -1,32 +1,28 @@
-//! Meshes from Gmsh: the formats MSH 4.1 and 2.2, text or binary (little endian).
+//! Meshes from Gmsh: the formats MSH 4.1 and 2.0 to 2.2, text or binary (little endian).
 //!
-//! A file is a list of sections, `$Name` .. `$EndName`. Four matter here; the others are skipped:
+//! A file is a list of sections, `$Name` .. `$EndName`. These matter here; the others are skipped:
 //!
 //! | section | what is taken from it |
 //! | --- | --- |
 //! | `$PhysicalNames` | the names of the physical points, curves and surfaces |
-//! | `$Entities` (4.1) | which point, curve or surface belongs to which physical group |
+//! | `$Entities`, `$PartitionedEntities` (4.1) | which point, curve or surface belongs to which physical groups |
 //! | `$Nodes` | the vertices; those that are no corner of a triangle (the centre of an arc) are left out |
-//! | `$Elements` | triangles: the body, by physical surface; lines on physical curves: the boundary parts; physical points |
-//!
-//! Elements of second order are read as those of first order if their edges are straight, and refused if they are curved.
+//! | `$Elements` | triangles and quadrangles: the body, by physical surface; lines: the boundary parts; physical points |
 //!
 //! The format is described in the Gmsh reference manual, section "MSH file format". In a binary file an `int` has 4
 //! bytes, a `size_t` and a `double` have 8; in a text file all are words between white space. Nothing is allocated because
-//! a file announces it, only because it is there. How bytes are read is in `cursor`, which mesh they make in `mesh`.
+//! a file announces it, only because it is there. How bytes are read is in `cursor`, which mesh they make in `raw_mesh`.
 
 mod cursor;
-mod mesh;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::Path;
 
 use super::input::{self, FileError, MOST_OF_A_MESH};
-use crate::fem::{Mesh, Pair};
+use super::raw_mesh::{ByDimension, Elements, Kind, Made, Node, RawMesh};
+use crate::fem::Pair;
 use crate::memory;
-use crate::quote;
 use cursor::{Cursor, Version, shown};
-use mesh::{make_mesh, merge_nodes};
 
 type Result<T> = std::result::Result<T, FileError>;
 
@@ -35,138 +31,53 @@ type Result<T> = std::result::Result<T, FileError>;
 ///
 /// # Errors
 /// The first mistake found, with its place and the numbers that the file uses.
-pub fn read(file: &Path, share: Option<f64>, pairs: &[Pair]) -> Result<Mesh> {
+pub fn read(file: &Path, share: Option<f64>, pairs: &[Pair]) -> Result<Made> {
     from_bytes(&input::read(file, MOST_OF_A_MESH)?, file, share, pairs)
 }
 
 /// The mesh in `bytes`, which messages call `file`; otherwise as [`read`].
-pub fn from_bytes(bytes: &[u8], file: &Path, share: Option<f64>, pairs: &[Pair]) -> Result<Mesh> {
+///
+/// # Errors
+/// As [`read`].
+pub fn from_bytes(bytes: &[u8], file: &Path, share: Option<f64>, pairs: &[Pair]) -> Result<Made> {
     // Names and entities: what is kept of one is no more than this many times what the file says of it.
     const MOST_TIMES: u64 = 4;
     let mut cursor = Cursor { bytes, file, at: 0, version: Version::Four, binary: false };
     memory::check(MOST_TIMES * bytes.len() as u64).map_err(|lack| cursor.in_the_file(lack))?;
-    let mut content = read_sections(&mut cursor)?;
-    if let Some(share) = share {
-        merge_nodes(&mut content, share, pairs);
-    }
-    make_mesh(content, pairs).map_err(|error| cursor.in_the_file(error))
+    let raw = read_sections(&mut cursor)?;
+    raw.made(share, pairs).map_err(|error| cursor.in_the_file(error))
 }
-
-/// Something for points, curves and surfaces each.
-type ByDimension<T> = [T; 3];
 
 /// The physical groups of each entity.
 type Groups = ByDimension<BTreeMap<i32, Vec<i32>>>;
 
-/// The content of the sections, in the tags of the file.
-struct Content {
-    /// The names of the physical groups.
-    names: ByDimension<BTreeMap<i32, String>>,
-    groups: Groups,
-    nodes: Vec<Node>,
-    elements: Elements,
-}
+/// The names of the physical groups.
+type Names = ByDimension<BTreeMap<i32, String>>;
 
-struct Node {
-    tag: usize,
-    place: [f64; 2],
-}
-
-#[derive(Default)]
-struct Elements {
-    /// Points, lines and triangles.
-    by_dimension: ByDimension<Vec<GmshElement>>,
-    /// The middle nodes of edges of second order.
-    middles: Vec<Middle>,
-}
-
-/// An element on an entity of its dimension, by its corners: one, two or all three of `nodes`.
-struct GmshElement {
-    tag: usize,
-    nodes: [usize; 3],
-    entity: i32,
-}
-
-/// A node between the two ends of an edge of an element.
-struct Middle {
-    element: usize,
-    node: usize,
-    ends: [usize; 2],
-}
-
-impl Elements {
-    /// Reads the nodes of the element `tag` of type `number` on `entity`, if it is one of those in use.
-    fn read(
-        &mut self,
-        cursor: &mut Cursor,
-        start: usize,
-        tag: usize,
-        number: i32,
-        entity: i32,
-    ) -> Result<()> {
-        const NODE: &str = "the tag of a node";
-        let (dimension, order) = dimension_and_order(number).map_err(|[kind, expected]| {
-            let said = format!("element {tag} is a {kind} (type {number}); expected {expected}");
-            cursor.wrong_at(start, said)
-        })?;
-        let mut nodes = [0; 3];
-        for node in &mut nodes[..=dimension] {
-            *node = cursor.size(NODE)?;
-        }
-        self.by_dimension[dimension].push(GmshElement { tag, nodes, entity });
-        let edges = if order == 2 { [0, 1, 3][dimension] } else { 0 };
-        for edge in 0..edges {
-            let ends = [nodes[edge], nodes[(edge + 1) % 3]];
-            self.middles.push(Middle { element: tag, node: cursor.size(NODE)?, ends });
-        }
-        Ok(())
-    }
-
-    /// The groups of a file in which each is an entity of its own; 0 is no group.
-    fn groups(&self) -> Groups {
-        let of = |element: &GmshElement| {
-            (element.entity, Vec::from_iter(Some(element.entity).filter(|&e| e != 0)))
-        };
-        self.by_dimension.each_ref().map(|elements| elements.iter().map(of).collect())
-    }
-}
-
-/// The dimension and the order of an element type in use; of another its name, and the remedy.
-fn dimension_and_order(number: i32) -> std::result::Result<(usize, usize), [&'static str; 2]> {
-    const ORDER: &str = "2-node lines and 3-node triangles: export with element order 1";
-    const TRIANGLES: &str = "3-node triangles: do not recombine the mesh";
-    const PLANE: &str = "a plane mesh of 3-node triangles: mesh in two dimensions, gmsh -2";
-    Err(match number {
-        15 => return Ok((0, 1)),
-        1 => return Ok((1, 1)),
-        2 => return Ok((2, 1)),
-        8 => return Ok((1, 2)),
-        9 => return Ok((2, 2)),
-        3 => ["4-node quadrangle", TRIANGLES],
-        4 => ["4-node tetrahedron", PLANE],
-        5 => ["8-node hexahedron", PLANE],
-        6 => ["6-node prism", PLANE],
-        7 => ["5-node pyramid", PLANE],
-        10 => ["9-node quadrangle", TRIANGLES],
-        16 => ["8-node quadrangle", TRIANGLES],
-        21 => ["10-node triangle", ORDER],
-        26 => ["4-node line", ORDER],
-        _ => ["kind of element that has no use here", "2-node lines and 3-node triangles"],
-    })
-}
-
-fn read_sections(cursor: &mut Cursor) -> Result<Content> {
+fn read_sections(cursor: &mut Cursor) -> Result<RawMesh> {
     read_format(cursor)?;
     let version = cursor.version;
-    let (mut names, mut groups, mut nodes, mut elements) = (None, None, None, None);
+    let (mut names, mut remarks) = (None, Vec::new());
+    let (mut groups, mut parts, mut nodes, mut elements) = (None, None, None, None);
     while let Some((start, section)) = cursor.section()? {
         let is_second = match (section, version) {
             ("PhysicalNames", _) => names.replace(read_names(cursor)?).is_some(),
             ("Entities", Version::Four) => groups.replace(read_entities(cursor)?).is_some(),
+            ("PartitionedEntities", Version::Four) => {
+                parts.replace(read_partitioned_entities(cursor)?).is_some()
+            }
             ("Nodes", Version::Four) => nodes.replace(read_nodes(cursor)?).is_some(),
-            ("Nodes", Version::Two) => nodes.replace(read_nodes_of_2(cursor)?).is_some(),
+            ("Nodes" | "ParametricNodes", Version::Two) => {
+                let is_parametric = section == "ParametricNodes";
+                nodes.replace(read_nodes_of_2(cursor, is_parametric)?).is_some()
+            }
             ("Elements", Version::Four) => elements.replace(read_elements(cursor)?).is_some(),
-            ("Elements", Version::Two) => elements.replace(read_elements_of_2(cursor)?).is_some(),
+            ("Elements", Version::Two) => {
+                let (all, of_each, remark) = read_elements_of_2(cursor)?;
+                groups = Some(of_each);
+                remarks.extend(remark);
+                elements.replace(all).is_some()
+            }
             _ => {
                 cursor.skip_to_end_of(section)?;
                 false
@@ -180,35 +91,65 @@ fn read_sections(cursor: &mut Cursor) -> Result<Content> {
     }
     let missing = |section| {
         cursor.in_the_file(format!(
-            "there is no section ${section}; expected MSH 4.1 with $Entities, $Nodes and $Elements"
+            "there is no section ${section}; expected MSH 4.1 or 2.2 with $Nodes and $Elements"
         ))
     };
-    if version == Version::Four && groups.is_none() {
-        return Err(missing("Entities"));
-    }
     let nodes = nodes.ok_or_else(|| missing("Nodes"))?;
     let elements: Elements = elements.ok_or_else(|| missing("Elements"))?;
-    let groups = groups.unwrap_or_else(|| elements.groups());
-    Ok(Content { names: names.unwrap_or_default(), groups, nodes, elements })
+    if let Some(parts) = parts {
+        check_parts(cursor, &parts, &elements)?;
+        for (all, of_parts) in groups.get_or_insert_default().iter_mut().zip(parts.groups) {
+            all.extend(of_parts);
+        }
+    }
+    if let Some(groups) = &groups {
+        check_entities(cursor, groups, &elements)?;
+    }
+    if groups.is_none() && names.is_some() {
+        // Gmsh, too, reads such files without groups.
+        remarks.push("the mesh file has names of groups, but no $Entities that say what belongs to them: where = \"abs(y) < 1e-9\" names a boundary".to_owned());
+    }
+    let names = named(&names.unwrap_or_default(), groups.unwrap_or_default());
+    Ok(RawMesh { nodes, elements, names, numbers: "the numbers are tags of the file", remarks })
 }
 
-/// `$MeshFormat`: version, text or binary, size of a `size_t`; in a binary file then the number 1.
+/// The command by which Gmsh brings a file of any other version into this one; it needs no geometry.
+const CONVERT: &str = "gmsh OLD.msh -save -format msh41 -o NEW.msh converts it";
+
+/// `$MeshFormat`: version, text or binary, size of a `size_t`; in a binary file then the number 1. What stands before the section,
+/// such as a comment, is skipped.
 fn read_format(cursor: &mut Cursor) -> Result<()> {
-    let (start, heading) = cursor.line();
-    if heading != b"$MeshFormat" {
-        // Without its words: a case of somebody else may name a file that is none of his business.
-        let said = "this is no Gmsh mesh: expected $MeshFormat on its first line; gmsh -2 PART.geo makes PART.msh from a geometry";
-        return Err(cursor.wrong_at(start, said.to_owned()));
+    let is_one_of_old = |heading: &[u8]| matches!(heading, b"$NOD" | b"$PARA" | b"$ELM");
+    loop {
+        let (start, line) = cursor.line();
+        let section = line.strip_prefix(b"$").and_then(|name| std::str::from_utf8(name).ok());
+        match section {
+            Some("MeshFormat") => break,
+            Some(_) if is_one_of_old(line) => {
+                let said = format!("this is MSH 1; expected MSH 4.1 or 2.2: {CONVERT}");
+                return Err(cursor.wrong_at(start, said));
+            }
+            Some(name) if cursor.skip_to_end_of(name).is_ok() => {
+                cursor.line();
+            }
+            None if !cursor.rest().is_empty() => {}
+            _ => {
+                // Without its words: a case of somebody else may name a file that is none of his business.
+                let said = "this is no Gmsh mesh: expected a section $MeshFormat; gmsh -2 PART.geo makes PART.msh from a geometry";
+                return Err(cursor.wrong_at(0, said.to_owned()));
+            }
+        }
     }
     let (start, version) = cursor.word("the version of the format")?;
-    cursor.version = match version {
-        b"4.1" => Version::Four,
-        b"2.2" => Version::Two,
+    let number = std::str::from_utf8(version).ok().and_then(|word| word.parse::<f64>().ok());
+    cursor.version = match number {
+        Some(4.1) => Version::Four,
+        // The lines of the three are the same.
+        Some(2.0 | 2.1 | 2.2) => Version::Two,
         _ => {
             let version = shown(version);
-            let said = format!(
-                "the version of the format is {version}; expected '4.1' or '2.2': export the mesh with gmsh -format msh41"
-            );
+            let said =
+                format!("the version of the format is {version}; expected 4.1 or 2.2: {CONVERT}");
             return Err(cursor.wrong_at(start, said));
         }
     };
@@ -234,16 +175,17 @@ fn read_format(cursor: &mut Cursor) -> Result<()> {
 }
 
 /// `$PhysicalNames`, always text: a count; then dimension, tag and "name" on a line each.
-fn read_names(cursor: &mut Cursor) -> Result<ByDimension<BTreeMap<i32, String>>> {
+fn read_names(cursor: &mut Cursor) -> Result<Names> {
     let mut text = Cursor { binary: false, ..*cursor };
     let count = text.size("the number of physical names")?;
-    let mut names = <ByDimension<BTreeMap<i32, String>>>::default();
+    let mut names = Names::default();
     for _ in 0..count {
         let dimension = text.int_within(0..=3, "a dimension from 0 to 3")?;
         let tag = text.int("the tag of a physical group")?;
         let (start, line) = text.line();
-        let name = std::str::from_utf8(line).ok().map(str::trim);
-        let name = name.and_then(|name| name.strip_prefix('"')?.strip_suffix('"'));
+        // Of a name in another encoding what can be read: it matters only if the case uses it.
+        let name = String::from_utf8_lossy(line);
+        let name = name.strip_prefix('"').and_then(|name| name.strip_suffix('"'));
         let name = name.ok_or_else(|| {
             text.unexpected(start, &shown(line), "the name of a physical group in quotes")
         })?;
@@ -255,36 +197,152 @@ fn read_names(cursor: &mut Cursor) -> Result<ByDimension<BTreeMap<i32, String>>>
     Ok(names)
 }
 
+/// The names of all entities. A group without a name is called by its number, unless another one has that for a name.
+fn named(names: &Names, groups: Groups) -> ByDimension<BTreeMap<i32, Vec<String>>> {
+    let mut dimension = 0..;
+    groups.map(|entities| {
+        let names = &names[dimension.next().unwrap_or(0)];
+        let taken: BTreeSet<&str> = names.values().map(String::as_str).collect();
+        let name = |group: &i32| {
+            let number = || Some(group.to_string()).filter(|number| !taken.contains(&**number));
+            names.get(group).cloned().or_else(number)
+        };
+        let of_entity = |(entity, groups): (i32, Vec<i32>)| {
+            let names: BTreeSet<String> = groups.iter().filter_map(name).collect();
+            (entity, names.into_iter().collect())
+        };
+        entities.into_iter().map(of_entity).collect()
+    })
+}
+
+/// What kinds of entities there are, in messages.
+const KINDS: ByDimension<&str> = ["point", "curve", "surface"];
+
+/// The most groups of an entity: each of its elements is kept once for each of them.
+const MOST_GROUPS: usize = 100;
+
+/// Refuses elements on entities that are not in the list, and entities in too many groups.
+fn check_entities(cursor: &Cursor, groups: &Groups, elements: &Elements) -> Result<()> {
+    for (dimension, known) in groups.iter().enumerate() {
+        if let Some((entity, of)) = known.iter().find(|(_, groups)| groups.len() > MOST_GROUPS) {
+            let (kind, count) = (KINDS[dimension], of.len());
+            let said = format!(
+                "{kind} {entity} belongs to {count} physical {kind}s; expected at most {MOST_GROUPS}"
+            );
+            return Err(cursor.in_the_file(said));
+        }
+        let unknown =
+            elements.entities(dimension).into_iter().find(|entity| !known.contains_key(entity));
+        if let Some(entity) = unknown {
+            let tag = elements.one_on(dimension, entity).unwrap_or_default();
+            let kind = KINDS[dimension];
+            let said = format!("element {tag} lies on {kind} {entity}, which is not in $Entities");
+            return Err(cursor.in_the_file(said));
+        }
+    }
+    Ok(())
+}
+
 /// `$Entities`: the counts of points, curves, surfaces and volumes; then of each the tag, the place (of a point) or the
 /// box around it, the physical groups and (except of a point) what bounds it. Returns the groups.
 fn read_entities(cursor: &mut Cursor) -> Result<Groups> {
+    let mut all = Groups::default();
+    read_each_entity(cursor, |cursor, dimension| {
+        let tag = cursor.int("the tag of an entity")?;
+        let groups = read_entity(cursor, dimension)?;
+        if let Some(of_dimension) = all.get_mut(dimension) {
+            of_dimension.insert(tag, groups);
+        }
+        Ok(())
+    })?;
+    Ok(all)
+}
+
+/// Reads the counts of points, curves, surfaces and volumes, then so many of each.
+fn read_each_entity(
+    cursor: &mut Cursor,
+    mut read: impl FnMut(&mut Cursor, usize) -> Result<()>,
+) -> Result<()> {
     let mut counts = [0; 4];
     for count in &mut counts {
         *count = cursor.size("a number of entities")?;
     }
-    let mut all = Groups::default();
     for (dimension, count) in counts.into_iter().enumerate() {
         for _ in 0..count {
-            let tag = cursor.int("the tag of an entity")?;
-            for _ in 0..if dimension == 0 { 3 } else { 6 } {
-                cursor.double("a coordinate of an entity")?;
-            }
-            let mut groups = Vec::new();
-            for _ in 0..cursor.size("the number of physical groups of an entity")? {
-                // A negative tag says that the group runs against the direction of the curve.
-                groups.push(cursor.int("the tag of a physical group")?.saturating_abs());
-            }
-            if dimension > 0 {
-                for _ in 0..cursor.size("the number of entities that bound this one")? {
-                    cursor.int("the tag of an entity")?;
-                }
-            }
-            if let Some(of_dimension) = all.get_mut(dimension) {
-                of_dimension.insert(tag, groups);
-            }
+            read(cursor, dimension)?;
         }
     }
+    Ok(())
+}
+
+/// Reads what follows the tag of an entity, and returns its groups.
+fn read_entity(cursor: &mut Cursor, dimension: usize) -> Result<Vec<i32>> {
+    for _ in 0..if dimension == 0 { 3 } else { 6 } {
+        cursor.double("a coordinate of an entity")?;
+    }
+    let mut groups = Vec::new();
+    for _ in 0..cursor.size("the number of physical groups of an entity")? {
+        // A negative tag says that the group runs against the direction of the curve.
+        groups.push(cursor.int("the tag of a physical group")?.saturating_abs());
+    }
+    if dimension > 0 {
+        for _ in 0..cursor.size("the number of entities that bound this one")? {
+            cursor.int("the tag of an entity")?;
+        }
+    }
+    Ok(groups)
+}
+
+/// The entities of a mesh in partitions.
+struct PartitionedEntities {
+    groups: Groups,
+    /// How many partitions there are.
+    count: usize,
+    /// The surfaces in each of them.
+    surfaces: BTreeMap<i32, Vec<i32>>,
+}
+
+/// `$PartitionedEntities`: the number of partitions; the ghost entities; the counts of entities, then of each the tag, dimension
+/// and tag of its parent, its partitions, and the rest as in `$Entities`.
+fn read_partitioned_entities(cursor: &mut Cursor) -> Result<PartitionedEntities> {
+    let count = cursor.size("the number of partitions")?;
+    for _ in 0..cursor.size("the number of ghost entities")? {
+        cursor.int("the tag of a ghost entity")?;
+        cursor.int("the partition of a ghost entity")?;
+    }
+    let mut all =
+        PartitionedEntities { groups: Groups::default(), count, surfaces: BTreeMap::new() };
+    read_each_entity(cursor, |cursor, dimension| {
+        let tag = cursor.int("the tag of an entity")?;
+        cursor.int("the dimension of the parent of an entity")?;
+        cursor.int("the tag of the parent of an entity")?;
+        for _ in 0..cursor.size("the number of partitions of an entity")? {
+            let partition = cursor.int("the tag of a partition")?;
+            if dimension == 2 {
+                all.surfaces.entry(partition).or_default().push(tag);
+            }
+        }
+        let groups = read_entity(cursor, dimension)?;
+        if let Some(of_dimension) = all.groups.get_mut(dimension) {
+            of_dimension.insert(tag, groups);
+        }
+        Ok(())
+    })?;
     Ok(all)
+}
+
+/// Refuses a file that holds some of the partitions only.
+fn check_parts(cursor: &Cursor, parts: &PartitionedEntities, elements: &Elements) -> Result<()> {
+    let used = elements.entities(2);
+    let is_there = |surfaces: &Vec<i32>| surfaces.iter().any(|surface| used.contains(surface));
+    let found = parts.surfaces.values().filter(|surfaces| is_there(surfaces)).count();
+    if found >= parts.count {
+        return Ok(());
+    }
+    let count = parts.count;
+    Err(cursor.in_the_file(format!(
+        "the file has triangles of {found} of the {count} partitions of the mesh; expected all of them in one file (Mesh.PartitionSplitMeshFiles = 0)"
+    )))
 }
 
 /// `$Nodes`: the number of blocks, three numbers of no use here; then in each block dimension and tag of an entity,
@@ -301,10 +359,10 @@ fn read_nodes(cursor: &mut Cursor) -> Result<Vec<Node>> {
         cursor.make_room(&mut nodes, count)?;
         for _ in 0..count {
             let tag = cursor.size("the tag of a node")?;
-            nodes.push(Node { tag, place: [0.0; 2] });
+            nodes.push(Node { tag, place: [0.0; 3] });
         }
         for node in &mut nodes[first..] {
-            node.place = read_place(cursor, node.tag)?;
+            node.place = read_place(cursor)?;
             for _ in 0..parametric * dimension {
                 cursor.double("a parameter of a node")?;
             }
@@ -321,18 +379,13 @@ fn read_block_count(cursor: &mut Cursor, of: &str) -> Result<usize> {
     Ok(blocks)
 }
 
-/// The coordinates x, y, z of a node, of which z must be 0.
-fn read_place(cursor: &mut Cursor, node: usize) -> Result<[f64; 2]> {
-    const COORDINATE: &str = "a coordinate of a node";
-    let place = [cursor.double(COORDINATE)?, cursor.double(COORDINATE)?];
-    let start = cursor.here();
-    let z = cursor.double(COORDINATE)?;
-    if z == 0.0 {
-        return Ok(place);
+/// The coordinates x, y, z of a node.
+fn read_place(cursor: &mut Cursor) -> Result<[f64; 3]> {
+    let mut place = [0.0; 3];
+    for coordinate in &mut place {
+        *coordinate = cursor.double("a coordinate of a node")?;
     }
-    let z = quote::number(z);
-    let said = format!("node {node} has z = {z}; expected a mesh in the plane z = 0");
-    Err(cursor.wrong_at(start, said))
+    Ok(place)
 }
 
 /// `$Elements`: the number of blocks, three numbers of no use here; then in each block dimension and tag of an entity,
@@ -345,35 +398,71 @@ fn read_elements(cursor: &mut Cursor) -> Result<Elements> {
         let entity = cursor.int("the tag of an entity")?;
         let number = cursor.int("the type of the elements")?;
         let count = cursor.size("a number of elements")?;
-        if let Ok((dimension, 1)) = dimension_and_order(number) {
-            cursor.make_room(&mut elements.by_dimension[dimension], count)?;
-        }
-        for _ in 0..count {
+        for i in 0..count {
             let start = cursor.here();
             let tag = cursor.size("the tag of an element")?;
-            elements.read(cursor, start, tag, number, entity)?;
+            let kind = kind(cursor, start, tag, number)?;
+            if i == 0 {
+                let room = elements.reserve(kind, cursor.at_most(count));
+                room.map_err(|lack| cursor.in_the_file(lack))?;
+            }
+            read_element(cursor, kind, tag, entity, &mut elements)?;
         }
     }
     Ok(elements)
 }
 
-/// `$Nodes` of MSH 2.2: a count, then tag, x, y, z of each node.
-fn read_nodes_of_2(cursor: &mut Cursor) -> Result<Vec<Node>> {
+/// The kind of the element `tag`, whose type has this number.
+fn kind(cursor: &Cursor, start: usize, tag: usize, number: i32) -> Result<Kind> {
+    Kind::of_gmsh(number)
+        .map_err(|found| cursor.wrong_at(start, format!("element {tag} is {found}")))
+}
+
+/// Reads the nodes of the element `tag` on `entity`.
+fn read_element(
+    cursor: &mut Cursor,
+    kind: Kind,
+    tag: usize,
+    entity: i32,
+    elements: &mut Elements,
+) -> Result<()> {
+    let mut nodes = [0; Kind::MOST_NODES];
+    for node in &mut nodes[..kind.nodes] {
+        *node = cursor.size("the tag of a node")?;
+    }
+    elements.add(kind, tag, &nodes[..kind.nodes], entity);
+    Ok(())
+}
+
+/// `$Nodes` of MSH 2: a count, then tag, x, y, z of each node; in `$ParametricNodes` then dimension and tag of an entity, and the
+/// parameters on it.
+fn read_nodes_of_2(cursor: &mut Cursor, is_parametric: bool) -> Result<Vec<Node>> {
     let mut nodes = Vec::new();
     for _ in 0..cursor.count("the number of nodes")? {
         let tag = cursor.size("the tag of a node")?;
-        nodes.push(Node { tag, place: read_place(cursor, tag)? });
+        nodes.push(Node { tag, place: read_place(cursor)? });
+        if is_parametric {
+            let dimension = cursor.int_within(0..=3, "a dimension from 0 to 3")?;
+            cursor.int("the tag of an entity")?;
+            // A node in a volume has none.
+            for _ in 0..dimension % 3 {
+                cursor.double("a parameter of a node")?;
+            }
+        }
     }
     Ok(nodes)
 }
 
-/// `$Elements` of MSH 2.2: a count, then of each element, in a text file: tag, type, the number of its labels, the labels (the
+/// `$Elements` of MSH 2: a count, then of each element, in a text file: tag, type, the number of its labels, the labels (the
 /// first is the physical group, 0 for none, the second the entity), the nodes. In a binary file elements of one type follow
-/// each other: type, how many, the number of labels, and of each tag, labels, nodes. There are no entities: each physical
-/// group is one, and an element of two groups appears once for each.
-fn read_elements_of_2(cursor: &mut Cursor) -> Result<Elements> {
+/// each other: type, how many, the number of labels, and of each tag, labels, nodes. An element of two groups appears once for each.
+/// The third label, if there is one, is the number of partitions, and those follow. Returns the elements on entities of their own for
+/// each pair of labels, the groups of those, and a remark where the file may be a part of a mesh.
+fn read_elements_of_2(cursor: &mut Cursor) -> Result<(Elements, Groups, Option<String>)> {
     const LABELS: &str = "the number of labels";
-    let mut elements = Elements::default();
+    let (mut elements, mut groups) = (Elements::default(), Groups::default());
+    let mut partitions = BTreeSet::new();
+    let mut entities: HashMap<[i32; 2], i32> = HashMap::new();
     let mut left = cursor.count("the number of elements")?;
     while left > 0 {
         let (together, shared) = if !cursor.binary {
@@ -395,19 +484,45 @@ fn read_elements_of_2(cursor: &mut Cursor) -> Result<Elements> {
                 Some(shared) => shared,
                 None => (cursor.int("the type of the element")?, cursor.size(LABELS)?),
             };
-            let mut group = 0;
+            let mut first = [0; 4];
             for label in 0..labels {
                 let value = cursor.int("a label of an element")?;
-                if label == 0 {
+                if let Some(of_first) = first.get_mut(label) {
                     // A negative number says that the group runs against the direction of the curve.
-                    group = value.saturating_abs();
+                    *of_first = value.saturating_abs();
                 }
             }
-            elements.read(cursor, start, tag, number, group)?;
+            let kind = kind(cursor, start, tag, number)?;
+            let [group, entity, _, partition] = first;
+            let pair = [group, entity];
+            if partition > 0 && kind.dimension() == 2 {
+                partitions.insert(partition);
+            }
+            let count = entities.len() as i32;
+            let entity = *entities.entry(pair).or_insert(count);
+            let of_entity = groups[kind.dimension()].entry(entity);
+            of_entity.or_insert_with(|| Vec::from_iter(Some(group).filter(|&group| group != 0)));
+            read_element(cursor, kind, tag, entity, &mut elements)?;
         }
         left -= together;
     }
-    Ok(elements)
+    let remark = part_of_a_mesh(&partitions).map_err(|said| cursor.in_the_file(said))?;
+    Ok((elements, groups, remark))
+}
+
+/// Says that triangles of one partition may be a part of the mesh: files by partition do not say how many there are.
+///
+/// # Errors
+/// The partitions that are missing.
+fn part_of_a_mesh(partitions: &BTreeSet<i32>) -> std::result::Result<Option<String>, String> {
+    let most = partitions.last().copied().unwrap_or(0);
+    match (1..most).find(|partition| !partitions.contains(partition)) {
+        Some(missing) => Err(format!(
+            "the file has triangles of partition {most} of the mesh, and none of partition {missing}; expected all of them in one file (Mesh.PartitionSplitMeshFiles = 0)"
+        )),
+        None if most == 1 => Ok(Some("all triangles are in partition 1: where a mesh is split into a file for each of its partitions, this one is a part of it".to_owned())),
+        None => Ok(None),
+    }
 }
 
 #[cfg(test)]
@@ -415,13 +530,14 @@ mod tests {
     use approx::assert_abs_diff_eq;
 
     use super::*;
+    use crate::fem::Mesh;
 
     const TEXT: &[u8] = include_bytes!("../../tests/meshes/square-ascii.msh");
     const BINARY: &[u8] = include_bytes!("../../tests/meshes/square-binary.msh");
     const ALL: &[u8] = include_bytes!("../../tests/meshes/square-all.msh");
 
     fn parse(bytes: &[u8]) -> Result<Mesh> {
-        from_bytes(bytes, Path::new("x.msh"), None, &[])
+        from_bytes(bytes, Path::new("x.msh"), None, &[]).map(|made| made.mesh)
     }
 
     fn message(bytes: &[u8]) -> String {

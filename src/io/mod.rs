@@ -7,8 +7,14 @@ pub mod case;
 pub mod certificate;
 #[cfg(feature = "files")]
 #[doc(hidden)]
+pub mod checked;
+#[cfg(feature = "files")]
+#[doc(hidden)]
 pub mod convergence;
 mod csv;
+#[cfg(feature = "files")]
+#[doc(hidden)]
+pub mod draft;
 pub mod expression;
 #[doc(hidden)]
 pub mod field;
@@ -27,6 +33,8 @@ pub mod outputs;
 #[cfg(feature = "files")]
 #[doc(hidden)]
 pub mod picture;
+#[doc(hidden)]
+pub mod raw_mesh;
 #[cfg(feature = "files")]
 mod remarks;
 #[cfg(feature = "files")]

@@ -83,7 +83,8 @@ pub fn write(
     if !picture.is_empty() {
         output.stage(PICTURE, picture.as_bytes())?;
     }
-    if let (Some(continuous), true) = (continuous, extra.certificate) {
+    if let (Some(continuous), true) = (continuous, extra.certificate || case.asks_for_certificate())
+    {
         stage_certificate(&mut output, &case.title, continuous)?;
     }
     results.seconds.write = start.elapsed().as_secs_f64();
@@ -246,7 +247,8 @@ pub fn results(
     let remarks: Vec<String> =
         untouched.filter_map(|part| nearest(case, solution, &part.boundary)).collect();
     results.remarks.extend(remarks);
-    if let (Some(Err(error)), true) = (&solved.certified, extra.certificate) {
+    let is_asked = extra.certificate || case.asks_for_certificate();
+    if let (Some(Err(error)), true) = (&solved.certified, is_asked) {
         results.missing.push(format!("certificate: {error}"));
     }
     if let Some(Adaptation { reason: Some(reason), .. }) = &solved.adaptation {
@@ -260,11 +262,13 @@ const NO_ERRORS: &str = "the errors are not given: near its singular point the e
 
 /// The largest stresses with the names of the physical surfaces that they are in.
 fn stress_peaks(case: &Case, solution: &Solution) -> Option<StressPeaks> {
-    let surfaces = case.problem.mesh.surfaces();
+    let mesh = &case.problem.mesh;
+    let surfaces = || case.materials.iter().flat_map(|material| &material.surfaces);
     let peak = |extreme: Extreme| {
-        let inside =
-            |(_, triangles): &(&String, &Vec<usize>)| triangles.contains(&extreme.triangle);
-        let surface = surfaces.iter().find(inside).map(|(name, _)| name.clone());
+        let inside = |name: &&String| {
+            mesh.surface(name).is_ok_and(|triangles| triangles.contains(&extreme.triangle))
+        };
+        let surface = surfaces().find(inside).cloned();
         StressPeak { value: extreme.value, at: extreme.at, surface }
     };
     solution.largest_stresses(&case.problem).map(|largest| StressPeaks {

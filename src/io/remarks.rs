@@ -24,7 +24,7 @@ const SLIVER: f64 = 8.0;
 
 /// Remarks that a reader should know before the numbers are used.
 pub(super) fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
-    let mut remarks = Vec::new();
+    let mut remarks = case.remarks.clone();
     let coercivity = solution.gamma.coercivity;
     let uniform = matches!(solution.gamma.gamma, Gamma::Uniform(_));
     if uniform && coercivity.constant > SLIVER * coercivity.typical {

@@ -6,6 +6,7 @@ use std::fmt::Write;
 use super::case::Case;
 use super::result::Results;
 use super::summary;
+use crate::quote;
 
 pub const FILE: &str = "report.html";
 
@@ -78,7 +79,5 @@ fn stretches(results: &Results) -> String {
 
 /// Text that HTML shows as it is.
 fn escaped(text: &str) -> String {
-    let allowed = |c: char| if c.is_control() && c != '\n' && c != '\t' { ' ' } else { c };
-    let text: String = text.chars().map(allowed).collect();
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    quote::on_page(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

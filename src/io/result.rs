@@ -19,6 +19,7 @@ use crate::certify::{CertifyError, Continuous, Ramp};
 use crate::fem::Mesh;
 use crate::fem::contact_line::Gamma;
 use crate::fem::solvability::Play;
+use crate::quote;
 use crate::solve::enclosure::{Enclosure, Unproved};
 use crate::solve::{
     ContactBoundary, EnergyBalance, GammaReport, Intervals, MethodReport, Quantities, Status,
@@ -230,7 +231,7 @@ pub fn result_json(results: &Results) -> Result<String, NotFinite> {
     if let Some(place) = null_in(&value, "") {
         return Err(NotFinite { place });
     }
-    Ok(text + "\n")
+    Ok(quote::in_json(&text) + "\n")
 }
 
 /// The path of a `null`, which is what serde_json makes of a NaN or an infinity: else only the upper end of a peak pressure

@@ -62,7 +62,12 @@ pub fn solve(
         let course = Course::default().watched_by(&of_solve);
         let course = start.map_or(course, |start| course.from_displacement(&start.displacement));
         let solved = solve_along(&case.problem, &case.method, &case.settings, course)?;
-        return Ok((case, solved.into()));
+        let mut solved = Solved::from(solved);
+        if case.asks_for_certificate() {
+            watcher(Stage::Certify(0));
+            solved.certify(&case);
+        }
+        return Ok((case, solved));
     };
     let goal = (target, force.as_deref());
     let how = (&case.method, &case.settings);

@@ -15,18 +15,18 @@ use crate::certify::Continuous;
 use crate::certify::adapt::AdaptedLevel;
 use crate::fem::solvability::Play;
 use crate::quote;
-use crate::solve::{ContactQuadrature, MethodReport, Outline, RouteName, Status};
+use crate::solve::{MethodReport, RouteName, Status};
 
 /// Lines of a name and a text; one without a name goes on with what the one before it is about.
 #[derive(Default)]
-struct Lines(Vec<(String, String)>);
+pub(super) struct Lines(Vec<(String, String)>);
 
 impl Lines {
-    fn line(&mut self, name: &str, text: impl Into<String>) {
+    pub(super) fn line(&mut self, name: &str, text: impl Into<String>) {
         self.0.push((name.to_owned(), text.into()));
     }
 
-    fn under(&self, title: &str) -> String {
+    pub(super) fn under(&self, title: &str) -> String {
         let mut text = format!("{}\n", quote::line(title));
         for (name, line) in &self.0 {
             // Writing to a string cannot fail.
@@ -88,11 +88,11 @@ pub(crate) fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
 }
 
 /// The format of quantities: each with its unit, those per unit of thickness times the thickness.
-struct QuantityFormat {
-    units: Option<Units>,
-    thickness: Option<f64>,
+pub(super) struct QuantityFormat {
+    pub(super) units: Option<Units>,
+    pub(super) thickness: Option<f64>,
     /// Components of forces below this are rounding.
-    no_force: f64,
+    pub(super) no_force: f64,
 }
 
 impl QuantityFormat {
@@ -105,20 +105,20 @@ impl QuantityFormat {
         per_thickness * self.thickness.unwrap_or(1.0)
     }
 
-    fn with_unit(&self, shown: String, measure: Measure) -> String {
+    pub(super) fn with_unit(&self, shown: String, measure: Measure) -> String {
         match &self.units {
             Some(units) => format!("{shown} {}", units.of(measure, self.thickness)),
             None => shown,
         }
     }
 
-    fn number(&self, x: f64, measure: Measure) -> String {
+    pub(super) fn number(&self, x: f64, measure: Measure) -> String {
         let per_thickness = matches!(measure, Measure::Force | Measure::Moment);
         self.with_unit(short(if per_thickness { self.whole(x) } else { x }), measure)
     }
 
     /// The components of a force, without the unit.
-    fn components(&self, f: [f64; 2]) -> String {
+    pub(super) fn components(&self, f: [f64; 2]) -> String {
         vector(f.map(|c| if c.abs() > self.no_force { self.whole(c) } else { 0.0 }))
     }
 }
@@ -448,26 +448,6 @@ fn distance(certificate: &ContinuousCertificate, lines: &mut Lines) {
     }
 }
 
-pub fn checked(case: &Case, outline: &Outline) -> String {
-    let mut lines = Lines::default();
-    let mesh = MeshSizes::new(&case.problem.mesh, outline.nodes, outline.contact_edges);
-    lines.line("mesh", sizes(&mesh));
-    lines.line("prescribed", format!("{} of the unknowns", outline.prescribed));
-    lines.line("coercivity", coercivity(&GammaChoice::from(&outline.gamma)));
-    lines.line(
-        "quadrature",
-        match case.method.quadrature {
-            ContactQuadrature::Exact => "exact: contact edges are cut at the roots of P".to_owned(),
-            ContactQuadrature::Gauss(1) => "1 Gauss point on each contact edge".to_owned(),
-            ContactQuadrature::Gauss(n) => format!("{n} Gauss points on each contact edge"),
-        },
-    );
-    if let Some(overlap) = super::remarks::overlap(case) {
-        lines.line("remark", overlap);
-    }
-    lines.under(&case.title)
-}
-
 pub fn studied(case: &Case, studies: &[Study], files: &[PathBuf]) -> String {
     let tables: Vec<String> = studies.iter().map(Study::table).collect();
     format!("{}\n\n{}\nwritten: {}\n", quote::line(&case.title), tables.join("\n"), written(files))
@@ -477,7 +457,7 @@ pub fn swept(title: &str, table: &str, files: &[PathBuf]) -> String {
     format!("{}\n\n{table}\nwritten: {}\n", quote::line(title), written(files))
 }
 
-fn sizes(mesh: &MeshSizes) -> String {
+pub(super) fn sizes(mesh: &MeshSizes) -> String {
     let MeshSizes { vertices, triangles, dofs, contact_edges, h_max } = *mesh;
     // P1 has its nodes at the vertices alone.
     let degree = if dofs == 2 * vertices { 1 } else { 2 };
@@ -485,7 +465,7 @@ fn sizes(mesh: &MeshSizes) -> String {
     format!("{triangles} P{degree} triangles, {dofs} unknowns, {contact}, h = {}", short(h_max))
 }
 
-fn coercivity(gamma: &GammaChoice) -> String {
+pub(super) fn coercivity(gamma: &GammaChoice) -> String {
     let [a, b] = gamma.limiting_edge;
     let verdict = if gamma.kappa < 1.0 { "< 1: coercive" } else { ">= 1: no promise" };
     format!(
@@ -510,7 +490,7 @@ fn newton(newton: &NewtonHistory) -> String {
     )
 }
 
-fn count(n: usize, what: &str) -> String {
+pub(super) fn count(n: usize, what: &str) -> String {
     if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
 }
 

@@ -199,6 +199,10 @@ pub struct Outline {
     pub prescribed: usize,
     /// How many edges Gamma_C has.
     pub contact_edges: usize,
+    /// How many rigid motions the supports leave free.
+    pub free_motions: usize,
+    /// How many of them contact does not stop either.
+    pub slides: usize,
     /// gamma0, kappa and where the limit comes from.
     pub gamma: GammaReport,
 }
@@ -209,6 +213,8 @@ impl Outline {
             nodes: d.space.nodes().len(),
             prescribed: d.constraints.values().iter().flatten().flatten().count(),
             contact_edges: d.contact.len(),
+            free_motions: d.motions.len(),
+            slides: d.slides.as_ref().map_or(0, |slides| slides.basis.len()),
             gamma: GammaReport::new(d),
         }
     }

@@ -144,7 +144,7 @@ fn two_materials() -> Problem {
     let [soft, hard] = [1.0, 10.0].map(|mu| Material::lame(1.0, mu, Plane::Strain));
     let materials = Materials::in_parts(soft, mesh.triangles().len(), [(hard, left.as_slice())]);
     let surfaces = [("left half".to_owned(), left)].into();
-    let mesh = mesh.with_names(surfaces, [("foot".to_owned(), 0)].into());
+    let mesh = mesh.with_names(surfaces, [("foot".to_owned(), vec![0])].into()).unwrap();
     Problem::new(
         mesh,
         materials,

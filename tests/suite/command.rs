@@ -184,12 +184,106 @@ fn check_reports_and_writes_nothing() {
         text(&output.stdout),
         "Block
   mesh         32 P1 triangles, 50 unknowns, 4 contact edges, h = 0.3536
+  boundaries   bottom: contact, initial gap 0, length 1
+               top: displacement prescribed, length 1
+               left: nothing is prescribed, length 1
+               right: nothing is prescribed, length 1
+  body         total load (0, 1)
+  held         by its supports
   prescribed   10 of the unknowns
   coercivity   gamma0 = 0.05893 (limit 0.1179 at the edge (0, 0)-(0.25, 0)), kappa = 0.5 < 1: coercive
   quadrature   exact: contact edges are cut at the roots of P
 "
     );
     assert_eq!(names(&folder), ["case.toml"]);
+}
+
+#[test]
+fn check_says_what_acts_on_each_boundary_and_what_contact_holds() {
+    let edits = [
+        ["displacement = [\"0\", \"0\"]", "force = [0, -3]"],
+        ["body = [\"0\", \"-4 + 10*x\"]", "body = [\"0\", \"0\"]"],
+        [
+            "contact = { gap = \"0\" }",
+            "contact = { gap = \"0.1*x\" }\n[boundary.left]\nnormal = 0\n[boundary.edge]\nwhere = \"x > 0.99 and y < 0.6\"\npressure = 2",
+        ],
+    ];
+    let output = signorini(&folder("check-listed", &edits), &["check", "case.toml"]);
+    let said = text(&output.stdout);
+    assert_eq!(ended(&output), (Some(2), text(&output.stderr)), "the pressure turns it over");
+    for line in [
+        "boundaries   bottom: contact, initial gap from 0 at (0, 0) to 0.1, length 1",
+        "edge: pressure, total load (-1, 0), length 0.5",
+        "left: displacement along the normal prescribed, length 1",
+        "top: traction, total load (0, -3), length 1",
+        "right: nothing is prescribed, length 1",
+    ] {
+        assert!(said.contains(line), "{line} in {said}");
+    }
+    let edits = [
+        edits[0],
+        edits[1],
+        ["contact = { gap = \"0\" }", "contact = {}\n[boundary.left]\nnormal = 0"],
+    ];
+    let output = signorini(&folder("check-held", &edits), &["check", "case.toml"]);
+    let held = "held         by contact: supports leave 2 rigid motions free, against which the loads press the body";
+    assert!(text(&output.stdout).contains(held), "{}", text(&output.stdout));
+}
+
+/// What `new` writes for any mesh is a case that is sound and can be solved.
+#[test]
+fn new_writes_a_case_that_can_be_solved_and_replaces_no_file() {
+    let meshes = [
+        "msh41",
+        "numbers_only",
+        "no_curves",
+        "one_surface_clockwise",
+        "quadrangles",
+        "meshio_bare",
+    ];
+    let folder = with_files("new", &[]);
+    let variants = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/variants");
+    for name in meshes {
+        let mesh = format!("{name}.msh");
+        fs::copy(variants.join(&mesh), folder.join(&mesh)).unwrap();
+        let output = signorini(&folder, &["new", &mesh]);
+        assert_eq!(ended(&output), (Some(0), ""), "{name}");
+        let case = format!("{name}.toml");
+        let next = format!("next         signorini check {case}; signorini solve {case}\n");
+        assert!(text(&output.stdout).ends_with(&next), "{}", text(&output.stdout));
+        let solved = signorini(&folder, &["solve", &case, "--quiet"]);
+        assert_eq!(ended(&solved), (Some(0), ""), "{name}");
+    }
+    let written = fs::read_to_string(folder.join("one_surface_clockwise.toml")).unwrap();
+    for part in [
+        "[material.left]",
+        "[material.right]",
+        "[boundary.top]     # length 2, x = 0 to 2, y = 1\n",
+    ] {
+        assert!(written.contains(part), "{written}");
+    }
+    let written = fs::read_to_string(folder.join("no_curves.toml")).unwrap();
+    assert!(
+        written.contains("[boundary.bottom]") && written.contains("where = \"y < "),
+        "{written}"
+    );
+    let again = signorini(&folder, &["new", "msh41.msh"]);
+    let said = "error: msh41.toml: there is such a file; expected another name: --out CASE.toml\n";
+    assert_eq!(ended(&again), (Some(2), said));
+    let other = signorini(&folder, &["new", "msh41.msh", "--out", "other.toml", "--quiet"]);
+    assert_eq!((ended(&other), text(&other.stdout)), ((Some(0), ""), ""));
+    let missing = signorini(&folder, &["new", "nothing.msh"]);
+    assert_eq!(ended(&missing), (Some(2), "error: nothing.msh: there is no such file\n"));
+}
+
+/// A table of quantities alone asks for the certificate that has them.
+#[test]
+fn the_table_certify_alone_is_not_without_effect() {
+    let with = [["[output]", "[certify]\nquantities = [\"force bottom\"]\n[output]"]];
+    let output = signorini(&folder("certify-alone", &with), &["solve", "case.toml"]);
+    assert!(text(&output.stdout).contains(", proved between "), "{}", text(&output.stdout));
+    let control = signorini(&folder("certify-not", &[]), &["solve", "case.toml"]);
+    assert!(!text(&control.stdout).contains(", proved between "), "control");
 }
 
 /// Cases that are wrong in a way that shows only on the mesh: exit code 2, the message, and nothing written.
@@ -344,7 +438,7 @@ fn wrong_arguments_end_with_exit_code_2_and_what_was_probably_meant() {
         "tip: a case is solved by 'signorini solve CASE.toml'",
         "'--set method.degree=2'",
         "'--json'",
-        "tip: the commands are solve, check, sweep",
+        "tip: the commands are new, check, solve",
         "'--out DIR'",
         "tip: one case at a time",
     ];

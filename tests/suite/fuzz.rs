@@ -14,6 +14,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use signorini::fem::Function;
 use signorini::io::Expression;
 use signorini::io::gmsh;
+use signorini::io::raw_mesh::Made;
 
 use crate::common::Random;
 
@@ -194,7 +195,7 @@ fn meshes() {
     let small: Vec<Vec<u8>> = seeds.into_iter().filter(|seed| seed.len() < 1 << 15).collect();
     fuzz("meshes", 4000, &small, &in_lists(&[NUMBERS, MESH]), |input| {
         match gmsh::from_bytes(input, Path::new("fuzzed.msh"), None, &[]) {
-            Ok(mesh) => {
+            Ok(Made { mesh, .. }) => {
                 assert!((0..mesh.triangles().len()).all(|t| mesh.triangle(t).double_area() > 0.0));
                 let mut starts: Vec<usize> =
                     mesh.outline().iter().map(|&e| mesh.ends(e)[0]).collect();

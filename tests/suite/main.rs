@@ -25,6 +25,7 @@ mod figure;
 mod fuzz;
 mod gmsh_live;
 mod held;
+mod meshes;
 mod method;
 mod pair_cases;
 mod parts;

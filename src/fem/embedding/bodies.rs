@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector2;
 
-use super::{check, check_joints, cross, crossing, turn};
+use super::{check, check_joints, crossing, turn};
 use crate::fem::boundary_normals::SmoothBoundary;
 use crate::fem::groups::groups;
 use crate::fem::mesh::{Mesh, MeshError, TOUCHING, length};
@@ -201,6 +201,12 @@ fn check_between(mesh: &Mesh, parts: &[usize], zones: &[Zone]) -> Result<(), Mes
         }
     }
     Ok(())
+}
+
+/// The inner parts of two segments cross.
+fn cross([a, b]: [Vector2<f64>; 2], [c, d]: [Vector2<f64>; 2]) -> bool {
+    let opposite = |s: f64, t: f64| (s > 0.0 && t < 0.0) || (s < 0.0 && t > 0.0);
+    opposite(turn(a, b, c), turn(a, b, d)) && opposite(turn(c, d, a), turn(c, d, b))
 }
 
 /// The place where one of two segments that do not cross comes closest to the other, and their distance.

@@ -188,8 +188,8 @@ impl Mesh {
         });
         // Parts of triangles lie where these did.
         let mut mesh = Mesh::of_edges(vertices, triangles, named, |_, _| true)?;
-        Arc::make_mut(&mut mesh.topology).inner.clone_from(&self.topology.inner);
-        let mesh = mesh.with_names(surfaces, self.topology.points.clone());
+        Arc::make_mut(&mut mesh.topology).faults.clone_from(&self.topology.faults);
+        let mesh = mesh.with_names(surfaces, self.topology.points.clone())?;
         Ok(Refinement { mesh, parents, origin })
     }
 }
@@ -299,10 +299,9 @@ mod tests {
         let named = [("floor", vec![[1, 0]]), ("seam", vec![[0, 2]])]
             .map(|(name, edges)| (name.to_owned(), edges));
         let coarse = Mesh::new(square, vec![[0, 1, 2], [0, 2, 3]], named).unwrap();
-        let coarse = coarse.with_names(
-            BTreeMap::from([("upper".to_owned(), vec![1])]),
-            BTreeMap::from([("corner".to_owned(), 2)]),
-        );
+        let surfaces = BTreeMap::from([("upper".to_owned(), vec![1])]);
+        let points = BTreeMap::from([("corner".to_owned(), vec![2])]);
+        let coarse = coarse.with_names(surfaces, points).unwrap();
         let affine = |[x, y]: [f64; 2]| [1.0 + 2.0 * x - y, x + 0.5 * y];
         let newest = coarse.opposite_longest();
         let fine = coarse.bisected(&newest, &[1]).unwrap();

@@ -1,6 +1,6 @@
 //! The edges of a mesh, found from its triangles, and the parts of the boundary that they make.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::{BoundaryEdge, MeshError};
 
@@ -83,8 +83,8 @@ pub(super) fn match_edges(
     Ok((all, triangle_edges))
 }
 
-/// The boundary parts by name, and the named curves that have an edge inside the body.
-pub(super) type Named = (BTreeMap<String, Vec<BoundaryEdge>>, BTreeMap<String, [[f64; 2]; 2]>);
+/// The boundary parts by name, and the named curves that are no boundaries, with the reason.
+pub(super) type Named = (BTreeMap<String, Vec<BoundaryEdge>>, BTreeMap<String, MeshError>);
 
 pub(super) fn name_boundaries(
     edges: &MeshEdges,
@@ -92,25 +92,30 @@ pub(super) fn name_boundaries(
     named: impl IntoIterator<Item = (String, Vec<[usize; 2]>)>,
 ) -> Result<Named, MeshError> {
     let mut boundaries: BTreeMap<String, Vec<BoundaryEdge>> = BTreeMap::new();
-    let mut inner = BTreeMap::new();
-    let mut name_of: BTreeMap<usize, String> = BTreeMap::new();
+    let mut faults = BTreeMap::new();
     for (name, pairs) in named {
-        let part = boundaries.entry(name.clone()).or_default();
+        let of_name = boundaries.entry(name.clone()).or_default();
+        let mut seen = BTreeSet::new();
         for [a, b] in pairs {
-            let vertices = [a, b];
-            let Some(e) = edges.find(a, b) else {
-                return Err(MeshError::NoSuchEdge { boundary: name, vertices });
+            if let Some(&number) = [a, b].iter().find(|&&vertex| vertex >= places.len()) {
+                let (of, count) = (["boundary", "vertex", "vertices"], places.len());
+                return Err(MeshError::Beyond { of, name, number, count });
+            }
+            let (boundary, ends) = (name.clone(), [places[a], places[b]]);
+            let fault = match edges.find(a, b) {
+                Some(e) if !edges.edges[e].inner => {
+                    // An edge that is listed twice is one.
+                    if seen.insert(e) {
+                        of_name.push(edges.edges[e].owner);
+                    }
+                    continue;
+                }
+                Some(_) => MeshError::InnerEdge { boundary, ends },
+                None => MeshError::NoSuchEdge { boundary, ends },
             };
-            if edges.edges[e].inner {
-                inner.entry(name.clone()).or_insert([places[a], places[b]]);
-                continue;
-            }
-            if let Some(first) = name_of.insert(e, name.clone()) {
-                return Err(MeshError::NamedTwice { vertices, first, second: name });
-            }
-            part.push(edges.edges[e].owner);
+            faults.entry(name.clone()).or_insert(fault);
         }
     }
-    boundaries.retain(|name, _| !inner.contains_key(name));
-    Ok((boundaries, inner))
+    boundaries.retain(|name, _| !faults.contains_key(name));
+    Ok((boundaries, faults))
 }

@@ -44,6 +44,8 @@ pub enum MeshError {
         quoted(&surfaces[0], '\''), quoted(&surfaces[1], '\'')
     )]
     NoCommonEdge { surfaces: [String; 2] },
+    #[error("no curve beside the body is named {}; this mesh has: {known}", quoted(name, '\''))]
+    NoSuchCurve { name: String, known: String },
     #[error(
         "a boundary named {} is made between two surfaces, and the mesh has one already; expected another name for that",
         quoted(name, '\'')
@@ -61,16 +63,27 @@ pub enum MeshError {
     Hanging { vertex: usize, x: f64, y: f64, edge: [usize; 2], triangle: usize, off: f64 },
     #[error("vertex {vertex} at ({}, {}) alone joins two parts of the body: a point holds nothing, and they would move as if it were not there; expected parts that share an edge, or no vertex", number(*x), number(*y))]
     JoinedAtVertex { vertex: usize, x: f64, y: f64 },
-    #[error("boundary {}: no triangle has an edge between vertices {} and {}", quoted(boundary, '\''), vertices[0], vertices[1])]
-    NoSuchEdge { boundary: String, vertices: [usize; 2] },
+    #[error("boundary {}: no triangle has an edge from ({}, {}) to ({}, {})", quoted(boundary, '\''), number(ends[0][0]), number(ends[0][1]), number(ends[1][0]), number(ends[1][1]))]
+    NoSuchEdge { boundary: String, ends: [[f64; 2]; 2] },
     #[error("boundary {}: its edge from ({}, {}) to ({}, {}) lies inside the body, between two triangles; nothing can be prescribed there", quoted(boundary, '\''), number(ends[0][0]), number(ends[0][1]), number(ends[1][0]), number(ends[1][1]))]
     InnerEdge { boundary: String, ends: [[f64; 2]; 2] },
     #[error("no surface named {}; this mesh has: {known}", quoted(name, '\''))]
     NoSuchSurface { name: String, known: String },
     #[error("no point named {}; this mesh has: {known}", quoted(name, '\''))]
     NoSuchPoint { name: String, known: String },
-    #[error("the edge between vertices {} and {} belongs to boundary {} and again to boundary {}; expected one name for it", vertices[0], vertices[1], quoted(first, '\''), quoted(second, '\''))]
-    NamedTwice { vertices: [usize; 2], first: String, second: String },
+    #[error("{} {} names {} {number}; expected numbers from 0 on of the {count} {} of this mesh", of[0], quoted(name, '\''), of[1], of[2])]
+    Beyond { of: [&'static str; 3], name: String, number: usize, count: usize },
+    #[error("{count} points have the name {}; expected one", quoted(name, '\''))]
+    NotOnePoint { name: String, count: usize },
+    #[error(
+        "the mesh has a boundary named {} already; expected another name beside where",
+        quoted(name, '\'')
+    )]
+    NameTaken { name: String },
+    #[error("no edge of the boundary has both ends where this holds; the body lies in {} <= x <= {}, {} <= y <= {}", number(low[0]), number(high[0]), number(low[1]), number(high[1]))]
+    Nowhere { low: [f64; 2], high: [f64; 2] },
+    #[error("the edge from ({}, {}) to ({}, {}) belongs to the boundaries {} and {}; expected a condition on one of them only", number(ends[0][0]), number(ends[0][1]), number(ends[1][0]), number(ends[1][1]), quoted(&names[0], '\''), quoted(&names[1], '\''))]
+    NamedTwice { ends: [[f64; 2]; 2], names: [String; 2] },
     #[error("no boundary named {}; this mesh has: {known}", quoted(name, '\''))]
     NoSuchBoundary { name: String, known: String },
     #[error("{0}; use a coarser mesh")]
@@ -123,9 +136,7 @@ impl MeshError {
                 *triangle = of_triangle(*triangle);
                 *vertices = vertices.map(&of_vertex);
             }
-            Duplicate { vertices, .. }
-            | NoSuchEdge { vertices, .. }
-            | NamedTwice { vertices, .. } => two(vertices),
+            Duplicate { vertices, .. } => two(vertices),
             Overlap { triangles, vertices } => {
                 *triangles = triangles.map(&of_triangle);
                 two(vertices);
@@ -140,10 +151,17 @@ impl MeshError {
                 two(edge);
             }
             Empty
+            | Beyond { .. }
+            | NotOnePoint { .. }
+            | NameTaken { .. }
+            | Nowhere { .. }
+            | NamedTwice { .. }
+            | NoSuchEdge { .. }
             | InnerEdge { .. }
             | NoSuchBoundary { .. }
             | NoCommonEdge { .. }
             | NameOfSplit { .. }
+            | NoSuchCurve { .. }
             | NoSuchSurface { .. }
             | NoSuchPoint { .. }
             | Size { .. }

@@ -90,20 +90,35 @@ pub(super) fn read_materials(
         parts.push((material, on_surface(mesh, &one.at, key)?));
         echoes.push(MaterialEcho { surfaces: vec![key.to_owned()], ..echo });
     }
-    if let Some(name) = mesh.surfaces().keys().find(|name| !surfaces.contains(&&***name)) {
-        let found = format!("no material for the surface {}", quoted(name, '\''));
-        return Err(table.at.found(&found, &format!("[material.{}]", shown(name))));
+    let mut covered: Vec<Option<usize>> = vec![None; mesh.triangles().len()];
+    for (part, (_, triangles)) in parts.iter().enumerate() {
+        for &t in *triangles {
+            if let Some(first) = covered[t].replace(part) {
+                let [first, second] = [first, part].map(|part| quoted(surfaces[part], '\''));
+                let [x, y] = centre(mesh, t);
+                let found = format!(
+                    "materials for the surfaces {first} and {second}, which share a triangle around ({x}, {y})"
+                );
+                return Err(table.at.found(&found, "one material for each triangle"));
+            }
+        }
     }
-    let mut covered = vec![false; mesh.triangles().len()];
-    parts.iter().flat_map(|(_, triangles)| *triangles).for_each(|&t| covered[t] = true);
-    if let Some(t) = covered.iter().position(|covered| !covered) {
-        let place: [f64; 2] = mesh.triangle(t).point([1.0 / 3.0; 3]).into();
-        let [x, y] = place.map(quote::number);
+    if let Some(t) = covered.iter().position(|part| part.is_none()) {
+        if let Some((name, _)) = mesh.surfaces().iter().find(|(_, of)| of.contains(&t)) {
+            let found = format!("no material for the surface {}", quoted(name, '\''));
+            return Err(table.at.found(&found, &format!("[material.{}]", shown(name))));
+        }
+        let [x, y] = centre(mesh, t);
         let found = format!("a triangle around ({x}, {y}) that belongs to no physical surface");
         let expected = "all of the body in physical surfaces with a material each";
         return Err(table.at.found(&found, expected));
     }
     Ok((Materials::in_parts(parts[0].0, covered.len(), parts), echoes))
+}
+
+/// The centre of a triangle, in words.
+fn centre(mesh: &Mesh, t: usize) -> [String; 2] {
+    <[f64; 2]>::from(mesh.triangle(t).point([1.0 / 3.0; 3])).map(quote::number)
 }
 
 /// The one isotropic material of the body, which an exact solution needs; `table` is \[material\].

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use super::body::constant;
 use super::exact::read_kind;
 use super::table::{Spot, Table, Value};
-use crate::fem::{Condition, Hand, Mesh, Obstacle, Path, PointSupport, SharedFunction, Side};
+use crate::fem::{Condition, Hand, Mesh, Obstacle, Pair, Path, PointSupport, SharedFunction, Side};
 use crate::io::input::FileError;
-use crate::quote::{listed, names};
+use crate::quote::{listed, names, quoted};
 use crate::study::Exact;
 use crate::study::exact::Kind;
 
@@ -18,13 +18,13 @@ type Obstacles<'s> = BTreeMap<&'s str, (Spot<'s>, Obstacle)>;
 type Boundaries = (BTreeMap<String, Condition>, BTreeMap<String, Kind>);
 
 /// Reads the conditions on the boundaries. A whole force acts on the length of its boundary times the thickness, which is 1 if
-/// it is not given. `has_pairs`: contact is between boundaries of the mesh, and need not be with an obstacle.
+/// it is not given. Boundaries of `pairs` have no condition.
 pub(super) fn read_boundaries(
     root: &Table,
     solution: Option<&Exact>,
     mesh: &Mesh,
     thickness: Option<f64>,
-    has_pairs: bool,
+    pairs: &[Pair],
 ) -> Result<Boundaries, FileError> {
     let expected = match solution {
         None => {
@@ -32,13 +32,15 @@ pub(super) fn read_boundaries(
         }
         Some(_) => "one boundary with contact, such as bottom = \"contact\"",
     };
-    let obstacles = read_obstacles(root)?;
+    let obstacles = read_obstacles(root, mesh)?;
     let all = match root.section("boundary")? {
-        None if has_pairs && obstacles.is_empty() => return Ok(Boundaries::default()),
+        None if !pairs.is_empty() && obstacles.is_empty() => return Ok(Boundaries::default()),
         _ => root.required_section("boundary", expected)?,
     };
     let (mut conditions, mut kinds) = (BTreeMap::new(), BTreeMap::new());
-    for key in all.keys() {
+    let is_of_pair =
+        |key: &&str| pairs.iter().any(|pair| pair.boundaries.iter().any(|of| of == key));
+    for key in all.keys().filter(|key| !is_of_pair(key)) {
         let at = all.under_header(key);
         let edges = mesh.edges_of(key).map_err(|error| at.mesh(error))?;
         if edges.is_empty() {
@@ -46,9 +48,11 @@ pub(super) fn read_boundaries(
         }
         let condition = match solution {
             None => {
-                let length: f64 = edges.iter().map(|&e| mesh.length_and_normal(e).0).sum();
-                let area = length * thickness.unwrap_or(1.0);
-                read_condition(&all.subsection(key)?, &obstacles, area)?
+                let force = |force: [f64; 2]| {
+                    let per_thickness = force.map(|force| force / thickness.unwrap_or(1.0));
+                    Condition::force(per_thickness, mesh, key).map_err(|error| at.mesh(error))
+                };
+                read_condition(&all.subsection(key)?, &obstacles, force)?
             }
             Some(solution) => {
                 let kind = read_kind(&all.require(key, "a kind")?)?;
@@ -58,7 +62,8 @@ pub(super) fn read_boundaries(
         };
         conditions.insert(key.to_owned(), condition);
     }
-    if !has_pairs && !conditions.values().any(Condition::is_contact) {
+    mesh.check_apart(conditions.keys().map(String::as_str)).map_err(|error| all.at.mesh(error))?;
+    if pairs.is_empty() && !conditions.values().any(Condition::is_contact) {
         return Err(all.at.found("no contact", expected));
     }
     let is_used = |name: &str| {
@@ -67,8 +72,10 @@ pub(super) fn read_boundaries(
     match obstacles.iter().find(|(name, _)| !is_used(name)) {
         None => Ok((conditions, kinds)),
         Some((name, (at, _))) => {
-            let expected =
-                format!("one, such as [boundary.bottom] contact = {{ obstacle = \"{name}\" }}");
+            let expected = format!(
+                "one, such as [boundary.bottom] contact = {{ obstacle = {} }}",
+                quoted(name, '"')
+            );
             Err(at.found("no boundary in contact with it", &expected))
         }
     }
@@ -77,17 +84,29 @@ pub(super) fn read_boundaries(
 const CONDITIONS: [&str; 7] =
     ["displacement", "traction", "pressure", "normal", "tangential", "contact", "force"];
 
-/// The condition on a boundary that has this area.
-fn read_condition(table: &Table, obstacles: &Obstacles, area: f64) -> Result<Condition, FileError> {
-    table.only(&CONDITIONS)?;
+/// The condition on a boundary on which a whole force is what `force` says.
+fn read_condition(
+    table: &Table,
+    obstacles: &Obstacles,
+    force: impl Fn([f64; 2]) -> Result<Condition, FileError>,
+) -> Result<Condition, FileError> {
+    table.only(&[&CONDITIONS[..], &["where"]].concat())?;
     let value = |key| table.require(key, "a value");
     Ok(match table.given(&CONDITIONS)[..] {
-        ["force"] => {
-            Condition::Traction(value("force")?.vector()?.map(|force| constant(force / area)))
-        }
+        ["force"] => force(value("force")?.vector()?)?,
         ["displacement"] => Condition::Displacement(components(&value("displacement")?)?),
         ["traction"] => Condition::Traction(value("traction")?.functions()?),
-        ["displacement", "traction"] => read_mixed(table)?,
+        ["displacement", "traction"] => {
+            let traction = value("traction")?;
+            read_mixed(table, &traction, traction.functions()?)?
+        }
+        ["displacement", "force"] => {
+            let of_force = value("force")?;
+            match force(of_force.vector()?)? {
+                Condition::Traction(traction) => read_mixed(table, &of_force, traction)?,
+                other => other,
+            }
+        }
         ["pressure"] => Condition::Pressure(value("pressure")?.function()?),
         ["normal"] | ["tangential"] | ["normal", "tangential"] => Condition::Support {
             normal: table.optional("normal", Value::function)?,
@@ -117,15 +136,18 @@ fn component(value: &Value) -> Result<Option<SharedFunction>, FileError> {
     }
 }
 
-/// A displacement in one component, a traction in the other: what is given in the first must be 0 in the second.
-fn read_mixed(table: &Table) -> Result<Condition, FileError> {
-    let [displacement, traction] = ["displacement", "traction"].map(|k| table.require(k, "a list"));
-    let (displacement, of_traction) = (components(&displacement?)?, traction?);
-    let traction = of_traction.functions()?;
+/// A displacement in one component, a traction or a force in the other, which is `given`: what is given in the first must be 0 in the
+/// second.
+fn read_mixed(
+    table: &Table,
+    given: &Value,
+    traction: [SharedFunction; 2],
+) -> Result<Condition, FileError> {
+    let displacement = components(&table.require("displacement", "a list")?)?;
     for c in 0..2 {
         let acts = traction[c].degree() != Some(0) || traction[c].at([0.0; 2]) != 0.0;
         if displacement[c].is_some() && acts {
-            return Err(of_traction.pair()?[c].wrong(&format!(
+            return Err(given.pair()?[c].wrong(&format!(
                 "0: the displacement is given in this component, so its traction is the reaction ({})",
                 table.at.name
             )));
@@ -157,27 +179,33 @@ fn read_contact(value: &Value, obstacles: &Obstacles) -> Result<Condition, FileE
     Ok(Condition::Obstacle(name.to_owned(), found.clone()))
 }
 
-fn read_obstacles<'s>(root: &Table<'s>) -> Result<Obstacles<'s>, FileError> {
+fn read_obstacles<'s>(root: &Table<'s>, mesh: &Mesh) -> Result<Obstacles<'s>, FileError> {
     let mut obstacles = BTreeMap::new();
     let Some(all) = root.section("obstacle")? else { return Ok(obstacles) };
     for key in all.keys() {
-        let obstacle = read_obstacle(&all.subsection(key)?)?;
+        let obstacle = read_obstacle(&all.subsection(key)?, mesh)?;
         obstacles.insert(key, (all.under_header(key), obstacle));
     }
     Ok(obstacles)
 }
 
-fn read_obstacle(table: &Table) -> Result<Obstacle, FileError> {
-    const SHAPES: [&str; 4] = ["plane", "circle", "points", "distance"];
-    table.only(&["plane", "circle", "points", "radius", "side", "distance"])?;
+fn read_obstacle(table: &Table, mesh: &Mesh) -> Result<Obstacle, FileError> {
+    const SHAPES: [&str; 5] = ["plane", "circle", "points", "curve", "distance"];
+    table.only(&["plane", "circle", "points", "curve", "radius", "side", "distance"])?;
     let &[shape] = table.given(&SHAPES).as_slice() else {
         return Err(table.combination(&SHAPES, &format!("either {}", listed(&SHAPES, "or"))));
     };
     if shape == "points" {
         return read_path(table);
     }
-    if let [beside, ..] = table.given(&["radius", "side"])[..] {
-        return Err(table.combination(&[shape, beside], &format!("{beside} beside points only")));
+    if table.get("radius").is_some() {
+        return Err(table.combination(&[shape, "radius"], "radius beside points only"));
+    }
+    if shape == "curve" {
+        return read_curve(table, mesh);
+    }
+    if table.get("side").is_some() {
+        return Err(table.combination(&[shape, "side"], "side beside points and curve only"));
     }
     let shape = table.require(shape, "a shape")?;
     if table.get("distance").is_some() {
@@ -214,6 +242,15 @@ fn read_path(table: &Table) -> Result<Obstacle, FileError> {
         Err(_) => Ok(vec![not_negative(radius)?]),
     })?;
     let path = Path::new(&points, &radii.unwrap_or_default());
+    let path = path.map_err(|error| value.at.wrong(format!("{}: {error}", value.at.name)))?;
+    Ok(Obstacle::Path { path: Arc::new(path), body: read_side(table)? })
+}
+
+/// A named curve of the mesh that bounds no body.
+fn read_curve(table: &Table, mesh: &Mesh) -> Result<Obstacle, FileError> {
+    let value = table.require("curve", "the name of a curve")?;
+    let edges = mesh.curve(value.text()?).map_err(|error| value.at.mesh(error))?;
+    let path = Path::through(edges);
     let path = path.map_err(|error| value.at.wrong(format!("{}: {error}", value.at.name)))?;
     Ok(Obstacle::Path { path: Arc::new(path), body: read_side(table)? })
 }

@@ -119,7 +119,7 @@ mod tests {
 
     fn read(text: &str) -> Result<Exact, String> {
         let entries = DeTable::parse(text).unwrap();
-        let source = Source { file: Path::new("x"), text, settings: &[] };
+        let source = Source { file: Path::new("x"), text, settings: &[], functions: &[] };
         let table = Table::whole(source, entries.get_ref());
         let material = Material::lame(1.0, 1.0, Plane::Strain);
         read_exact(&table, material).map_err(|e| e.to_string())

@@ -6,8 +6,11 @@ use super::exact::angle;
 use super::table::{Table, Value};
 use crate::fem::structured::MOST_CELLS;
 use crate::fem::{Diagonal, Mesh, Pair, Perturbation, Rectangle, Structured, Trapezoid};
+use crate::io::expression::PlaceCondition;
 use crate::io::gmsh;
 use crate::io::input::FileError;
+use crate::io::raw_mesh::Made;
+use crate::quote::quoted;
 
 /// A mesh and how it was made.
 pub(super) struct Meshed {
@@ -15,17 +18,44 @@ pub(super) struct Meshed {
     pub structured: Option<Structured>,
     pub perturbation: Option<Perturbation>,
     pub file: Option<PathBuf>,
+    /// What was decided when the file was read.
+    pub remarks: Vec<String>,
 }
 
 impl From<Mesh> for Meshed {
     fn from(mesh: Mesh) -> Meshed {
-        Meshed { mesh, structured: None, perturbation: None, file: None }
+        Meshed { mesh, structured: None, perturbation: None, file: None, remarks: Vec::new() }
     }
 }
 
-/// The mesh that is `given`, or else that of the table; `directory` is the one of the case file. Boundaries
-/// of `pairs` may touch each other.
+/// The mesh that is `given`, or else that of the table, with the boundaries that the case names by their places; `directory` is
+/// the one of the case file. Boundaries of `pairs` may touch each other.
 pub(super) fn read_mesh(
+    root: &Table,
+    given: Option<Mesh>,
+    directory: &Path,
+    pairs: &[Pair],
+) -> Result<Meshed, FileError> {
+    let meshed = read_plain_mesh(root, given, directory, pairs)?;
+    Ok(Meshed { mesh: with_places(root, meshed.mesh)?, ..meshed })
+}
+
+/// The mesh with the boundaries that have a key `where`.
+fn with_places(root: &Table, mut mesh: Mesh) -> Result<Mesh, FileError> {
+    let Some(boundaries) = root.section("boundary")? else { return Ok(mesh) };
+    for name in boundaries.keys_of_tables() {
+        let Some(place) = boundaries.subsection(name)?.get("where") else { continue };
+        let text = place.text()?;
+        let condition: PlaceCondition = text.parse().map_err(|error| {
+            place.at.wrong(format!("{} = {}: {error}", place.at.name, quoted(text, '"')))
+        })?;
+        let named = mesh.with_boundary(name, |at| condition.holds(at));
+        mesh = named.map_err(|error| place.at.mesh(error))?;
+    }
+    Ok(mesh)
+}
+
+fn read_plain_mesh(
     root: &Table,
     given: Option<Mesh>,
     directory: &Path,
@@ -67,10 +97,10 @@ fn make_mesh(table: &Table, directory: &Path, pairs: &[Pair]) -> Result<Meshed, 
             return Err(value.wrong("the name of a mesh file"));
         }
         let file = directory.join(name);
-        let mesh = gmsh::read(&file, merge, pairs).map_err(|error| {
+        let Made { mesh, remarks } = gmsh::read(&file, merge, pairs).map_err(|error| {
             value.at.wrong(error.error.clone().map(|_| format!("[mesh] gmsh: {error}")))
         })?;
-        return Ok(Meshed { file: Some(file), ..mesh.into() });
+        return Ok(Meshed { file: Some(file), remarks, ..mesh.into() });
     }
     let of = value.table()?;
     let structured = if shape == "rectangle" { read_rectangle(&of)? } else { read_trapezoid(&of)? };

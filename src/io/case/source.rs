@@ -11,6 +11,7 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeArray, DeString, DeTable, DeValue};
 
+use crate::fem::SharedFunction;
 use crate::io::expression::Expression;
 use crate::io::input::{Failure, FileError, Position};
 use crate::quote::{cut, quoted};
@@ -21,6 +22,8 @@ pub struct Source<'s> {
     pub file: &'s Path,
     pub text: &'s str,
     pub settings: &'s [String],
+    /// The functions that the text calls `@0`, `@1`, ..
+    pub functions: &'s [SharedFunction],
 }
 
 impl<'s> Source<'s> {

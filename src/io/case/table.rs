@@ -302,7 +302,11 @@ impl<'s> Value<'s> {
     }
 
     pub fn function(&self) -> Result<SharedFunction, FileError> {
-        Ok(Arc::new(self.expression()?))
+        let number = self.as_text().and_then(|text| text.strip_prefix('@')?.parse::<usize>().ok());
+        match number.and_then(|number| self.at.source.functions.get(number)) {
+            Some(function) => Ok(Arc::clone(function)),
+            None => Ok(Arc::new(self.expression()?)),
+        }
     }
 
     /// An expression in x and y. One that is the same everywhere must be finite.

@@ -14,7 +14,7 @@ use crate::quote::{self, quoted};
 pub(super) enum Version {
     /// 4.1
     Four,
-    /// 2.2
+    /// 2.0, 2.1 and 2.2
     Two,
 }
 
@@ -171,12 +171,16 @@ impl<'b> Cursor<'b> {
         self.at
     }
 
-    /// Makes room for as many items as are announced, or as many as the rest of the file can hold if those are fewer.
-    pub(super) fn make_room<T>(&self, list: &mut Vec<T>, announced: usize) -> Result<()> {
+    /// As many items as are announced, or as many as the rest of the file can hold if those are fewer.
+    pub(super) fn at_most(&self, announced: usize) -> usize {
         // A digit and the space after it.
         const LEAST: usize = 2;
-        memory::reserve(list, announced.min(self.rest().len() / LEAST))
-            .map_err(|lack| self.in_the_file(lack))
+        announced.min(self.rest().len() / LEAST)
+    }
+
+    /// Makes room for as many items as are announced and the file can hold.
+    pub(super) fn make_room<T>(&self, list: &mut Vec<T>, announced: usize) -> Result<()> {
+        memory::reserve(list, self.at_most(announced)).map_err(|lack| self.in_the_file(lack))
     }
 
     pub(super) fn skip_white_space(&mut self) {

@@ -7,6 +7,7 @@ use svg::{Document, Node};
 
 use crate::fem::tree::Bounds;
 use crate::io::numbers;
+use crate::quote;
 
 pub(super) const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 /// The size of letters that are neither a heading nor a note.
@@ -24,10 +25,9 @@ pub(super) fn short(x: f64) -> String {
     numbers::short(x, 3)
 }
 
-/// Text that XML allows.
+/// Text that XML allows, on one line.
 pub(super) fn clean(text: &str) -> String {
-    let allowed = |c: char| !(c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}'));
-    text.chars().map(|c| if allowed(c) { c } else { ' ' }).collect()
+    quote::on_page(text).replace(['\n', '\t'], " ")
 }
 
 /// A white page with a title.

@@ -1,0 +1,73 @@
+//! `signorini new`: the case file to begin with, from a mesh.
+
+use std::fs::{self, OpenOptions};
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use signorini::io::input::reason;
+use signorini::io::{Case, Failure, checked, draft, gmsh};
+use signorini::quote;
+
+use super::progress::Phases;
+use super::{Done, complain, summarised};
+
+pub fn run(mesh: &Path, out: Option<&Path>, quiet: bool) -> Result<Done, Failure> {
+    let phases = Phases::start(quiet);
+    phases.enter("reading the mesh");
+    let made = gmsh::read(mesh, None, &[])?;
+    drop(phases);
+    let out = out.map_or_else(|| mesh.with_extension("toml"), Path::to_owned);
+    let title = mesh.file_stem().unwrap_or_default().to_string_lossy();
+    let text = draft::draft(&title, &name_for(mesh, &out), &made.mesh);
+    write(&out, &text)?;
+    // The draft is a guess about a mesh that nobody has described yet: what is wrong with it is said, and the file stays.
+    let case = match Case::parse(&out, &text, &[]) {
+        Ok(case) => case,
+        Err(error) => {
+            complain(&format!(
+                "remark: the file has to be changed before it can be solved: {error}"
+            ));
+            return Ok(written(&out, "", quiet));
+        }
+    };
+    Ok(written(&out, &checked::listed(&case), quiet))
+}
+
+fn written(out: &Path, listed: &str, quiet: bool) -> Done {
+    let out = quote::path(out);
+    let text = format!(
+        "{listed}  written      {out}\n  next         signorini check {out}; signorini solve {out}\n"
+    );
+    summarised(&text, quiet)
+}
+
+/// The mesh as the case file names it: relative to that file's folder where it lies there, else by its whole path.
+fn name_for(mesh: &Path, out: &Path) -> PathBuf {
+    let folder = |path: &Path| {
+        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+        fs::canonicalize(parent.unwrap_or(Path::new("."))).ok()
+    };
+    match mesh.file_name() {
+        Some(name) if folder(mesh) == folder(out) => PathBuf::from(name),
+        _ => fs::canonicalize(mesh).unwrap_or_else(|_| mesh.to_owned()),
+    }
+}
+
+/// Writes a file that was not there.
+fn write(out: &Path, text: &str) -> Result<(), Failure> {
+    let failed = |error: std::io::Error| {
+        let name = quote::path(out);
+        match error.kind() {
+            ErrorKind::AlreadyExists => Failure::wrong(format!(
+                "{name}: there is such a file; expected another name: --out CASE.toml"
+            )),
+            _ => Failure::failed(format!("cannot write {name}: {}", reason(&error))),
+        }
+    };
+    let mut file = OpenOptions::new().write(true).create_new(true).open(out).map_err(failed)?;
+    file.write_all(text.as_bytes()).and_then(|()| file.sync_all()).map_err(|error| {
+        // Half a case file is of no use.
+        let _ = fs::remove_file(out);
+        failed(error)
+    })
+}

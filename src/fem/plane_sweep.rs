@@ -1,0 +1,260 @@
+//! The edges of an outline, met by a line that sweeps over the plane: which of them are near which vertices, whether two cross, and
+//! whether body lies over body.
+//!
+//! The sweep line stands upright and goes from left to right. It keeps the edges that it meets in their order from below, the
+//! *column*; that order changes at the ends of edges only, as long as none cross, and two that cross are next to each other in
+//! the column before they do (Shamos and Hoey, *Geometric intersection problems*, 1976). The body lies on the left of each edge:
+//! from below, edges with the body above them and edges with the body below them must take turns, or some of it is covered twice.
+//! Time is proportional to N log N for N edges, whatever their shape, and for what is found near.
+
+use nalgebra::Vector2;
+
+/// The edges of an outline.
+pub(super) struct Edges<'a> {
+    /// The places of vertices.
+    pub places: &'a [Vector2<f64>],
+    /// Start and end of each edge.
+    pub ends: &'a [[usize; 2]],
+    /// The body lies on the left of each edge; else on the right.
+    pub body_on_left: bool,
+}
+
+/// A question: which edges cross the upright segment at x from one height to another? It is asked for a vertex.
+pub(super) struct Question {
+    pub vertex: usize,
+    pub x: f64,
+    pub between: [f64; 2],
+}
+
+/// What makes the outline none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Fault {
+    /// Two edges cross.
+    Crossing([usize; 2]),
+    /// At the left end of the edge, the body lies on the wrong side of the edge below it.
+    Covered { edge: usize, below: Option<usize> },
+}
+
+/// Sweeps until there is a fault; tells of each edge that a question asks for, the vertex of the question and the edge, until
+/// the answer is not to go on.
+pub(super) fn sweep(
+    edges: &Edges,
+    questions: &[Question],
+    mut near: impl FnMut(usize, usize) -> bool,
+) -> Result<(), Fault> {
+    let mut sweep = Sweep::new(edges);
+    let mut questions: Vec<&Question> = questions.iter().collect();
+    questions.sort_unstable_by(|a, b| a.x.total_cmp(&b.x));
+    let mut asked = questions.into_iter().peekable();
+    for rank in 0..sweep.vertices.len() {
+        let x = edges.places[sweep.vertices[rank]].x;
+        while let Some(question) = asked.next_if(|question| question.x < x) {
+            if !sweep.answer(question, &mut near) {
+                return Ok(());
+            }
+        }
+        sweep.pass(rank)?;
+    }
+    Ok(())
+}
+
+/// Twice the area of the triangle a b c, positive if it is counter-clockwise; 0 where rounding could change the sign.
+pub(super) fn turn(a: Vector2<f64>, b: Vector2<f64>, c: Vector2<f64>) -> f64 {
+    // The two products of `perp`, each on its own for the sake of the bound.
+    let (to_b, to_c) = (b - a, c - a);
+    let (left, right) = (to_b.x * to_c.y, to_b.y * to_c.x);
+    // Four times the bound of Shewchuk's filter.
+    let rounding = 8.0 * f64::EPSILON * (left.abs() + right.abs());
+    if (left - right).abs() <= rounding { 0.0 } else { left - right }
+}
+
+/// The inner parts of two segments cross.
+fn cross([a, b]: [Vector2<f64>; 2], [c, d]: [Vector2<f64>; 2]) -> bool {
+    let opposite = |s: f64, t: f64| (s > 0.0 && t < 0.0) || (s < 0.0 && t > 0.0);
+    opposite(turn(a, b, c), turn(a, b, d)) && opposite(turn(c, d, a), turn(c, d, b))
+}
+
+struct Sweep<'a> {
+    edges: &'a Edges<'a>,
+    /// The vertices of the outline in the order in which the line meets them; of those above each other the lower one first.
+    vertices: Vec<usize>,
+    /// Both ends of each edge by their ranks in that order, the lower rank first.
+    ranks: Vec<[usize; 2]>,
+    /// The edges at each vertex, by ranks.
+    at: Vec<Vec<usize>>,
+    column: Column,
+}
+
+impl<'a> Sweep<'a> {
+    fn new(edges: &'a Edges) -> Self {
+        let place = |v: usize| edges.places[v];
+        let mut vertices = edges.ends.as_flattened().to_vec();
+        vertices.sort_unstable_by(|&v, &w| {
+            let ([a, b], [c, d]): ([f64; 2], [f64; 2]) = (place(v).into(), place(w).into());
+            a.total_cmp(&c).then(b.total_cmp(&d)).then(v.cmp(&w))
+        });
+        vertices.dedup();
+        let mut rank = vec![0; edges.places.len()];
+        vertices.iter().enumerate().for_each(|(r, &v)| rank[v] = r);
+        let mut at = vec![Vec::new(); vertices.len()];
+        let mut ranks = Vec::with_capacity(edges.ends.len());
+        for (e, ends) in edges.ends.iter().enumerate() {
+            let mut pair = ends.map(|v| rank[v]);
+            pair.iter().for_each(|&r| at[r].push(e));
+            pair.sort_unstable();
+            ranks.push(pair);
+        }
+        Sweep { edges, vertices, ranks, at, column: Column::default() }
+    }
+
+    fn place(&self, rank: usize) -> Vector2<f64> {
+        self.edges.places[self.vertices[rank]]
+    }
+
+    /// The side of an edge on which `p` lies: above (positive), below (negative), or on it.
+    fn side(&self, e: usize, p: Vector2<f64>) -> f64 {
+        let [left, right] = self.ranks[e].map(|r| self.place(r));
+        turn(left, right, p)
+    }
+
+    fn is_body_above(&self, e: usize) -> bool {
+        let runs_right = self.edges.ends[e][0] == self.vertices[self.ranks[e][0]];
+        runs_right == self.edges.body_on_left
+    }
+
+    /// The edges that end at a vertex leave the column, those that begin there enter it.
+    fn pass(&mut self, rank: usize) -> Result<(), Fault> {
+        let p = self.place(rank);
+        let is_below = |e: usize| !self.ranks[e].contains(&rank) && self.side(e, p) > 0.0;
+        let mut at = self.column.first_not(is_below);
+        let mut left = self.at[rank].iter().filter(|&&e| self.ranks[e][1] == rank).count();
+        while let Some(e) = self.column.get(at).filter(|&e| self.ranks[e][1] == rank) {
+            at = self.column.remove(at);
+            left -= usize::from(self.at[rank].contains(&e));
+        }
+        if left > 0 {
+            // Another edge touches the vertex, which the questions find.
+            let ranks = &self.ranks;
+            self.column.retain(|e| ranks[e][1] != rank);
+            at = self.column.first_not(|e| self.side(e, p) > 0.0);
+        }
+        let far = |e: usize| self.place(self.ranks[e][1]);
+        // From below. Few edges begin at a vertex.
+        let mut beginning: Vec<usize> = Vec::new();
+        for &e in self.at[rank].iter().filter(|&&e| self.ranks[e][0] == rank) {
+            let below = beginning.partition_point(|&f| turn(p, far(f), far(e)) > 0.0);
+            beginning.insert(below, e);
+        }
+        let mut chain = Vec::with_capacity(beginning.len() + 2);
+        chain.push(self.column.before(at));
+        chain.extend(beginning.iter().map(|&e| Some(e)));
+        chain.push(self.column.get(at));
+        for pair in chain.windows(2) {
+            let [Some(e), Some(f)] = [pair[0], pair[1]] else { continue };
+            let [a, b] = [e, f].map(|e| self.ranks[e]);
+            let is_apart = a.iter().all(|end| !b.contains(end));
+            if is_apart && cross(a.map(|r| self.place(r)), b.map(|r| self.place(r))) {
+                return Err(Fault::Crossing([e, f]));
+            }
+        }
+        let mut below = chain[0];
+        for &e in &beginning {
+            let is_covered = below.is_some_and(|below| self.is_body_above(below));
+            if is_covered == self.is_body_above(e) {
+                return Err(Fault::Covered { edge: e, below });
+            }
+            below = Some(e);
+        }
+        for &e in beginning.iter().rev() {
+            at = self.column.insert(at, e);
+        }
+        Ok(())
+    }
+
+    fn answer(&self, question: &Question, near: &mut impl FnMut(usize, usize) -> bool) -> bool {
+        let &Question { vertex, x, between: [low, high] } = question;
+        let [low, high] = [low, high].map(|y| Vector2::new(x, y));
+        let mut at = self.column.first_not(|e| self.side(e, low) > 0.0);
+        while let Some(e) = self.column.get(at).filter(|&e| self.side(e, high) >= 0.0) {
+            if !near(vertex, e) {
+                return false;
+            }
+            at = self.column.next(at);
+        }
+        true
+    }
+}
+
+/// A list in which items are found by bisection, entered and removed, in pieces of at most [`MOST`] items: none is empty.
+#[derive(Default)]
+struct Column {
+    pieces: Vec<Vec<usize>>,
+}
+
+/// The most items of a piece: moving them costs about as much as finding the piece.
+const MOST: usize = 128;
+
+/// A place in a column: the piece, and the place in that.
+type At = [usize; 2];
+
+impl Column {
+    /// The place of the first item that is not below, where those below come first.
+    fn first_not(&self, is_below: impl Fn(usize) -> bool) -> At {
+        let is_piece_below = |piece: &Vec<usize>| piece.last().is_some_and(|&e| is_below(e));
+        let k = self.pieces.partition_point(is_piece_below);
+        [k, self.pieces.get(k).map_or(0, |piece| piece.partition_point(|&e| is_below(e)))]
+    }
+
+    fn get(&self, [k, i]: At) -> Option<usize> {
+        self.pieces.get(k)?.get(i).copied()
+    }
+
+    fn next(&self, [k, i]: At) -> At {
+        let is_in = self.pieces.get(k).is_some_and(|piece| i + 1 < piece.len());
+        if is_in { [k, i + 1] } else { [k + 1, 0] }
+    }
+
+    fn before(&self, [k, i]: At) -> Option<usize> {
+        match i.checked_sub(1) {
+            Some(i) => self.get([k, i]),
+            None => self.pieces.get(k.checked_sub(1)?)?.last().copied(),
+        }
+    }
+
+    /// Enters an item before a place, and returns the item's own.
+    fn insert(&mut self, [k, i]: At, item: usize) -> At {
+        let last = self.pieces.len().checked_sub(1);
+        let [k, i] = match (self.pieces.get(k), last) {
+            (Some(piece), _) => [k, i.min(piece.len())],
+            (None, Some(last)) => [last, self.pieces[last].len()],
+            (None, None) => {
+                self.pieces.push(Vec::new());
+                [0, 0]
+            }
+        };
+        let piece = &mut self.pieces[k];
+        piece.insert(i, item);
+        if piece.len() <= MOST {
+            return [k, i];
+        }
+        let rest = piece.split_off(MOST / 2);
+        self.pieces.insert(k + 1, rest);
+        if i < MOST / 2 { [k, i] } else { [k + 1, i - MOST / 2] }
+    }
+
+    /// Removes the item at a place, and returns the place of the next one.
+    fn remove(&mut self, [k, i]: At) -> At {
+        let piece = &mut self.pieces[k];
+        piece.remove(i);
+        if piece.is_empty() {
+            self.pieces.remove(k);
+            return [k, 0];
+        }
+        if i < piece.len() { [k, i] } else { [k + 1, 0] }
+    }
+
+    fn retain(&mut self, is_kept: impl Fn(usize) -> bool) {
+        self.pieces.iter_mut().for_each(|piece| piece.retain(|&e| is_kept(e)));
+        self.pieces.retain(|piece| !piece.is_empty());
+    }
+}

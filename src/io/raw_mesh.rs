@@ -1,0 +1,575 @@
+//! A mesh as another program lists it, nodes and elements with numbers of their own, and the [`Mesh`] that it makes.
+//!
+//! What is only notation is brought into the notation of this program without a word: a surface whose triangles all run
+//! clockwise is turned, nodes that no triangle uses are left out, elements of higher order with straight edges are read by their
+//! corners, and an element that is listed once for each of its groups is one. What is decided is said in a remark: quadrangles
+//! are split, and a plane z = c is taken for the plane of the body. A group without a name is called by its number.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+
+use nalgebra::Vector2;
+
+use super::input::Failure;
+use crate::fem::merge::merge;
+use crate::fem::mesh::{ROUNDED, length};
+use crate::fem::tree::Bounds;
+use crate::fem::{Mesh, MeshError, Pair};
+use crate::memory::{self, bytes_of};
+use crate::quote::number;
+
+type Result<T> = std::result::Result<T, Failure>;
+
+/// Something for points, curves and surfaces each.
+pub type ByDimension<T> = [T; 3];
+
+/// Nodes, elements, and the names of what the elements lie on.
+#[derive(Default)]
+pub struct RawMesh {
+    /// The nodes.
+    pub nodes: Vec<Node>,
+    /// The elements.
+    pub elements: Elements,
+    /// The names of the points, curves and surfaces on which elements lie, by their numbers; one without a name may be left out.
+    pub names: ByDimension<BTreeMap<i32, Vec<String>>>,
+    /// What the numbers of nodes and elements are, in messages.
+    pub numbers: &'static str,
+    /// What was decided so far, in sentences for people.
+    pub remarks: Vec<String>,
+}
+
+/// A node.
+pub struct Node {
+    /// Its number.
+    pub tag: usize,
+    /// x, y, z.
+    pub place: [f64; 3],
+}
+
+/// Elements by their corners.
+#[derive(Default)]
+pub struct Elements {
+    points: Vec<Element<1>>,
+    lines: Vec<Element<2>>,
+    triangles: Vec<Element<3>>,
+    quadrangles: Vec<Element<4>>,
+    on_edges: Vec<NodeOnEdge>,
+}
+
+/// An element with N corners on an entity: a point, a curve or a surface.
+struct Element<const N: usize> {
+    tag: usize,
+    nodes: [usize; N],
+    entity: i32,
+}
+
+/// A node of an element of higher order between the two ends of an edge.
+struct NodeOnEdge {
+    element: usize,
+    node: usize,
+    ends: [usize; 2],
+    /// Its distance from the first end, as a share of the edge, if the edge is straight.
+    share: f64,
+}
+
+/// A kind of element that is read.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    /// 1 for a point, 2 for a line, 3 for a triangle, 4 for a quadrangle.
+    corners: usize,
+    /// The polynomial degree of its edges.
+    order: usize,
+    /// The number of its nodes: corners, then those on its edges one edge after the other, then those inside.
+    pub nodes: usize,
+}
+
+/// Those by which elements are called, by Gmsh's number: corners, order, nodes.
+const KINDS: [(i32, [usize; 3]); 20] = [
+    (15, [1, 1, 1]),
+    (1, [2, 1, 2]),
+    (8, [2, 2, 3]),
+    (26, [2, 3, 4]),
+    (27, [2, 4, 5]),
+    (28, [2, 5, 6]),
+    (2, [3, 1, 3]),
+    (9, [3, 2, 6]),
+    (20, [3, 3, 9]),
+    (21, [3, 3, 10]),
+    (22, [3, 4, 12]),
+    (23, [3, 4, 15]),
+    (24, [3, 5, 15]),
+    (25, [3, 5, 21]),
+    (3, [4, 1, 4]),
+    (16, [4, 2, 8]),
+    (10, [4, 2, 9]),
+    (36, [4, 3, 16]),
+    (37, [4, 4, 25]),
+    (38, [4, 5, 36]),
+];
+
+/// Gmsh's numbers of elements that fill a volume, and their names, which are those of meshio but for the hyphens.
+const SOLIDS: [(i32, &str); 13] = [
+    (4, "4-node tetrahedron"),
+    (5, "8-node hexahedron"),
+    (6, "6-node prism"),
+    (7, "5-node pyramid"),
+    (11, "10-node tetrahedron"),
+    (12, "27-node hexahedron"),
+    (13, "18-node prism"),
+    (14, "14-node pyramid"),
+    (17, "20-node hexahedron"),
+    (18, "15-node prism"),
+    (19, "13-node pyramid"),
+    (29, "20-node tetrahedron"),
+    (30, "35-node tetrahedron"),
+];
+
+impl Kind {
+    /// The kind of element to which Gmsh gives this number.
+    ///
+    /// # Errors
+    /// What the element is, and what is expected.
+    pub fn of_gmsh(number: i32) -> std::result::Result<Kind, String> {
+        if let Some((_, [corners, order, nodes])) = KINDS.into_iter().find(|kind| kind.0 == number)
+        {
+            return Ok(Kind { corners, order, nodes });
+        }
+        Err(match SOLIDS.into_iter().find(|solid| solid.0 == number) {
+            Some((_, name)) => format!(
+                "a {name} (type {number}): 3D is not solved; expected a plane mesh of triangles, gmsh -2"
+            ),
+            None => format!(
+                "of a kind that has no use here (type {number}); expected points, lines, triangles and quadrangles"
+            ),
+        })
+    }
+
+    /// The most nodes of an element that is read.
+    pub const MOST_NODES: usize = 36;
+
+    /// 0 for a point, 1 for a line, 2 for triangles and quadrangles.
+    pub fn dimension(self) -> usize {
+        self.corners.min(3) - 1
+    }
+}
+
+impl Elements {
+    /// Makes room for `count` elements of a kind.
+    pub(super) fn reserve(
+        &mut self,
+        kind: Kind,
+        count: usize,
+    ) -> std::result::Result<(), memory::OutOfMemory> {
+        match kind.corners {
+            1 => memory::reserve(&mut self.points, count),
+            2 => memory::reserve(&mut self.lines, count),
+            3 => memory::reserve(&mut self.triangles, count),
+            _ => memory::reserve(&mut self.quadrangles, count),
+        }
+    }
+
+    /// Adds the element `tag` with these nodes, as many as its kind has, on `entity`.
+    pub fn add(&mut self, kind: Kind, tag: usize, nodes: &[usize], entity: i32) {
+        let Kind { corners, order, .. } = kind;
+        match *nodes {
+            [a, ..] if corners == 1 => self.points.push(Element { tag, nodes: [a], entity }),
+            [a, b, ..] if corners == 2 => self.lines.push(Element { tag, nodes: [a, b], entity }),
+            [a, b, c, ..] if corners == 3 => {
+                self.triangles.push(Element { tag, nodes: [a, b, c], entity });
+            }
+            [a, b, c, d, ..] => {
+                self.quadrangles.push(Element { tag, nodes: [a, b, c, d], entity });
+            }
+            _ => return,
+        }
+        let edges = [0, 0, 1, 3, 4][corners];
+        let inner = nodes[corners..].iter().take(edges * (order - 1));
+        for (i, &node) in inner.enumerate() {
+            let (edge, k) = (i / (order - 1), i % (order - 1));
+            let ends = [nodes[edge], nodes[(edge + 1) % corners]];
+            let share = (k + 1) as f64 / order as f64;
+            self.on_edges.push(NodeOnEdge { element: tag, node, ends, share });
+        }
+    }
+
+    /// The entities of a dimension on which elements lie.
+    pub(super) fn entities(&self, dimension: usize) -> BTreeSet<i32> {
+        match dimension {
+            0 => self.points.iter().map(|e| e.entity).collect(),
+            1 => self.lines.iter().map(|e| e.entity).collect(),
+            _ => {
+                let quadrangles = self.quadrangles.iter().map(|e| e.entity);
+                self.triangles.iter().map(|e| e.entity).chain(quadrangles).collect()
+            }
+        }
+    }
+
+    /// An element on an entity of this dimension.
+    pub(super) fn one_on(&self, dimension: usize, entity: i32) -> Option<usize> {
+        fn find<const N: usize>(list: &[Element<N>], entity: i32) -> Option<usize> {
+            list.iter().find(|e| e.entity == entity).map(|e| e.tag)
+        }
+        match dimension {
+            0 => find(&self.points, entity),
+            1 => find(&self.lines, entity),
+            _ => find(&self.triangles, entity).or_else(|| find(&self.quadrangles, entity)),
+        }
+    }
+}
+
+/// A mesh, and what was decided when it was made.
+#[derive(Debug)]
+pub struct Made {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// Sentences for people.
+    pub remarks: Vec<String>,
+}
+
+const NO_TRIANGLE: &str =
+    "mesh with gmsh -2, and where curves have a physical group, give the surface one too";
+
+const MIXED: &str = "others of its surface run counter-clockwise";
+
+impl RawMesh {
+    /// The mesh of the corners of triangles and quadrangles, its nodes merged that are no further apart than a share of the body's
+    /// size, if one is given. The boundaries of these pairs may touch each other, and are not merged.
+    ///
+    /// # Errors
+    /// The first mistake found, with the numbers of nodes and elements that are used here.
+    pub fn made(mut self, share: Option<f64>, pairs: &[Pair]) -> Result<Made> {
+        let mut remarks = std::mem::take(&mut self.remarks);
+        let cells = self.elements.triangles.len() + 2 * self.elements.quadrangles.len();
+        // Two maps from tags, which are at most half empty and twice as large for a moment while they grow; the lists.
+        let maps = 3 * bytes_of::<[usize; 4]>(self.nodes.len()).saturating_mul(2);
+        memory::check(maps.saturating_add(bytes_of::<[usize; 8]>(cells)))?;
+        if cells == 0 {
+            return Err(noted(MeshError::Empty, NO_TRIANGLE));
+        }
+        let position = self.positions()?;
+        let place = |node: usize| self.nodes[position[&node]].place;
+        self.check_names_of_nodes(&position)?;
+        for on_edge in &self.elements.on_edges {
+            check_straight(on_edge, place)?;
+        }
+        remarks.extend(self.plane(&position)?);
+        let is_mixed = turn(&mut self.elements, |node| plane_place(place(node)));
+        let quadrangles = std::mem::take(&mut self.elements.quadrangles);
+        remarks.extend(said_of_split(quadrangles.len()));
+        for Element { tag, nodes, entity } in quadrangles {
+            let places = nodes.map(|node| plane_place(place(node)));
+            let halves = halves(places).map(|half| half.map(|corner| nodes[corner]));
+            self.elements.triangles.extend(halves.map(|nodes| Element { tag, nodes, entity }));
+        }
+        if let Some(share) = share {
+            self.merge_nodes(share, pairs);
+        }
+        let note =
+            if is_mixed { format!("{}; {MIXED}", self.numbers) } else { self.numbers.to_owned() };
+        let mesh = self.mesh(&note, pairs)?;
+        Ok(Made { mesh, remarks })
+    }
+
+    /// The place of each node in the list, by its number.
+    fn positions(&self) -> Result<HashMap<usize, usize>> {
+        let mut position = HashMap::with_capacity(self.nodes.len());
+        for (i, Node { tag, .. }) in self.nodes.iter().enumerate() {
+            if position.insert(*tag, i).is_some() {
+                return Err(format!(
+                    "there is a second node {tag}; expected a tag of its own for each node"
+                )
+                .into());
+            }
+        }
+        Ok(position)
+    }
+
+    fn check_names_of_nodes(&self, position: &HashMap<usize, usize>) -> Result<()> {
+        let Elements { points, lines, triangles, quadrangles, on_edges } = &self.elements;
+        let mut named = points
+            .iter()
+            .flat_map(|e| e.nodes.map(|node| (e.tag, node)))
+            .chain(lines.iter().flat_map(|e| e.nodes.map(|node| (e.tag, node))))
+            .chain(triangles.iter().flat_map(|e| e.nodes.map(|node| (e.tag, node))))
+            .chain(quadrangles.iter().flat_map(|e| e.nodes.map(|node| (e.tag, node))))
+            .chain(on_edges.iter().map(|e| (e.element, e.node)));
+        match named.find(|(_, node)| !position.contains_key(node)) {
+            None => Ok(()),
+            Some((element, node)) => {
+                Err(format!("element {element} names node {node}, which is not in $Nodes").into())
+            }
+        }
+    }
+
+    /// Checks that the corners of triangles and quadrangles lie in a plane z = c, which is a remark if c is not 0.
+    fn plane(&self, position: &HashMap<usize, usize>) -> Result<Option<String>> {
+        let Elements { triangles, quadrangles, .. } = &self.elements;
+        let corners = triangles.iter().flat_map(|e| e.nodes);
+        let corners = corners.chain(quadrangles.iter().flat_map(|e| e.nodes));
+        let nodes = || corners.clone().map(|node| &self.nodes[position[&node]]);
+        let by_z = |a: &&Node, b: &&Node| a.place[2].total_cmp(&b.place[2]);
+        let (Some(low), Some(high)) = (nodes().min_by(by_z), nodes().max_by(by_z)) else {
+            return Ok(None);
+        };
+        let [below, above] = [low.place[2], high.place[2]];
+        if below == 0.0 && above == 0.0 {
+            return Ok(None);
+        }
+        let size = Bounds::around(nodes().map(|node| plane_place(node.place))).size();
+        if above - below <= ROUNDED * size.max(above.abs()) {
+            let is_at_zero = above.abs().max(below.abs()) <= ROUNDED * size;
+            return Ok((!is_at_zero).then(|| {
+                format!(
+                    "the mesh lies in the plane z = {}, which is taken for the plane of the body",
+                    number(above)
+                )
+            }));
+        }
+        Err(format!(
+            "node {} has z = {}, node {} has z = {}: 3D is not solved; expected a mesh in a plane z = constant",
+            low.tag,
+            number(below),
+            high.tag,
+            number(above)
+        )
+        .into())
+    }
+
+    /// Gives the elements on nodes that lie together the first of these nodes, and leaves out what loses an edge by it. Nodes
+    /// that no triangle uses stay as they are, and the two boundaries of a pair stay apart.
+    fn merge_nodes(&mut self, share: f64, pairs: &[Pair]) {
+        let on_sides: Vec<[HashSet<usize>; 2]> = pairs
+            .iter()
+            .map(|pair| pair.boundaries.each_ref().map(|name| self.nodes_on(name)))
+            .collect();
+        let Elements { points, lines, triangles, .. } = &mut self.elements;
+        let used: HashSet<usize> = triangles.iter().flat_map(|t| t.nodes).collect();
+        let kept: Vec<&Node> = self.nodes.iter().filter(|node| used.contains(&node.tag)).collect();
+        let places: Vec<[f64; 2]> = kept.iter().map(|node| plane_place(node.place)).collect();
+        let are_apart = |v: usize, w: usize| {
+            let [v, w] = [kept[v].tag, kept[w].tag];
+            on_sides.iter().any(|[first, second]| {
+                (first.contains(&v) && second.contains(&w))
+                    || (first.contains(&w) && second.contains(&v))
+            })
+        };
+        let merged = merge(&places, &[], share, are_apart);
+        let first: HashMap<usize, usize> = kept
+            .iter()
+            .zip(&merged.vertex)
+            .map(|(node, &vertex)| (node.tag, kept[merged.old_vertex[vertex]].tag))
+            .collect();
+        let with_first = |nodes: &mut [usize]| {
+            nodes.iter_mut().for_each(|tag| *tag = first.get(tag).copied().unwrap_or(*tag));
+        };
+        points.iter_mut().for_each(|point| with_first(&mut point.nodes));
+        lines.iter_mut().for_each(|line| with_first(&mut line.nodes));
+        triangles.iter_mut().for_each(|triangle| with_first(&mut triangle.nodes));
+        lines.retain(|line| line.nodes[0] != line.nodes[1]);
+        triangles.retain(|&Element { nodes: [a, b, c], .. }| a != b && b != c && c != a);
+    }
+
+    /// The nodes on the curves of this name.
+    fn nodes_on(&self, name: &str) -> HashSet<usize> {
+        let is_named =
+            |line: &&Element<2>| names_of(&self.names[1], line.entity).iter().any(|of| of == name);
+        self.elements.lines.iter().filter(is_named).flat_map(|line| line.nodes).collect()
+    }
+
+    /// The mesh of the triangles, in their order.
+    fn mesh(self, note: &str, pairs: &[Pair]) -> Result<Mesh> {
+        let RawMesh { nodes, elements, names, .. } = self;
+        let Elements { points, lines, triangles, .. } = elements;
+        let (triangles, other_entities) = once(triangles, &names[2]);
+        let used: HashSet<usize> = triangles.iter().flat_map(|t| t.nodes).collect();
+        let kept: Vec<&Node> = nodes.iter().filter(|node| used.contains(&node.tag)).collect();
+        let vertex_of: HashMap<usize, usize> =
+            kept.iter().enumerate().map(|(vertex, node)| (node.tag, vertex)).collect();
+        let place: HashMap<usize, [f64; 2]> =
+            if lines.iter().any(|line| !is_known(line, &vertex_of)) {
+                nodes.iter().map(|node| (node.tag, plane_place(node.place))).collect()
+            } else {
+                HashMap::new()
+            };
+
+        let mut parts: BTreeMap<String, Vec<[usize; 2]>> = empty(&names[1]);
+        let mut faults = BTreeMap::new();
+        let mut curves: BTreeMap<String, Vec<[[f64; 2]; 2]>> = BTreeMap::new();
+        for line in &lines {
+            for name in names_of(&names[1], line.entity) {
+                if is_known(line, &vertex_of) {
+                    parts.entry(name.clone()).or_default().push(line.nodes.map(|n| vertex_of[&n]));
+                } else {
+                    let ends = line.nodes.map(|n| place.get(&n).copied().unwrap_or_default());
+                    curves.entry(name.clone()).or_default().push(ends);
+                    let fault = MeshError::NoSuchEdge { boundary: name.clone(), ends };
+                    faults.entry(name.clone()).or_insert(fault);
+                }
+            }
+        }
+        let mut surfaces: BTreeMap<String, Vec<usize>> = empty(&names[2]);
+        let others = other_entities.into_iter();
+        let own = triangles.iter().enumerate().map(|(t, triangle)| (t, triangle.entity));
+        for (t, entity) in own.chain(others) {
+            for name in names_of(&names[2], entity) {
+                surfaces.entry(name.clone()).or_default().push(t);
+            }
+        }
+        surfaces.values_mut().for_each(|members| {
+            members.sort_unstable();
+            members.dedup();
+        });
+        let mut named_points: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+        for point in &points {
+            for name in names_of(&names[0], point.entity) {
+                let of_name = named_points.entry(name.clone()).or_default();
+                of_name.extend(vertex_of.get(&point.nodes[0]).filter(|v| !of_name.contains(v)));
+            }
+        }
+        let corners = triangles.iter().map(|t| t.nodes.map(|node| vertex_of[&node])).collect();
+        let places = kept.iter().map(|node| plane_place(node.place)).collect();
+        Mesh::with_pairs(places, corners, parts, pairs)
+            .and_then(|mesh| mesh.with_names(surfaces, named_points))
+            .map(|mesh| mesh.with_faults(faults).with_curves(curves))
+            .map_err(|error| {
+                let error = error.renumbered(|vertex| kept[vertex].tag, |t| triangles[t].tag);
+                noted(error, note)
+            })
+    }
+}
+
+fn plane_place([x, y, _]: [f64; 3]) -> [f64; 2] {
+    [x, y]
+}
+
+fn is_known(line: &Element<2>, vertex_of: &HashMap<usize, usize>) -> bool {
+    line.nodes.iter().all(|node| vertex_of.contains_key(node))
+}
+
+fn names_of(names: &BTreeMap<i32, Vec<String>>, entity: i32) -> &[String] {
+    names.get(&entity).map_or(&[], Vec::as_slice)
+}
+
+/// An empty list for each name.
+fn empty<T>(names: &BTreeMap<i32, Vec<String>>) -> BTreeMap<String, Vec<T>> {
+    names.values().flatten().map(|name| (name.clone(), Vec::new())).collect()
+}
+
+fn noted(error: MeshError, note: &str) -> Failure {
+    Failure::from(error).map(|problem| format!("{problem} ({note})"))
+}
+
+/// An edge is straight if its inner nodes are off their places by no more than this share of its length: coordinates in a text
+/// file have 16 digits, and a thousandth of the body may be the length of an edge.
+const STRAIGHT: f64 = 1e-10;
+
+/// Refuses an edge whose inner nodes do not divide it evenly.
+fn check_straight(
+    &NodeOnEdge { element, node, ends, share }: &NodeOnEdge,
+    place: impl Fn(usize) -> [f64; 3],
+) -> Result<()> {
+    let [a, b, at] = [ends[0], ends[1], node].map(|n| Vector2::from(plane_place(place(n))));
+    let off = length(at - (a * (1.0 - share) + b * share)) / length(b - a);
+    if off <= STRAIGHT {
+        return Ok(());
+    }
+    Err(format!(
+        "element {element} is curved: node {node} on its edge lies {off:e} of the edge's length beside its place; expected straight edges: mesh finer with element order 1 (Mesh.ElementOrder = 1), the smooth boundary is found from the vertices"
+    )
+    .into())
+}
+
+/// Twice the area of a polygon, positive if it runs counter-clockwise; 0 where it is nothing beside the polygon's size.
+fn turning<const N: usize>(places: [[f64; 2]; N]) -> f64 {
+    let from = |i: usize| Vector2::from(places[i % N]) - Vector2::from(places[0]);
+    let area: f64 = (1..N).map(|i| from(i).perp(&from(i + 1))).sum();
+    let size = Bounds::around(places).size();
+    if area.abs() > ROUNDED * size * size { area } else { 0.0 }
+}
+
+/// Turns the elements of each surface on which all run clockwise. Returns whether there is one on which some do.
+fn turn(elements: &mut Elements, place: impl Fn(usize) -> [f64; 2]) -> bool {
+    let Elements { triangles, quadrangles, .. } = elements;
+    // For each surface whether some run clockwise and whether some run the other way.
+    let mut found: HashMap<i32, [bool; 2]> = HashMap::new();
+    let areas = triangles.iter().map(|e| (e.entity, turning(e.nodes.map(&place))));
+    let more = quadrangles.iter().map(|e| (e.entity, turning(e.nodes.map(&place))));
+    for (entity, area) in areas.chain(more) {
+        let [clockwise, other] = found.entry(entity).or_default();
+        *clockwise |= area < 0.0;
+        *other |= area > 0.0;
+    }
+    let is_clockwise = |entity: i32| found.get(&entity) == Some(&[true, false]);
+    triangles.iter_mut().filter(|e| is_clockwise(e.entity)).for_each(|e| e.nodes.swap(1, 2));
+    quadrangles.iter_mut().filter(|e| is_clockwise(e.entity)).for_each(|e| e.nodes.swap(1, 3));
+    found.values().any(|found| *found == [true, true])
+}
+
+/// A diagonal counts as the shorter one if it is so by more than this share: those of a rectangle differ by rounding.
+const SHORTER: f64 = 1e-6;
+
+/// The corners of the two triangles into which a quadrangle is split along its shorter diagonal, or along the one that lies inside.
+fn halves(places: [[f64; 2]; 4]) -> [[usize; 3]; 2] {
+    let diagonals = [[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]]];
+    let is_inside = |halves: [[usize; 3]; 2]| {
+        halves.iter().all(|half| turning(half.map(|corner| places[corner])) > 0.0)
+    };
+    let between = |a: usize, b: usize| length(Vector2::from(places[b]) - Vector2::from(places[a]));
+    let is_second_shorter = between(1, 3) < (1.0 - SHORTER) * between(0, 2);
+    match diagonals.map(is_inside) {
+        [true, false] => diagonals[0],
+        [false, true] => diagonals[1],
+        _ => diagonals[usize::from(is_second_shorter)],
+    }
+}
+
+fn said_of_split(quadrangles: usize) -> Option<String> {
+    let are_split = match quadrangles {
+        0 => return None,
+        1 => "1 quadrangle of the mesh is split into two triangles, along its".to_owned(),
+        many => {
+            format!("{many} quadrangles of the mesh are split into two triangles each, along their")
+        }
+    };
+    Some(format!("{are_split} shorter diagonal"))
+}
+
+/// Triangles that are listed once for each of their groups, once; with the further entities on which each lies. What is listed twice
+/// for one group stays so, and is refused as an overlap.
+fn once(
+    triangles: Vec<Element<3>>,
+    names: &BTreeMap<i32, Vec<String>>,
+) -> (Vec<Element<3>>, Vec<(usize, i32)>) {
+    if triangles.iter().all(|t| t.entity == triangles[0].entity) {
+        return (triangles, Vec::new());
+    }
+    let key = |t: usize| {
+        let mut nodes = triangles[t].nodes;
+        nodes.sort_unstable();
+        nodes
+    };
+    let mut order: Vec<usize> = (0..triangles.len()).collect();
+    order.sort_by_key(|&t| key(t));
+    // The first triangle that each is the same as.
+    let mut first: Vec<usize> = (0..triangles.len()).collect();
+    for same in order.chunk_by(|&a, &b| key(a) == key(b)) {
+        let mut groups: Vec<&[String]> = vec![names_of(names, triangles[same[0]].entity)];
+        for &t in &same[1..] {
+            let of_this = names_of(names, triangles[t].entity);
+            if groups.iter().all(|of_other| of_other.iter().all(|name| !of_this.contains(name))) {
+                groups.push(of_this);
+                first[t] = same[0];
+            }
+        }
+    }
+    let mut number = vec![0; triangles.len()];
+    let (mut kept, mut others) = (Vec::with_capacity(triangles.len()), Vec::new());
+    for (t, triangle) in triangles.into_iter().enumerate() {
+        if first[t] == t {
+            number[t] = kept.len();
+            kept.push(triangle);
+        } else {
+            others.push((number[first[t]], triangle.entity));
+        }
+    }
+    (kept, others)
+}
