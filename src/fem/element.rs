@@ -101,6 +101,11 @@ impl Degree {
         with_element!(self, E => contact_edge::turning_factor::<E, _, _, _>(cosine))
     }
 
+    /// The same where the component across acts as well: [`contact_edge::turning_factor_of_both`].
+    pub fn turning_factor_of_both<S: Scalar>(self, cosine: S, root: impl Fn(S) -> S) -> S {
+        with_element!(self, E => contact_edge::turning_factor_of_both::<E, _, _, _>(cosine, root))
+    }
+
     /// Calls `f` at the points, with their weights, of a rule that is exact for a product of two gradients.
     pub fn at_stiffness_points<S: Scalar>(self, f: impl FnMut([S; 3], S)) {
         with_element!(self, E => E::at_stiffness_points(f));

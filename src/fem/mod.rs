@@ -65,7 +65,7 @@ pub use material::Materials;
 pub use mesh::bisection::Refinement;
 pub use mesh::{BoundaryEdge, Mesh, MeshError};
 pub use obstacle::{Closest, Distance, Hand, Obstacle, Side};
-pub use pairs::{Pair, PairError, PairLaw, PairPiece, PairSide};
+pub use pairs::{Pair, PairError, PairPiece, PairSide};
 pub use path::{Path, PathError};
 pub use piece::Piece;
 pub use problem::{Condition, PointSupport, Problem, SurfaceForce};

@@ -31,7 +31,7 @@ use super::boundary_normals::{SmoothBoundary, unit};
 use super::data::{DataError, finite};
 use super::element::Degree;
 use super::function::SharedFunction;
-pub use super::law::Law as PairLaw;
+use super::law::Law;
 use super::mesh::{BoundaryEdge, Mesh, MeshError, length};
 use super::problem::Problem;
 use super::rigid::Parts;
@@ -49,7 +49,7 @@ pub struct Pair {
     /// radius of curvature.
     pub reach: Option<f64>,
     /// What holds between them.
-    pub law: PairLaw,
+    pub law: Law,
 }
 
 impl Pair {
@@ -59,7 +59,7 @@ impl Pair {
             boundaries: [first.into(), second.into()],
             clearance: None,
             reach: None,
-            law: PairLaw::Contact,
+            law: Law::Contact,
         }
     }
 
@@ -80,7 +80,7 @@ impl Pair {
 
     /// Sets what holds between the boundaries.
     #[must_use]
-    pub fn with_law(self, law: PairLaw) -> Self {
+    pub fn with_law(self, law: Law) -> Self {
         Pair { law, ..self }
     }
 

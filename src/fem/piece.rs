@@ -13,10 +13,10 @@ use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use super::element::{Degree, with_element};
 use super::law::{EdgeRule, Integrals, Law};
-use super::mesh::BoundaryEdge;
+use super::mesh::{BoundaryEdge, Mesh};
 use super::space::Space;
 use crate::kernel::contact_edge::integral_of_product;
-use crate::kernel::{ContactEdge, DoubleDouble, Element, Material, Scalar, Triangle};
+use crate::kernel::{ContactEdge, DoubleDouble, Element, Material, Response, Scalar, Triangle};
 
 /// A node of a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +57,14 @@ pub struct PieceGeometry {
     pub bulge: f64,
 }
 
+impl Stretch {
+    /// The place of node `a` of the piece on the edge.
+    pub fn place(&self, mesh: &Mesh, a: usize) -> [f64; 2] {
+        let ([start, end], s) = (mesh.places_of_ends(self.edge), self.positions[a]);
+        [0, 1].map(|c| (1.0 - s) * start[c] + s * end[c])
+    }
+}
+
 impl PieceGeometry {
     /// Returns whether the direction of contact turns along the piece.
     pub fn turns(&self) -> bool {
@@ -68,6 +76,19 @@ impl PieceGeometry {
         &self.stretches[0]
     }
 
+    /// The lengths of the parts of edges on which the two sides lie, for the `lengths` of the edges; `None` where there is one side.
+    pub(crate) fn chords<S: Scalar + From<f64>>(&self, lengths: &[S]) -> Option<Chords<S>> {
+        let exact = <S as From<f64>>::from;
+        let part = |(stretch, &length): (&Stretch, &S)| {
+            let [from, to] = [stretch.positions[0], stretch.positions[1]];
+            (if to < from { exact(from) - exact(to) } else { exact(to) - exact(from) }) * length
+        };
+        let parts: Vec<S> = self.stretches.iter().zip(lengths).map(part).collect();
+        let [first, second] = parts[..] else { return None };
+        let length = (first + second) / <S as From<i32>>::from(2);
+        Some(Chords { length, ratios: [first / length, second / length] })
+    }
+
     /// g at the nodes.
     pub fn gaps(&self) -> impl Iterator<Item = f64> + '_ {
         self.nodes.iter().map(|node| node.gap)
@@ -77,6 +98,15 @@ impl PieceGeometry {
     pub fn directions(&self) -> impl Iterator<Item = Vector2<f64>> + '_ {
         self.nodes.iter().map(|node| node.direction)
     }
+}
+
+/// The lengths of the two sides of a piece.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Chords<S> {
+    /// Their mean, the length of the piece.
+    pub length: S,
+    /// Each over their mean.
+    pub ratios: [S; 2],
 }
 
 /// What a side of a piece is made from, in any numbers.
@@ -103,10 +133,6 @@ pub struct Side<S = f64> {
     pub length: S,
     /// gamma of its triangle.
     pub gamma: S,
-    /// The share of its stress in that of the piece, its gamma over that of the piece.
-    pub weight: S,
-    /// The length of its part of the edge over that of the piece.
-    pub ratio: S,
     /// Its entries among the nodes of the piece's triangles.
     pub entries: Range<usize>,
     /// For each node of the piece the entry of the edge's node that is next to it.
@@ -194,16 +220,11 @@ impl<S: Scalar + From<f64>> Piece<S> {
     ) -> Self {
         let degree = space.degree();
         let exact = <S as From<f64>>::from;
-        let (two, is_pair) = (<S as From<i32>>::from(2), data.len() > 1);
-        let part = |(stretch, data): (&Stretch, &SideData<S>)| {
-            let [from, to] = [stretch.positions[0], stretch.positions[1]];
-            let share = if to < from { exact(from) - exact(to) } else { exact(to) - exact(from) };
-            share * data.length
-        };
-        let parts: Vec<S> = geometry.stretches.iter().zip(data).map(part).collect();
+        let lengths: Vec<S> = data.iter().map(|side| side.length).collect();
+        let chords = geometry.chords(&lengths);
         let (mut length, mut gamma) = (data[0].length, data[0].gamma);
-        if is_pair {
-            length = (parts[0] + parts[1]) / two;
+        if let Some(chords) = chords {
+            length = chords.length;
             gamma += data[1].gamma;
         }
         let mut piece = Piece {
@@ -218,14 +239,13 @@ impl<S: Scalar + From<f64>> Piece<S> {
             sigma_n: vec![Vec::new(); 2 * geometry.law.components()],
         };
         for (i, (stretch, data)) in geometry.stretches.iter().zip(data).enumerate() {
-            let one = <S as From<i32>>::from(1);
-            let (weight, ratio) =
-                if is_pair { (data.gamma / gamma, parts[i] / length) } else { (one, one) };
-            let own_gamma = if is_pair { data.gamma * ratio } else { data.gamma };
+            // The stress of the only side is that of the piece: no product with 1, which is not exact in balls.
+            let shares = chords.map(|chords| (data.gamma / gamma, chords.ratios[i]));
+            let own_gamma = shares.map_or(data.gamma, |(_, ratio)| data.gamma * ratio);
             let first = piece.nodes.len();
             piece.nodes.extend(space.nodes_of(stretch.edge.triangle));
             let positions: Vec<S> = stretch.positions.iter().map(|&s| exact(s)).collect();
-            let place = (stretch.edge.local, is_pair.then_some(&positions[..]));
+            let place = (stretch.edge.local, shares.is_some().then_some(&positions[..]));
             for k in 0..geometry.law.components() {
                 let toward = |node: &PieceNode| {
                     let d = node.direction.map(exact);
@@ -243,10 +263,9 @@ impl<S: Scalar + From<f64>> Piece<S> {
                 }
                 for (all, own) in piece.sigma_n[2 * k..].iter_mut().zip(sigma_n) {
                     let own = own.into_iter();
-                    if is_pair {
-                        all.extend(own.map(|row| row * (weight * ratio)));
-                    } else {
-                        all.extend(own);
+                    match shares {
+                        Some((weight, ratio)) => all.extend(own.map(|f| f * (weight * ratio))),
+                        None => all.extend(own),
                     }
                 }
             }
@@ -254,13 +273,47 @@ impl<S: Scalar + From<f64>> Piece<S> {
                 normal: data.normal,
                 length: data.length,
                 gamma: data.gamma,
-                weight,
-                ratio,
                 entries: first..piece.nodes.len(),
                 nearest: nearest(degree, stretch).into_iter().map(|k| first + k).collect(),
             });
         }
         piece
+    }
+
+    /// The name of the boundary of the second side, if there is one.
+    pub fn partner(&self) -> Option<&Arc<str>> {
+        self.geometry.stretches.get(1).map(|stretch| &stretch.boundary)
+    }
+
+    /// Returns whether both lie on the same boundary with the same partner.
+    pub fn is_of_same_boundary<T>(&self, other: &Piece<T>) -> bool {
+        let names = |piece: &PieceGeometry| {
+            piece.stretches.iter().map(|s| Arc::clone(&s.boundary)).collect::<Vec<_>>()
+        };
+        names(&self.geometry) == names(&other.geometry)
+    }
+
+    /// What its law answers, component by component, each with the numbers of the component's values among those of the piece.
+    pub fn responses(&self) -> impl Iterator<Item = (Response, Range<usize>)> + use<S> {
+        let (count, law) = (self.degree.nodes_per_edge(), self.geometry.law);
+        law.responses().iter().enumerate().map(move |(k, &r)| (r, k * count..(k + 1) * count))
+    }
+
+    /// The nodes of the edges on which it lies.
+    pub fn edge_nodes(&self) -> impl Iterator<Item = usize> + '_ {
+        let of = |(side, stretch): (&Side<S>, &Stretch)| {
+            let first = side.entries.start;
+            let on_edge = self.degree.edge_nodes(stretch.edge.local).into_iter();
+            on_edge.map(|k| self.nodes[first + k]).collect::<Vec<_>>()
+        };
+        self.sides.iter().zip(&self.geometry.stretches).flat_map(of)
+    }
+
+    /// The largest of these numbers at the nodes of its edges, added up over its sides.
+    pub(crate) fn farthest(&self, at: impl Fn(usize) -> f64) -> f64 {
+        let count = self.degree.nodes_per_edge();
+        let nodes: Vec<f64> = self.edge_nodes().map(at).collect();
+        nodes.chunks(count).map(|side| side.iter().copied().fold(0.0, f64::max)).sum()
     }
 
     /// The numbers of its functionals among those of all pieces.
@@ -293,7 +346,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     }
 
     /// The direction of functional `i`, n~ or across it.
-    fn direction_of(&self, i: usize) -> Vector2<S> {
+    pub fn direction_of(&self, i: usize) -> Vector2<S> {
         let count = self.degree.nodes_per_edge();
         let d = self.direction(i % count);
         if i < count { d } else { across(d) }
@@ -409,7 +462,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     }
 
     /// Calls `add` with the forces that functionals are at the nodes of the triangles, each functional times its factor.
-    pub(super) fn each_force(
+    pub(crate) fn each_force(
         &self,
         functionals: &[Vec<Vector2<S>>],
         factors: &[S],
@@ -448,6 +501,41 @@ fn nearest(degree: Degree, stretch: &Stretch) -> Vec<usize> {
 }
 
 impl Piece {
+    /// The jump of a field along the direction of each functional: P0 without the stress.
+    pub fn jumps(&self, u: &[[f64; 2]]) -> Vec<f64> {
+        let count = self.degree.nodes_per_edge();
+        let displacement = |(side, stretch): (&Side, &Stretch), a: usize| {
+            let nodes = self.degree.edge_nodes(stretch.edge.local).into_iter();
+            let shapes = self.degree.edge_values(stretch.positions[a]);
+            nodes.zip(shapes).fold([0.0; 2], |sum, (k, shape)| {
+                let u = u[self.nodes[side.entries.start + k]];
+                [0, 1].map(|c| sum[c] + shape * u[c])
+            })
+        };
+        let jump = |i: usize| {
+            let mut sides = self.sides.iter().zip(&self.geometry.stretches);
+            let first = sides.next().map_or([0.0; 2], |side| displacement(side, i % count));
+            let [x, y] = sides.fold(first, |jump, side| {
+                let other = displacement(side, i % count);
+                [0, 1].map(|c| jump[c] - other[c])
+            });
+            let n = self.direction_of(i);
+            x * n[0] + y * n[1]
+        };
+        (0..self.p0.len()).map(jump).collect()
+    }
+
+    /// The places on the edges of its sides that functional `i` compares, each with the triangle and the direction that its
+    /// displacement is multiplied by.
+    pub fn compared(&self, mesh: &Mesh, i: usize) -> Vec<(usize, [f64; 2], Vector2<f64>)> {
+        let (n, a) = (self.direction_of(i), i % self.degree.nodes_per_edge());
+        let of = |(side, stretch): (usize, &Stretch)| {
+            let along = if side == 0 { n } else { -n };
+            (stretch.edge.triangle, stretch.place(mesh, a), along)
+        };
+        self.geometry.stretches.iter().enumerate().map(of).collect()
+    }
+
     /// What the piece adds to (8) and J_h where P has these values at its nodes.
     pub fn contribution<T: Copy + Into<DoubleDouble>>(
         &self,

@@ -1,9 +1,8 @@
 //! The ingredients of (8) in balls: the pieces of Gamma_C, kappa, the components of fields and functionals in the frames of their
 //! nodes, their products.
 
-use std::collections::BTreeMap;
-
 use super::system::System;
+use crate::fem::contact_line::{Share, by_triangle};
 use crate::fem::piece::{Side, Stretch};
 use crate::fem::residual;
 use crate::fem::{Discretization, Piece};
@@ -25,12 +24,15 @@ pub fn pieces(d: &Discretization) -> Vec<Piece<PreciseBall>> {
 /// kappa of Theorem 2.3, rounded up. The directions of contact are doubles, unit vectors to a rounding error only.
 pub(super) fn kappa(d: &Discretization, pieces: &[Piece<PreciseBall>]) -> f64 {
     let degree = d.space.degree();
-    let mut kappas: BTreeMap<usize, PreciseBall> = BTreeMap::new();
+    let mut shares = Vec::new();
     for piece in pieces {
         let geometry = &piece.geometry;
         let along: Vec<[PreciseBall; 2]> =
             geometry.directions().map(|n| n.map(PreciseBall::from).into()).collect();
-        for (side, stretch) in piece.sides.iter().zip(&geometry.stretches) {
+        let both = geometry.law.components() > 1;
+        let lengths: Vec<PreciseBall> = piece.sides.iter().map(|side| side.length).collect();
+        let chords = geometry.chords(&lengths);
+        for (i, (side, stretch)) in piece.sides.iter().zip(&geometry.stretches).enumerate() {
             let t = stretch.edge.triangle;
             let direction = if geometry.along_normal {
                 Some(side.normal)
@@ -42,19 +44,27 @@ pub(super) fn kappa(d: &Discretization, pieces: &[Piece<PreciseBall>]) -> f64 {
             } else {
                 let off = along.iter().map(|&n| (dot(n, n) - PreciseBall::from(1)).magnitude());
                 let off = PreciseBall::from(8.0 * off.fold(0.0, larger));
-                let turning = degree.turning_factor(dot(along[0], along[1]));
+                let cosine = dot(along[0], along[1]);
+                let turning = if both && geometry.turns() {
+                    degree.turning_factor_of_both(cosine, PreciseBall::sqrt)
+                } else {
+                    degree.turning_factor(cosine)
+                };
                 turning * (PreciseBall::from(1) + off) + off
             };
+            let factor = chords.map_or(factor, |chords| factor * chords.ratios[i]);
             let material = d.problem.material.of(t).map(PreciseBall::from);
+            let direction = direction.filter(|_| !both);
             let stiffness =
                 traction_stiffness(&material, side.normal, direction, PreciseBall::sqrt);
             let area = residual::exactly::<PreciseBall>(d.space.mesh().triangle(t)).double_area();
             let (length, area) = (factor * side.length, area / PreciseBall::from(2));
-            *kappas.entry(t).or_insert(PreciseBall::from(0)) +=
-                degree.coercivity_constant(stiffness, side.gamma, length, area);
+            let value = degree.coercivity_constant(stiffness, side.gamma, length, area);
+            shares.push(Share::new(geometry, i, value));
         }
     }
-    kappas.values().map(|kappa| kappa.upper()).fold(0.0, larger)
+    let largest = |a: PreciseBall, b: PreciseBall| if a.upper() < b.upper() { b } else { a };
+    by_triangle(shares, largest).values().map(|kappa| kappa.upper()).fold(0.0, larger)
 }
 
 /// The components of a functional at the free unknowns, in the frames of their nodes.

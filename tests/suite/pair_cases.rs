@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use signorini::fem::boundary_normals::SmoothBoundary;
 use signorini::fem::pairs::{PairPiece, of_problem};
-use signorini::fem::{Condition, PairLaw};
+use signorini::fem::{Condition, Law};
 use signorini::io::Case;
 use signorini::solve::Degree;
 
@@ -137,7 +137,7 @@ fn surfaces_that_share_nodes_are_split_along_their_common_curve() {
     let case = read(&folder, &mesh, split).unwrap();
     let pair = &case.problem.pairs[0];
     assert_eq!(pair.boundaries, ["lower|upper", "upper|lower"]);
-    assert_eq!(pair.law, PairLaw::Bonded);
+    assert_eq!(pair.law, Law::Bonded);
     assert_eq!(case.problem.mesh.vertices().len(), 7 * 9 + 7);
     let pieces = &pieces(&case)[0];
     assert_eq!(pieces.len(), 6);
@@ -163,13 +163,13 @@ fn keys_of_a_pair_are_read_and_set_by_its_number() {
     };
     let case = parse(&[]).unwrap();
     let pair = &case.problem.pairs[0];
-    assert!(pair.clearance.is_none() && pair.reach.is_none() && pair.law == PairLaw::Contact);
+    assert!(pair.clearance.is_none() && pair.reach.is_none() && pair.law == Law::Contact);
     assert!((pieces(&case)[0][0].gap[0] - 0.01).abs() < 1e-15);
     let case =
         parse(&["pair.0.clearance=0.1*x", "pair.0.reach=0.2", "pair.0.law=sliding"]).unwrap();
     let pair = &case.problem.pairs[0];
     assert_eq!(pair.clearance.as_ref().unwrap().at([3.0, 0.0]), 0.1 * 3.0);
-    assert_eq!((pair.reach, pair.law), (Some(0.2), PairLaw::Sliding));
+    assert_eq!((pair.reach, pair.law), (Some(0.2), Law::Sliding));
     let error = parse(&["pair.1.reach=0.2"]).err().unwrap().to_string();
     assert!(
         error.ends_with("found pair.1; expected a key of one of the tables pair.0 to pair.0"),

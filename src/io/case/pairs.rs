@@ -2,7 +2,7 @@
 
 use super::table::{Spot, Table, Value};
 use crate::fem::mesh::split_names;
-use crate::fem::{Mesh, Pair, PairLaw};
+use crate::fem::{Law, Mesh, Pair};
 use crate::io::input::FileError;
 use crate::quote::{key, quoted};
 
@@ -44,8 +44,7 @@ fn read_pair(table: Table) -> Result<ReadPair, FileError> {
         pair.clearance = Some(clearance.function()?);
     }
     pair.reach = table.optional("reach", Value::positive)?;
-    let laws =
-        [("contact", PairLaw::Contact), ("sliding", PairLaw::Sliding), ("bonded", PairLaw::Bonded)];
+    let laws = [("contact", Law::Contact), ("sliding", Law::Sliding), ("bonded", Law::Bonded)];
     table.set("law", &mut pair.law, |law| law.one_of(&laws))?;
     Ok(ReadPair { at: table.at, pair, surfaces })
 }
