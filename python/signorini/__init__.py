@@ -170,7 +170,7 @@ def solve(
     remarks: List[str] = []
     origin = None
     if triangles is None and boundaries is None and hasattr(points, "cells"):
-        mesh, origin, remarks = _from_meshio(points)
+        mesh, origin, remarks = _from_meshio(points, _pairs(tables))
         points, triangles, boundaries, surfaces, named_points = mesh
     if triangles is None or boundaries is None:
         raise TypeError("expected points, triangles and boundaries, or a meshio mesh")
@@ -202,12 +202,19 @@ class Mesh(NamedTuple):
     named_points: dict[str, int]
 
 
-def from_meshio(mesh: Any) -> Mesh:
+def _pairs(tables: Mapping[str, Any]) -> "List[List[str]]":
+    """The boundaries of the pairs of a case, by which its mesh is checked."""
+    entries = tables.get("pair", [])
+    lists = [entry.get("boundaries") for entry in entries if isinstance(entry, Mapping)]
+    return [list(names) for names in lists if isinstance(names, (list, tuple)) and [type(name) for name in names] == [str, str]]
+
+
+def from_meshio(mesh: Any, *, pairs: Sequence[Sequence[str]] = ()) -> Mesh:
     """Points, triangles and what is named of a meshio mesh, by its physical names (as Gmsh writes them), the numbers of groups without a
     name, or its cell sets. As the command does with a mesh file: points that no triangle uses are left out, a block whose triangles
     all run clockwise is turned, quadrangles are split (which is said in a warning), and elements of higher order are read if their
-    edges are straight."""
-    made, _, remarks = _from_meshio(mesh)
+    edges are straight. The boundaries of `pairs`, as in [("pin", "hole")], may touch each other."""
+    made, _, remarks = _from_meshio(mesh, [list(pair) for pair in pairs])
     _warn(remarks)
     return made
 
@@ -220,7 +227,7 @@ _CELLS = {
 _SOLIDS = ("tetra", "hexahedron", "wedge", "pyramid")
 
 
-def _from_meshio(mesh: Any) -> "tuple[Mesh, Integers, List[str]]":
+def _from_meshio(mesh: Any, pairs: List[List[str]]) -> "tuple[Mesh, Integers, List[str]]":
     """The mesh, the number that each of its points has in the meshio mesh, and what was decided."""
     solid = next((block.type for block in mesh.cells if block.type.startswith(_SOLIDS)), None)
     if solid is not None:
@@ -255,7 +262,7 @@ def _from_meshio(mesh: Any) -> "tuple[Mesh, Integers, List[str]]":
             for kind in range(kinds.shape[1] if len(of_block) else 1):
                 names[dimension][first + kind] = [name for k, (name, _) in enumerate(of_block) if kinds[k, kind]]
         blocks.append((number, cells.tobytes(), entities.tobytes()))
-    made = _signorini.plane_mesh(nodes.tobytes(), blocks, [list(of_dimension.items()) for of_dimension in names])
+    made = _signorini.plane_mesh(nodes.tobytes(), blocks, [list(of_dimension.items()) for of_dimension in names], pairs)
     points = np.frombuffer(made["points"]).reshape(-1, 2).copy()
 
     def integers(data: bytes, *shape: int) -> Integers:

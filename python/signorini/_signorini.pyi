@@ -48,5 +48,5 @@ def solve(
     certificate: bool,
 ) -> Solved: ...
 def plane_mesh(
-    nodes: bytes, blocks: List[Tuple[int, bytes, bytes]], names: List[List[Tuple[int, List[str]]]]
+    nodes: bytes, blocks: List[Tuple[int, bytes, bytes]], names: List[List[Tuple[int, List[str]]]], pairs: List[List[str]]
 ) -> PlaneMesh: ...

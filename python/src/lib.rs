@@ -12,7 +12,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use signorini::fem::{Function, Mesh, SharedFunction};
+use signorini::fem::{Function, Mesh, Pair, SharedFunction};
 use signorini::io::Case;
 use signorini::io::outputs::{self, Extra};
 use signorini::io::picture::draw;
@@ -92,7 +92,7 @@ fn solve(
         })
         .collect();
     let result = interruptible(py, move |stage| {
-        let pairs = Case::pairs(Path::new("case"), &text).map_err(wrong)?;
+        let pairs = Case::pairs(Path::new("case"), &text, &functions).map_err(wrong)?;
         let mesh = Mesh::with_pairs(points, triangles, boundaries, &pairs).map_err(wrong)?;
         let mesh = mesh.with_names(surfaces, named_points).map_err(wrong)?;
         let mut case = Case::on_mesh(Path::new("case"), &text, mesh, &functions).map_err(wrong)?;
@@ -174,14 +174,17 @@ type Block<'a> = (i32, &'a [u8], &'a [u8]);
 type EntityNames = Vec<(i32, Vec<String>)>;
 
 /// Makes a plane mesh of nodes (three doubles each) and blocks of cells, as another program lists them; returns its arrays, and what
-/// was decided.
+/// was decided. These pairs of boundaries may touch each other.
 #[pyfunction]
 fn plane_mesh<'py>(
     py: Python<'py>,
     nodes: &[u8],
     blocks: Vec<Block>,
     names: [EntityNames; 3],
+    pairs: Vec<[String; 2]>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let pairs: Vec<Pair> =
+        pairs.into_iter().map(|[first, second]| Pair::new(first, second)).collect();
     let mut raw = RawMesh {
         numbers: "points and cells are counted from 0, the cells block after block",
         ..RawMesh::default()
@@ -203,7 +206,7 @@ fn plane_mesh<'py>(
         }
     }
     raw.names = names.map(|of_dimension| of_dimension.into_iter().collect());
-    let Made { mesh, remarks } = raw.made(None, &[]).map_err(|error| unsolved(&error))?;
+    let Made { mesh, remarks } = raw.made(None, &pairs).map_err(|error| unsolved(&error))?;
     let dict = PyDict::new(py);
     let points = mesh.vertices().iter().flatten().flat_map(|c| c.to_ne_bytes());
     dict.set_item("points", PyBytes::new(py, &points.collect::<Vec<u8>>()))?;

@@ -51,62 +51,13 @@ impl SmoothBoundary {
     /// The normals along the whole boundary of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
         let outline = mesh.outline();
-        let facets: Vec<(f64, Vector2<f64>)> =
-            outline.iter().map(|&edge| mesh.length_and_normal(edge)).collect();
-        // The edges that end and that start at each vertex: one each, but where parts of the body touch in a point.
-        let mut around: BTreeMap<usize, [Vec<usize>; 2]> = BTreeMap::new();
-        for (e, &edge) in outline.iter().enumerate() {
-            let [start, end] = mesh.ends(edge);
-            around.entry(end).or_default()[0].push(e);
-            around.entry(start).or_default()[1].push(e);
-        }
-        let passage = |vertex: usize| -> Option<Passage> {
-            let [before, after] = around.get(&vertex)?;
-            let (&[before], &[after]) = (&before[..], &after[..]) else { return None };
-            let (n, m) = (facets[before].1, facets[after].1);
-            let bend = n.perp(&m).atan2(n.dot(&m));
-            Some(Passage { before, after, bend })
-        };
-        let bend_at = |vertex: usize| passage(vertex).map_or(f64::INFINITY, |p| p.bend);
-
-        // The normal that both edges share at a vertex, where they share one.
-        let mut shared: BTreeMap<usize, Vector2<f64>> = BTreeMap::new();
-        for &vertex in around.keys() {
-            let Some(Passage { before, after, bend }) = passage(vertex) else { continue };
-            if bend.abs() <= NO_ANGLE || bend.abs() > SMOOTH.to_radians() {
-                continue;
-            }
-            let [previous, _] = mesh.ends(outline[before]);
-            let [_, next] = mesh.ends(outline[after]);
-            let (behind, ahead) = (bend_at(previous), bend_at(next));
-            let arc_starts = |beyond: f64| beyond * bend > 0.0 && bend.abs() <= beyond.abs();
-            let ((a, n), (b, m)) = (facets[before], facets[after]);
-            let normal = match (behind.abs() <= NO_ANGLE, ahead.abs() <= NO_ANGLE) {
-                (true, true) => None,
-                (true, false) => arc_starts(ahead).then_some(n),
-                (false, true) => arc_starts(behind).then_some(m),
-                (false, false) => Some(unit(n / a + m / b)),
-            };
-            shared.extend(normal.map(|normal| (vertex, normal)));
-        }
-
-        let mut normals = BTreeMap::new();
-        for (e, &edge) in outline.iter().enumerate() {
-            let facet = facets[e].1;
-            let ends = mesh.ends(edge);
-            let own = ends.map(|vertex| shared.get(&vertex).copied());
-            let straight = |vertex: usize| bend_at(vertex).abs() <= NO_ANGLE;
-            let both = match own {
-                [Some(start), Some(end)] => [start, end],
-                [Some(start), None] if straight(ends[1]) => [start, facet],
-                [None, Some(end)] if straight(ends[0]) => [facet, end],
-                [Some(start), None] => [start, mirrored(start, facet)],
-                [None, Some(end)] => [mirrored(end, facet), end],
-                [None, None] => continue,
-            };
-            normals.insert((edge.triangle, edge.local), both);
-        }
-        SmoothBoundary { normals }
+        let ends: Vec<[usize; 2]> = outline.iter().map(|&edge| mesh.ends(edge)).collect();
+        let normals = smooth_normals(&ends, |vertex| mesh.vertices()[vertex].into());
+        let listed = outline
+            .iter()
+            .zip(normals)
+            .filter_map(|(edge, normals)| Some(((edge.triangle, edge.local), normals?)));
+        SmoothBoundary { normals: listed.collect() }
     }
 
     /// The normals at the start and at the end of an edge, if they are not both its facet's.
@@ -132,6 +83,69 @@ impl SmoothBoundary {
             }
         }
     }
+}
+
+/// The normals at both ends of each edge of a line, which runs from vertex to vertex, its normals on its right; `None` where both are
+/// that of the facet.
+pub(crate) fn smooth_normals(
+    ends: &[[usize; 2]],
+    place: impl Fn(usize) -> Vector2<f64>,
+) -> Vec<Option<[Vector2<f64>; 2]>> {
+    let facet = |&[a, b]: &[usize; 2]| {
+        let along = place(b) - place(a);
+        let length = length(along);
+        (length, Vector2::new(along.y, -along.x) / length)
+    };
+    let facets: Vec<(f64, Vector2<f64>)> = ends.iter().map(facet).collect();
+    // The edges that end and that start at each vertex: one each, but where parts of the body touch in a point.
+    let mut around: BTreeMap<usize, [Vec<usize>; 2]> = BTreeMap::new();
+    for (e, &[start, end]) in ends.iter().enumerate() {
+        around.entry(end).or_default()[0].push(e);
+        around.entry(start).or_default()[1].push(e);
+    }
+    let passage = |vertex: usize| -> Option<Passage> {
+        let [before, after] = around.get(&vertex)?;
+        let (&[before], &[after]) = (&before[..], &after[..]) else { return None };
+        let (n, m) = (facets[before].1, facets[after].1);
+        let bend = n.perp(&m).atan2(n.dot(&m));
+        Some(Passage { before, after, bend })
+    };
+    let bend_at = |vertex: usize| passage(vertex).map_or(f64::INFINITY, |p| p.bend);
+
+    // The normal that both edges share at a vertex, where they share one.
+    let mut shared: BTreeMap<usize, Vector2<f64>> = BTreeMap::new();
+    for &vertex in around.keys() {
+        let Some(Passage { before, after, bend }) = passage(vertex) else { continue };
+        if bend.abs() <= NO_ANGLE || bend.abs() > SMOOTH.to_radians() {
+            continue;
+        }
+        let [previous, _] = ends[before];
+        let [_, next] = ends[after];
+        let (behind, ahead) = (bend_at(previous), bend_at(next));
+        let arc_starts = |beyond: f64| beyond * bend > 0.0 && bend.abs() <= beyond.abs();
+        let ((a, n), (b, m)) = (facets[before], facets[after]);
+        let normal = match (behind.abs() <= NO_ANGLE, ahead.abs() <= NO_ANGLE) {
+            (true, true) => None,
+            (true, false) => arc_starts(ahead).then_some(n),
+            (false, true) => arc_starts(behind).then_some(m),
+            (false, false) => Some(unit(n / a + m / b)),
+        };
+        shared.extend(normal.map(|normal| (vertex, normal)));
+    }
+
+    let straight = |vertex: usize| bend_at(vertex).abs() <= NO_ANGLE;
+    let both = |(ends, &(_, facet)): (&[usize; 2], &(f64, Vector2<f64>))| {
+        let own = ends.map(|vertex| shared.get(&vertex).copied());
+        Some(match own {
+            [Some(start), Some(end)] => [start, end],
+            [Some(start), None] if straight(ends[1]) => [start, facet],
+            [None, Some(end)] if straight(ends[0]) => [facet, end],
+            [Some(start), None] => [start, mirrored(start, facet)],
+            [None, Some(end)] => [mirrored(end, facet), end],
+            [None, None] => return None,
+        })
+    };
+    ends.iter().zip(&facets).map(both).collect()
 }
 
 /// The smooth boundary between two of its points: the cubic curve of the head of this file, or a straight line.

@@ -49,6 +49,8 @@ struct MeshTopology {
     boundaries: BTreeMap<String, Vec<BoundaryEdge>>,
     /// Named curves that are no boundaries, as one has an edge inside the body, and why.
     faults: BTreeMap<String, MeshError>,
+    /// Named curves beside the body, by the ends of their edges.
+    curves: BTreeMap<String, Vec<[[f64; 2]; 2]>>,
     surfaces: BTreeMap<String, Vec<usize>>,
     points: BTreeMap<String, Vec<usize>>,
 }
@@ -88,6 +90,7 @@ impl Mesh {
             outline,
             boundaries,
             faults,
+            curves: BTreeMap::new(),
             surfaces: BTreeMap::new(),
             points: BTreeMap::new(),
         };
@@ -119,6 +122,28 @@ impl Mesh {
         topology.boundaries.retain(|name, _| !faults.contains_key(name));
         topology.faults.extend(faults);
         self
+    }
+
+    /// Names curves beside the body, by the ends of their edges: a rigid obstacle may be one.
+    #[must_use]
+    pub(crate) fn with_curves(mut self, curves: BTreeMap<String, Vec<[[f64; 2]; 2]>>) -> Mesh {
+        Arc::make_mut(&mut self.topology).curves = curves;
+        self
+    }
+
+    /// The ends of the edges of a named curve beside the body.
+    ///
+    /// # Errors
+    /// [`MeshError::NoSuchCurve`], with the names that there are.
+    pub(crate) fn curve(&self, name: &str) -> Result<&[[[f64; 2]; 2]], MeshError> {
+        let curves = &self.topology.curves;
+        curves.get(name).map(Vec::as_slice).ok_or_else(|| MeshError::NoSuchCurve {
+            name: name.to_owned(),
+            known: listed(
+                curves.keys(),
+                "none (in Gmsh a Physical Curve that bounds no surface is one)",
+            ),
+        })
     }
 
     /// Names the edges of the boundary whose two ends are places where `holds`.

@@ -2,10 +2,12 @@
 //!
 //! An open line goes on straight beyond its two ends, so that it has two sides everywhere.
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::boundary_normals::{left_of, unit};
+use super::boundary_normals::{SmoothEdge, left_of, smooth_normals, unit};
 use super::mesh::{NO_ANGLE, ROUNDED, length};
 use crate::quote::{number, short};
 
@@ -20,6 +22,8 @@ pub enum PathError {
     Same { place: [f64; 2] },
     #[error("found {count} radii; expected one, or one for each of the {corners} corners")]
     Radii { count: usize, corners: usize },
+    #[error("the edges are not one line: at ({}, {}) another one begins, or several meet; expected a curve without branches", number(place[0]), number(place[1]))]
+    NotOne { place: [f64; 2] },
     #[error("the line turns back at ({}, {}); expected a corner", number(place[0]), number(place[1]))]
     TurnsBack { place: [f64; 2] },
     #[error(
@@ -147,6 +151,37 @@ impl Path {
         Ok(Path::of(made, closed))
     }
 
+    /// The line of edges, each given by its two ends, in any order; their direction is that of the first. Where it bends by little, it
+    /// is taken for smooth, as the boundary of a mesh is (`boundary_normals`), and an edge for an arc.
+    ///
+    /// # Errors
+    /// [`PathError::NotOne`] for edges that are no line, or several.
+    pub fn through(edges: &[[[f64; 2]; 2]]) -> Result<Self, PathError> {
+        let (points, closed) = chained(edges)?;
+        let count = points.len();
+        let ends: Vec<[usize; 2]> =
+            (0..if closed { count } else { count - 1 }).map(|k| [k, (k + 1) % count]).collect();
+        let normals = smooth_normals(&ends, |k| points[k]);
+        let sides = ends.iter().zip(normals).map(|(&[k, l], normals)| {
+            let ends = [points[k], points[l]];
+            let Some(normals) = normals else {
+                return Side { ends, shape: Shape::Line([0.0, 1.0]) };
+            };
+            let curve = SmoothEdge { ends, normals, curved: true };
+            let (middle, along) = (curve.at(0.5).0, unit(ends[1] - ends[0]));
+            let half = length(ends[1] - ends[0]) / 2.0;
+            // How far the arc is to the left of its chord; around a centre on the left it is to the right.
+            let rise = (middle - (ends[0] + ends[1]) / 2.0).dot(&left_of(along));
+            if rise.abs() <= ROUNDED * half {
+                return Side { ends, shape: Shape::Line([0.0, 1.0]) };
+            }
+            let to_centre = (rise * rise - half * half) / (2.0 * rise);
+            let center = (ends[0] + ends[1]) / 2.0 + left_of(along) * to_centre;
+            Side { ends, shape: Shape::Arc(center, rise < 0.0) }
+        });
+        Ok(Path::of(sides.collect(), closed))
+    }
+
     /// The line of these sides, which follow each other; an open one with straight sides beyond its ends.
     fn of(mut sides: Vec<Side>, closed: bool) -> Self {
         let largest = |p: Vector2<f64>| p.x.abs().max(p.y.abs());
@@ -210,6 +245,45 @@ impl Path {
             _ => None,
         }
     }
+}
+
+/// The points of edges in a row, along the first of them, and whether the last one joins the first.
+fn chained(edges: &[[[f64; 2]; 2]]) -> Result<(Vec<Vector2<f64>>, bool), PathError> {
+    let key = |place: [f64; 2]| place.map(|c| (c + 0.0).to_bits());
+    let mut at: BTreeMap<[u64; 2], Vec<usize>> = BTreeMap::new();
+    for (e, ends) in edges.iter().enumerate() {
+        ends.iter().for_each(|&end| at.entry(key(end)).or_default().push(e));
+    }
+    let not_one = |place: [f64; 2]| PathError::NotOne { place };
+    if let Some(&ends) = at.values().find(|of| of.len() > 2).and_then(|of| edges.get(of[0])) {
+        return Err(not_one(ends[0]));
+    }
+    let &[start, second] = edges.first().ok_or(PathError::Points { count: 0 })?;
+    let mut used = vec![false; edges.len()];
+    used[0] = true;
+    let mut go = |from: [f64; 2]| {
+        let (mut at_end, mut places) = (from, Vec::new());
+        while let Some(&e) = at.get(&key(at_end)).into_iter().flatten().find(|&&e| !used[e]) {
+            used[e] = true;
+            let [a, b] = edges[e];
+            at_end = if key(a) == key(at_end) { b } else { a };
+            places.push(at_end);
+        }
+        places
+    };
+    let (ahead, mut behind) = (go(second), go(start));
+    if let Some(e) = used.iter().position(|used| !used) {
+        return Err(not_one(edges[e][0]));
+    }
+    behind.reverse();
+    let mut places: Vec<[f64; 2]> =
+        behind.into_iter().chain([start, second]).chain(ahead).collect();
+    let closed =
+        places.len() > 2 && places.first().map(|p| key(*p)) == places.last().map(|p| key(*p));
+    if closed {
+        places.pop();
+    }
+    Ok((places.into_iter().map(Vector2::from).collect(), closed))
 }
 
 impl Side {
@@ -333,6 +407,35 @@ mod tests {
             let x = [2.0 + 3.0 * angle.cos(), 2.0 + 3.0 * angle.sin()];
             assert_abs_diff_eq!(seen(&path, x).0, -1.0, epsilon = ROUNDING);
         }
+    }
+
+    #[test]
+    fn edges_between_points_of_a_circle_are_arcs_of_it() {
+        // Three quarters of a circle of radius 2 around (1, 0), to the left, in an order of their own.
+        let at = |k: usize| {
+            let angle = 1.5 * PI * k as f64 / 30.0;
+            [1.0 + 2.0 * angle.cos(), 2.0 * angle.sin()]
+        };
+        let mut edges: Vec<[[f64; 2]; 2]> = (0..30).map(|k| [at(k), at(k + 1)]).collect();
+        edges.swap(3, 17);
+        edges[5].reverse();
+        let path = Path::through(&edges).unwrap();
+        for angle in [0.1_f64, 1.7, 3.3, 4.6] {
+            for r in [0.7, 2.0, 2.5] {
+                let (left, growth) = seen(&path, [1.0 + r * angle.cos(), r * angle.sin()]);
+                assert_abs_diff_eq!(left, 2.0 - r, epsilon = 10.0 * ROUNDING);
+                let inwards = [-angle.cos(), -angle.sin()];
+                assert_abs_diff_eq!(&growth[..], &inwards[..], epsilon = 10.0 * ROUNDING);
+            }
+        }
+        // Control: the polygon is inside by up to h^2 / 8 R.
+        let points: Vec<[f64; 2]> = (0..=30).map(at).collect();
+        let polygon = Path::new(&points, &[]).unwrap();
+        let middle = 1.5 * PI / 60.0;
+        let x = [1.0 + 2.0 * middle.cos(), 2.0 * middle.sin()];
+        assert!(seen(&polygon, x).0 < -5e-3 && seen(&path, x).0.abs() < 1e-13);
+        let error = Path::through(&[edges[0], edges[9]]).unwrap_err().to_string();
+        assert!(error.starts_with("the edges are not one line: at ("), "{error}");
     }
 
     #[test]

@@ -170,12 +170,16 @@ impl Case {
         parse(Source { file, text, settings, functions: &[] }, None)
     }
 
-    /// The pairs of boundaries that the case with this text has, by which its mesh is checked.
+    /// The pairs of boundaries that the case with this text has, by which its mesh is checked; `functions` as in [`Case::on_mesh`].
     ///
     /// # Errors
     /// As [`Case::parse`].
-    pub fn pairs(file: &Path, text: &str) -> Result<Vec<Pair>, FileError> {
-        let source = Source { file, text, settings: &[], functions: &[] };
+    pub fn pairs(
+        file: &Path,
+        text: &str,
+        functions: &[SharedFunction],
+    ) -> Result<Vec<Pair>, FileError> {
+        let source = Source { file, text, settings: &[], functions };
         let entries = source.entries(&[])?;
         Ok(pairs::of_boundaries(&pairs::read_pairs(&Table::whole(source, &entries))?))
     }
@@ -257,8 +261,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
         return Err(pair.at.found("a pair beside [exact]", "the contact of the exact solution"));
     }
     let pairs = pairs::on_mesh(root, declared, &mesh)?;
-    let (conditions, kinds) =
-        read_boundaries(root, solution.as_ref(), &mesh, thickness, !pairs.is_empty())?;
+    let (conditions, kinds) = read_boundaries(root, solution.as_ref(), &mesh, thickness, &pairs)?;
     let points = read_points(root, &mesh)?;
     let adapt = root.optional_section("adapt", |table| read_target(table, &conditions))?;
     let asked = root.optional_section("certify", |table| read_quantities(table, &conditions))?;

@@ -4,9 +4,8 @@
 use super::case::{Case, Measure};
 use super::result::{GammaChoice, MeshSizes};
 use super::summary::{self, Lines, QuantityFormat};
-use crate::fem::contact_line::ContactLine;
 use crate::fem::loads::{self, Resultants};
-use crate::fem::{BoundaryEdge, Condition, Degree, Mesh, Space};
+use crate::fem::{BoundaryEdge, Condition, ContactLine, Degree, Mesh, Problem, Space};
 use crate::quote::{self, quoted};
 use crate::solve::{ContactQuadrature, Outline};
 
@@ -69,12 +68,19 @@ fn boundaries(case: &Case, lines: &mut Lines) {
     let shown = QuantityFormat { units: case.units.clone(), thickness: case.thickness, no_force };
     let named: Vec<&str> = mesh.boundary_names().collect();
     // Those with a condition first.
-    let (used, free): (Vec<&str>, Vec<&str>) =
-        named.iter().partition(|name| problem.conditions.contains_key(**name));
+    let (used, free): (Vec<&str>, Vec<&str>) = named.iter().partition(|name| {
+        problem.conditions.contains_key(**name) || !partners(problem, name).is_empty()
+    });
     let said = |name: &str| {
         let said = match problem.conditions.get(name) {
             Some(condition) => of_condition(condition, name, &loads, contact.as_ref(), &shown),
-            None => "nothing is prescribed".to_owned(),
+            None => match partners(problem, name) {
+                partners if partners.is_empty() => "nothing is prescribed".to_owned(),
+                partners => {
+                    let gap = gap(name, contact.as_ref(), &shown);
+                    format!("contact with {}{gap}", quote::listed(&partners, "and"))
+                }
+            },
         };
         format!("{}: {said}{}", quote::cut(name), length(mesh, name, &shown))
     };
@@ -95,6 +101,16 @@ fn boundaries(case: &Case, lines: &mut Lines) {
     if loads.body != [0.0; 2] {
         lines.line("body", format!("total load {}", force(loads.body, &shown)));
     }
+}
+
+/// The boundaries that make pairs with this one.
+fn partners<'p>(problem: &'p Problem, name: &str) -> Vec<&'p str> {
+    let partner = |[first, second]: &'p [String; 2]| match (first == name, second == name) {
+        (true, _) => Some(&**second),
+        (_, true) => Some(&**first),
+        _ => None,
+    };
+    problem.pairs.iter().filter_map(|pair| partner(&pair.boundaries)).collect()
 }
 
 /// The edges of the boundary that have no name.
@@ -166,9 +182,9 @@ fn of_condition(
 /// The least and the largest initial gap of a contact boundary, and where the least is.
 fn gap(name: &str, contact: Option<&ContactLine>, shown: &QuantityFormat) -> String {
     let pieces = contact.into_iter().flat_map(ContactLine::pieces);
-    let of_boundary = pieces.filter(|piece| &*piece.first().boundary == name);
-    let gaps = of_boundary.flat_map(|piece| piece.nodes.iter().map(|node| (node.gap, node.place)));
-    let gaps: Vec<(f64, [f64; 2])> = gaps.collect();
+    let own = pieces.filter(|piece| piece.stretches.iter().any(|side| &*side.boundary == name));
+    let gaps: Vec<(f64, [f64; 2])> =
+        own.flat_map(|piece| piece.nodes.iter().map(|node| (node.gap, node.place))).collect();
     let least = gaps.iter().min_by(|a, b| a.0.total_cmp(&b.0));
     let largest = gaps.iter().max_by(|a, b| a.0.total_cmp(&b.0));
     let (Some(&(least, at)), Some(&(largest, _))) = (least, largest) else { return String::new() };

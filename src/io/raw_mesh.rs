@@ -335,7 +335,7 @@ impl RawMesh {
     }
 
     /// Gives the elements on nodes that lie together the first of these nodes, and leaves out what loses an edge by it. Nodes
-    /// that no triangle uses stay as they are. The two boundaries of a pair stay apart.
+    /// that no triangle uses stay as they are, and the two boundaries of a pair stay apart.
     fn merge_nodes(&mut self, share: f64, pairs: &[Pair]) {
         let on_sides: Vec<[HashSet<usize>; 2]> = pairs
             .iter()
@@ -368,11 +368,10 @@ impl RawMesh {
         triangles.retain(|&Element { nodes: [a, b, c], .. }| a != b && b != c && c != a);
     }
 
-    /// The nodes on the named curve.
+    /// The nodes on the curves of this name.
     fn nodes_on(&self, name: &str) -> HashSet<usize> {
-        let is_named = |line: &&Element<2>| {
-            names_of(&self.names[1], line.entity).iter().any(|of_line| of_line == name)
-        };
+        let is_named =
+            |line: &&Element<2>| names_of(&self.names[1], line.entity).iter().any(|of| of == name);
         self.elements.lines.iter().filter(is_named).flat_map(|line| line.nodes).collect()
     }
 
@@ -394,12 +393,14 @@ impl RawMesh {
 
         let mut parts: BTreeMap<String, Vec<[usize; 2]>> = empty(&names[1]);
         let mut faults = BTreeMap::new();
+        let mut curves: BTreeMap<String, Vec<[[f64; 2]; 2]>> = BTreeMap::new();
         for line in &lines {
             for name in names_of(&names[1], line.entity) {
                 if is_known(line, &vertex_of) {
                     parts.entry(name.clone()).or_default().push(line.nodes.map(|n| vertex_of[&n]));
                 } else {
                     let ends = line.nodes.map(|n| place.get(&n).copied().unwrap_or_default());
+                    curves.entry(name.clone()).or_default().push(ends);
                     let fault = MeshError::NoSuchEdge { boundary: name.clone(), ends };
                     faults.entry(name.clone()).or_insert(fault);
                 }
@@ -428,7 +429,7 @@ impl RawMesh {
         let places = kept.iter().map(|node| plane_place(node.place)).collect();
         Mesh::with_pairs(places, corners, parts, pairs)
             .and_then(|mesh| mesh.with_names(surfaces, named_points))
-            .map(|mesh| mesh.with_faults(faults))
+            .map(|mesh| mesh.with_faults(faults).with_curves(curves))
             .map_err(|error| {
                 let error = error.renumbered(|vertex| kept[vertex].tag, |t| triangles[t].tag);
                 noted(error, note)

@@ -44,6 +44,8 @@ pub enum MeshError {
         quoted(&surfaces[0], '\''), quoted(&surfaces[1], '\'')
     )]
     NoCommonEdge { surfaces: [String; 2] },
+    #[error("no curve beside the body is named {}; this mesh has: {known}", quoted(name, '\''))]
+    NoSuchCurve { name: String, known: String },
     #[error(
         "a boundary named {} is made between two surfaces, and the mesh has one already; expected another name for that",
         quoted(name, '\'')
@@ -159,6 +161,7 @@ impl MeshError {
             | NoSuchBoundary { .. }
             | NoCommonEdge { .. }
             | NameOfSplit { .. }
+            | NoSuchCurve { .. }
             | NoSuchSurface { .. }
             | NoSuchPoint { .. }
             | Size { .. }

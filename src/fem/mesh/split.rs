@@ -1,6 +1,6 @@
 //! A mesh split along the curve between two of its surfaces: each keeps vertices of its own there, and a boundary.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::{BoundaryEdge, Mesh, MeshError};
@@ -58,16 +58,18 @@ impl Mesh {
         );
         let mut vertices = self.vertices().to_vec();
         let mut split = triangles.to_vec();
-        let mut vertex_of = std::collections::BTreeMap::new();
-        let mut taken = BTreeSet::new();
+        let mut vertex_of = BTreeMap::new();
+        let mut copies: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (t, corners) in triangles.iter().enumerate() {
             for (k, vertex) in corners.iter().enumerate().filter(|(_, v)| on_cut.contains(v)) {
                 split[t][k] = *vertex_of.entry(group[3 * t + k]).or_insert_with(|| {
-                    if taken.insert(*vertex) {
-                        return *vertex;
+                    let copies = copies.entry(*vertex).or_default();
+                    let copy = if copies.is_empty() { *vertex } else { vertices.len() };
+                    if copy == vertices.len() {
+                        vertices.push(vertices[*vertex]);
                     }
-                    vertices.push(vertices[*vertex]);
-                    vertices.len() - 1
+                    copies.push(copy);
+                    copy
                 });
             }
         }
@@ -84,6 +86,7 @@ impl Mesh {
         // The two sides of the cut lie on each other; all else lies where it did.
         let mut mesh = Mesh::of_edges(vertices, split, named, |_, _| true)?;
         let made = Arc::make_mut(&mut mesh.topology);
+        made.curves.clone_from(&topology.curves);
         made.faults.clone_from(&topology.faults);
         let places: Vec<[[f64; 2]; 2]> =
             cuts.iter().map(|[a, _]| self.places_of_ends(*a)).collect();
@@ -93,7 +96,13 @@ impl Mesh {
             }
             _ => true,
         });
-        mesh.with_names(topology.surfaces.clone(), topology.points.clone())
+        // A point that was one and is several now has no meaning; what asks for it is told so.
+        let all = |members: &Vec<usize>| {
+            let several = members.iter().flat_map(|v| copies.get(v).cloned().unwrap_or(vec![*v]));
+            several.collect()
+        };
+        let points = topology.points.iter().map(|(name, members)| (name.clone(), all(members)));
+        mesh.with_names(topology.surfaces.clone(), points.collect())
     }
 }
 
@@ -104,8 +113,6 @@ pub fn split_names([first, second]: &[String; 2]) -> [String; 2] {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
     use super::*;
     use crate::fem::rigid::connected_by_edges;
     use crate::fem::{Diagonal, Rectangle};

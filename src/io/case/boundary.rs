@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::body::constant;
 use super::exact::read_kind;
 use super::table::{Spot, Table, Value};
-use crate::fem::{Condition, Hand, Mesh, Obstacle, Path, PointSupport, SharedFunction, Side};
+use crate::fem::{Condition, Hand, Mesh, Obstacle, Pair, Path, PointSupport, SharedFunction, Side};
 use crate::io::input::FileError;
 use crate::quote::{listed, names, quoted};
 use crate::study::Exact;
@@ -18,13 +18,13 @@ type Obstacles<'s> = BTreeMap<&'s str, (Spot<'s>, Obstacle)>;
 type Boundaries = (BTreeMap<String, Condition>, BTreeMap<String, Kind>);
 
 /// Reads the conditions on the boundaries. A whole force acts on the length of its boundary times the thickness, which is 1 if
-/// it is not given. `has_pairs`: contact is between boundaries of the mesh, and need not be with an obstacle.
+/// it is not given. Boundaries of `pairs` have no condition.
 pub(super) fn read_boundaries(
     root: &Table,
     solution: Option<&Exact>,
     mesh: &Mesh,
     thickness: Option<f64>,
-    has_pairs: bool,
+    pairs: &[Pair],
 ) -> Result<Boundaries, FileError> {
     let expected = match solution {
         None => {
@@ -32,13 +32,15 @@ pub(super) fn read_boundaries(
         }
         Some(_) => "one boundary with contact, such as bottom = \"contact\"",
     };
-    let obstacles = read_obstacles(root)?;
+    let obstacles = read_obstacles(root, mesh)?;
     let all = match root.section("boundary")? {
-        None if has_pairs && obstacles.is_empty() => return Ok(Boundaries::default()),
+        None if !pairs.is_empty() && obstacles.is_empty() => return Ok(Boundaries::default()),
         _ => root.required_section("boundary", expected)?,
     };
     let (mut conditions, mut kinds) = (BTreeMap::new(), BTreeMap::new());
-    for key in all.keys() {
+    let is_of_pair =
+        |key: &&str| pairs.iter().any(|pair| pair.boundaries.iter().any(|of| of == key));
+    for key in all.keys().filter(|key| !is_of_pair(key)) {
         let at = all.under_header(key);
         let edges = mesh.edges_of(key).map_err(|error| at.mesh(error))?;
         if edges.is_empty() {
@@ -61,7 +63,7 @@ pub(super) fn read_boundaries(
         conditions.insert(key.to_owned(), condition);
     }
     mesh.check_apart(conditions.keys().map(String::as_str)).map_err(|error| all.at.mesh(error))?;
-    if !has_pairs && !conditions.values().any(Condition::is_contact) {
+    if pairs.is_empty() && !conditions.values().any(Condition::is_contact) {
         return Err(all.at.found("no contact", expected));
     }
     let is_used = |name: &str| {
@@ -177,27 +179,33 @@ fn read_contact(value: &Value, obstacles: &Obstacles) -> Result<Condition, FileE
     Ok(Condition::Obstacle(name.to_owned(), found.clone()))
 }
 
-fn read_obstacles<'s>(root: &Table<'s>) -> Result<Obstacles<'s>, FileError> {
+fn read_obstacles<'s>(root: &Table<'s>, mesh: &Mesh) -> Result<Obstacles<'s>, FileError> {
     let mut obstacles = BTreeMap::new();
     let Some(all) = root.section("obstacle")? else { return Ok(obstacles) };
     for key in all.keys() {
-        let obstacle = read_obstacle(&all.subsection(key)?)?;
+        let obstacle = read_obstacle(&all.subsection(key)?, mesh)?;
         obstacles.insert(key, (all.under_header(key), obstacle));
     }
     Ok(obstacles)
 }
 
-fn read_obstacle(table: &Table) -> Result<Obstacle, FileError> {
-    const SHAPES: [&str; 4] = ["plane", "circle", "points", "distance"];
-    table.only(&["plane", "circle", "points", "radius", "side", "distance"])?;
+fn read_obstacle(table: &Table, mesh: &Mesh) -> Result<Obstacle, FileError> {
+    const SHAPES: [&str; 5] = ["plane", "circle", "points", "curve", "distance"];
+    table.only(&["plane", "circle", "points", "curve", "radius", "side", "distance"])?;
     let &[shape] = table.given(&SHAPES).as_slice() else {
         return Err(table.combination(&SHAPES, &format!("either {}", listed(&SHAPES, "or"))));
     };
     if shape == "points" {
         return read_path(table);
     }
-    if let [beside, ..] = table.given(&["radius", "side"])[..] {
-        return Err(table.combination(&[shape, beside], &format!("{beside} beside points only")));
+    if table.get("radius").is_some() {
+        return Err(table.combination(&[shape, "radius"], "radius beside points only"));
+    }
+    if shape == "curve" {
+        return read_curve(table, mesh);
+    }
+    if table.get("side").is_some() {
+        return Err(table.combination(&[shape, "side"], "side beside points and curve only"));
     }
     let shape = table.require(shape, "a shape")?;
     if table.get("distance").is_some() {
@@ -234,6 +242,15 @@ fn read_path(table: &Table) -> Result<Obstacle, FileError> {
         Err(_) => Ok(vec![not_negative(radius)?]),
     })?;
     let path = Path::new(&points, &radii.unwrap_or_default());
+    let path = path.map_err(|error| value.at.wrong(format!("{}: {error}", value.at.name)))?;
+    Ok(Obstacle::Path { path: Arc::new(path), body: read_side(table)? })
+}
+
+/// A named curve of the mesh that bounds no body.
+fn read_curve(table: &Table, mesh: &Mesh) -> Result<Obstacle, FileError> {
+    let value = table.require("curve", "the name of a curve")?;
+    let edges = mesh.curve(value.text()?).map_err(|error| value.at.mesh(error))?;
+    let path = Path::through(edges);
     let path = path.map_err(|error| value.at.wrong(format!("{}: {error}", value.at.name)))?;
     Ok(Obstacle::Path { path: Arc::new(path), body: read_side(table)? })
 }

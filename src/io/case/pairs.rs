@@ -90,7 +90,13 @@ pub(super) fn on_mesh(
                 let found = format!("no edge on the boundary {}", quoted(name, '\''));
                 return Err(at.found(&found, "at least one"));
             }
-            if let Some(conditions) = conditions.as_ref().filter(|all| all.get(name).is_some()) {
+            let has_condition = |all: &&Table| {
+                // A table that says where the boundary is, and no more, is no condition.
+                let only_place =
+                    |value: Value| value.table().is_ok_and(|table| table.keys().eq(["where"]));
+                all.get(name).is_some_and(|value| !only_place(value))
+            };
+            if let Some(conditions) = conditions.as_ref().filter(has_condition) {
                 let expected =
                     format!("nothing for {}, whose contact is that of its [[pair]]", key(name));
                 return Err(conditions.under_header(name).found("a condition", &expected));
