@@ -27,6 +27,7 @@ mod gmsh_live;
 mod held;
 mod method;
 mod pair_cases;
+mod pairs;
 mod parts;
 mod patch;
 mod peaks;
