@@ -8,6 +8,7 @@ mod resolution;
 
 use super::numbers::short;
 use crate::fem::contact_line::Gamma;
+use crate::fem::piece::{Piece, Stretch};
 use crate::fem::tree::Bounds;
 use crate::fem::{Degree, Problem};
 use crate::quote;
@@ -25,6 +26,9 @@ const NO_LENGTH: f64 = 1e-9;
 
 /// A triangle whose limit of gamma0 is this many times below the median of the line spoils the line.
 const SLIVER: f64 = 8.0;
+
+/// The ratio of shear moduli from which one gamma0 for two bodies is far from what each of them allows.
+const UNLIKE: f64 = 10.0;
 
 /// Units for labels, and what is known beside the solution.
 #[derive(Clone, Debug, Default)]
@@ -54,6 +58,7 @@ pub(super) fn remarks(problem: &Problem, solution: &Solution, words: &Words) -> 
     remarks.extend(model::locking(problem, solution.degree));
     remarks.extend(model::unbounded_peaks(problem, solution, words));
     remarks.extend(sliver(solution));
+    remarks.extend(unlike_bodies(problem, solution));
     let strain = solution.largest_strain;
     if strain > LARGE_STRAIN {
         remarks.push(format!(
@@ -108,6 +113,24 @@ fn sliver(solution: &Solution) -> Option<String> {
             "the triangle at the contact edge from ({}, {}) to ({}, {}) sets gamma0 for the whole line, {:.0} times below what half of its triangles allow; method.kappa = 0.5 lets each edge have its own",
             short(a, 3), short(b, 3), short(c, 3), short(d, 3), coercivity.constant / coercivity.typical
         )
+    })
+}
+
+/// Says that one gamma0 is too stiff for the softer of two bodies that touch each other, if their moduli differ by more than
+/// [`UNLIKE`].
+fn unlike_bodies(problem: &Problem, solution: &Solution) -> Option<String> {
+    let modulus = |stretch: &Stretch| problem.material.of(stretch.edge.triangle).mu();
+    let unlike = |piece: &Piece| match &piece.geometry.stretches[..] {
+        [first, second] => {
+            let [a, b] = [modulus(first), modulus(second)];
+            a > UNLIKE * b || b > UNLIKE * a
+        }
+        _ => false,
+    };
+    let uniform = matches!(solution.gamma.gamma, Gamma::Uniform(_));
+    (uniform && solution.pieces.iter().any(unlike)).then(|| {
+        "gamma0 is one number for a stiff and a soft body, whose springs of contact become too stiff for the soft one; method.kappa = 0.5 gives each its own"
+            .to_owned()
     })
 }
 

@@ -109,8 +109,10 @@ fn locking_ratio(material: &Material<f64>) -> Option<String> {
 pub(super) fn overlap(problem: &Problem, words: &Words) -> Option<String> {
     let space = Space::new(&problem.mesh, Degree::One);
     let line = ContactLine::new(problem, &space).ok()?;
+    // Bodies of a pair may overlap on purpose.
+    let to_obstacles = line.pieces().filter(|piece| piece.stretches.len() == 1);
     let points =
-        line.pieces().flat_map(|piece| piece.nodes.iter().map(move |n| (n.gap, n.place, piece)));
+        to_obstacles.flat_map(|piece| piece.nodes.iter().map(move |n| (n.gap, n.place, piece)));
     let least = points.min_by(|a, b| a.0.total_cmp(&b.0));
     let (gap, deepest, piece) = least.filter(|p| p.0 < -NO_LENGTH * size(problem))?;
     let question = match named_obstacle(problem, &piece.first().boundary) {
