@@ -7,7 +7,7 @@ use signorini::fem::{
 };
 use signorini::kernel::{Material, Plane};
 use signorini::solve::{
-    Course, Degree, RouteName, Settings, Solution, SolveError, solve, solve_along,
+    Course, Degree, Method, RouteName, Settings, Solution, SolveError, solve, solve_along,
 };
 
 use crate::common::*;
@@ -273,4 +273,34 @@ fn an_edge_that_faces_away_is_refused_inside_an_obstacle_and_not_where_it_only_b
     // The first edge of the upper half goes from height 0 to 1/2.
     assert_eq!(contact(0.2), Ok(12));
     assert!(matches!(contact(0.6), Err(DataError::WrongSide { .. })), "{:?}", contact(0.6));
+}
+
+/// A whole force in code and in a case file, beside a component that is held, is the force that the floor gives back.
+#[test]
+fn a_whole_force_is_spread_over_its_boundary_also_beside_a_component_that_is_held() {
+    let mesh = unit_square(4).mesh().unwrap();
+    let force = Condition::force([0.0, -3.0], &mesh, "top").unwrap();
+    let unknown = Condition::force([0.0, -3.0], &mesh, "roof").err().unwrap().to_string();
+    assert!(unknown.starts_with("no boundary named 'roof'"), "{unknown}");
+    let problem = Problem::of(mesh, unit_material())
+        .with("top", force)
+        .with("left", Condition::normal(|_| 0.0))
+        .with("bottom", Condition::contact(|_| 0.0));
+    let (in_code, _) = solve(&problem, &Method::default(), &Settings::default()).unwrap();
+    let text = "mesh.rectangle = { width = 1, height = 1, nx = 4, ny = 4 }
+        material = { lambda = 1, mu = 1 }
+        boundary.top = { displacement = [0, \"free\"], force = [0, -3] }
+        boundary.bottom.contact = {}";
+    let case = case_of(text, &[]);
+    let (in_case, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
+    for solution in [&in_code, &in_case] {
+        // The tolerance of the solver is 1e-10 of the loads.
+        let force = solution.quantities.contact_force;
+        assert!((force - 3.0).abs() < 1e-9, "{force}");
+    }
+    assert!(in_code.quantities.reactions["left"][0].abs() < 1e-9);
+    assert!(
+        in_code.displacement != in_case.displacement,
+        "control: the top is held in one of them"
+    );
 }
