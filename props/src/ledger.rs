@@ -29,7 +29,7 @@ const BODY: &str = "\
 ## What a check says
 
 A statement is a Rust function, generic over the number type, that compares the kernel's own functions with the paper's formulas,
-or is a step of the paper's algebra. It answers *holds*, with the class of its data (each must be reached), *vacuous* (the hypothesis
+or is a step of the paper's algebra, which calls nothing of the kernel (most of rows 11 and 15). It answers *holds*, with the class of its data (each must be reached), *vacuous* (the hypothesis
 is not met), or *fails*. Other checks assemble on random bodies, solve, or compare doubles with exact numbers. Every row has
 **controls**: planted mistakes, which the same check must reject.
 
