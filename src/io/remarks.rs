@@ -4,6 +4,7 @@ use super::case::Case;
 use super::numbers::short;
 use crate::fem::ContactLine;
 use crate::fem::contact_line::Gamma;
+use crate::fem::piece::Stretch;
 use crate::fem::tree::Bounds;
 use crate::fem::{Degree, Space};
 use crate::quote;
@@ -22,6 +23,9 @@ const NO_OVERLAP: f64 = 1e-9;
 /// A triangle whose limit of gamma0 is this many times below the median of the line spoils the line.
 const SLIVER: f64 = 8.0;
 
+/// The ratio of shear moduli from which one gamma0 for two bodies is far from what each of them allows.
+const UNLIKE: f64 = 10.0;
+
 /// Remarks that a reader should know before the numbers are used.
 pub(super) fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
     let mut remarks = case.remarks.clone();
@@ -33,6 +37,12 @@ pub(super) fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
             "the triangle at the contact edge from ({}, {}) to ({}, {}) sets gamma0 for the whole line, {:.0} times below what half of its triangles allow; method.kappa = 0.5 lets each edge have its own",
             short(a, 3), short(b, 3), short(c, 3), short(d, 3), coercivity.constant / coercivity.typical
         ));
+    }
+    if uniform && unlike_bodies(case, solution) {
+        remarks.push(
+            "gamma0 is one number for a stiff and a soft body, whose springs of contact become too stiff for the soft one; method.kappa = 0.5 gives each its own"
+                .to_owned(),
+        );
     }
     let length = length_unit(case);
     let strain = solution.largest_strain;
@@ -56,6 +66,18 @@ pub(super) fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
     remarks
 }
 
+/// Returns whether two bodies that touch each other have moduli that differ by more than [`UNLIKE`].
+fn unlike_bodies(case: &Case, solution: &Solution) -> bool {
+    let modulus = |stretch: &Stretch| case.problem.material.of(stretch.edge.triangle).mu();
+    solution.pieces.iter().any(|piece| match &piece.geometry.stretches[..] {
+        [first, second] => {
+            let [a, b] = [modulus(first), modulus(second)];
+            a > UNLIKE * b || b > UNLIKE * a
+        }
+        _ => false,
+    })
+}
+
 /// The longer side of the box around the body.
 fn size(case: &Case) -> f64 {
     Bounds::around(case.problem.mesh.vertices().iter().copied()).size()
@@ -70,8 +92,10 @@ fn named_obstacle(case: &Case, boundary: &str) -> Option<String> {
 pub(super) fn overlap(case: &Case) -> Option<String> {
     let space = Space::new(&case.problem.mesh, Degree::One);
     let line = ContactLine::new(&case.problem, &space).ok()?;
+    // Bodies of a pair may overlap on purpose.
+    let to_obstacles = line.pieces().filter(|piece| piece.stretches.len() == 1);
     let points =
-        line.pieces().flat_map(|piece| piece.nodes.iter().map(move |n| (n.gap, n.place, piece)));
+        to_obstacles.flat_map(|piece| piece.nodes.iter().map(move |n| (n.gap, n.place, piece)));
     let least = points.min_by(|a, b| a.0.total_cmp(&b.0));
     let (gap, [x, y], piece) = least.filter(|p| p.0 < -NO_OVERLAP * size(case))?;
     let length = length_unit(case);

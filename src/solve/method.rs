@@ -26,7 +26,7 @@ pub struct Method {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Gamma0 {
-    /// Half of the coercivity limit.
+    /// Half of the coercivity limit; with pairs of bodies on each contact edge half its own, as [`Gamma0::Local`] for 0.5.
     Auto,
     /// This value.
     Value(f64),

@@ -28,6 +28,7 @@ mod held;
 mod meshes;
 mod method;
 mod pair_cases;
+mod pairs;
 mod parts;
 mod patch;
 mod peaks;

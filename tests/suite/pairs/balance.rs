@@ -1,0 +1,158 @@
+//! Forces and moments of the two sides cancel, and the stress that is subtracted is at most kappa times the energy.
+
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
+use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
+
+use super::*;
+use crate::common::{DEGREES, Random};
+
+/// Two blocks with any cells, moduli and places of inner nodes, held at their far sides; of an inner node the place is moved by up to
+/// a fifth of a cell.
+fn drawn(seed: u64, law: Law) -> Problem {
+    let mut random = Random(seed);
+    let [n, m] = [0, 1].map(|_| random.whole(1, 13));
+    let [k, l] = [0, 1].map(|_| random.whole(1, 5));
+    let (ratio, depth) = (random.decades(-3.0, 3.0), random.between(0.0, 0.2));
+    let bend = random.between(-0.1, 0.1);
+    let wobble = |x: f64, y: f64| 0.3 * (7.0 * x + 3.0 * y).sin() * x * (1.0 - x) * y * (1.0 - y);
+    // The interface is y = bend x (1 - x), and the bodies end at y = -1 and 1.
+    let curve = move |x: f64| bend * x * (1.0 - x);
+    let lower = move |[x, t]: [f64; 2]| {
+        let y = -1.0 + (1.0 + curve(x)) * t;
+        [x + wobble(x, t) / n as f64, y]
+    };
+    let upper = move |[x, t]: [f64; 2]| {
+        let y = curve(x) + (1.0 - curve(x)) * t;
+        [x + wobble(t, x) / m as f64, y]
+    };
+    let block =
+        |name, cells, modulus, map| Block { name, cells, material: young(modulus, 0.3), map };
+    bodies(
+        &[block("lower", [n, k], 1.0, &lower), block("upper", [m, l], ratio, &upper)],
+        &[Pair::new("lower.top", "upper.bottom").with_law(law)],
+    )
+    .with("lower.bottom", Condition::clamped())
+    .with("upper.top", Condition::displacement(|_| 0.0, move |[x, _]| -0.02 - depth * x))
+}
+
+const LAWS: [Law; 3] = [Law::Contact, Law::Sliding, Law::Bonded];
+
+#[test]
+fn rigid_motions_of_both_bodies_have_no_jump_so_forces_and_moments_cancel() {
+    for seed in 1..=20 {
+        let problem = drawn(seed, LAWS[seed as usize % 3]);
+        for degree in DEGREES {
+            let d = discretize(&problem, &with_kappa(degree, 0.5)).unwrap();
+            let motions: [fn([f64; 2]) -> [f64; 2]; 3] =
+                [|_| [1.0, 0.0], |_| [0.0, 1.0], |[x, y]| [-y, x]];
+            let mut noticed = false;
+            for motion in motions {
+                let field: Vec<[f64; 2]> = d.space.nodes().iter().map(|&x| motion(x)).collect();
+                for piece in &d.contact {
+                    let along = degree.nodes_per_edge();
+                    let p0 = piece.p0(&field);
+                    // Differences of numbers of size 1, with stresses times gamma that cancel.
+                    assert!(
+                        p0[..along].iter().all(|p| p.abs() <= 1e-13),
+                        "{seed} {degree:?} {p0:?}"
+                    );
+                    // The control: one body that moves alone.
+                    let alone: Vec<[f64; 2]> = d
+                        .space
+                        .nodes()
+                        .iter()
+                        .enumerate()
+                        .map(|(node, &x)| {
+                            if piece.nodes[piece.sides[0].entries.clone()].contains(&node) {
+                                motion(x)
+                            } else {
+                                [0.0; 2]
+                            }
+                        })
+                        .collect();
+                    noticed |= piece.p0(&alone)[..along].iter().any(|p| p.abs() > 1e-3);
+                }
+            }
+            assert!(noticed);
+        }
+    }
+}
+
+#[test]
+fn loads_reactions_and_the_force_of_the_other_body_balance_on_each_body() {
+    for seed in 1..=12 {
+        let problem = drawn(seed, LAWS[seed as usize % 3]);
+        for degree in DEGREES {
+            let s = proved(&problem, &with_kappa(degree, 0.5));
+            let pair = &s.boundaries[0];
+            let force = Vector2::from(pair.resultant);
+            let reaction = |name: &str| Vector2::from(s.quantities.reactions[name]);
+            let moment = |name: &str| s.quantities.reaction_moments[name];
+            // The residual of the solve and the rounding of some hundred forces.
+            let most = 1e-11 * (size(force) + 1e-3);
+            let lower = size(reaction("lower.bottom") + force);
+            let upper = size(reaction("upper.top") - force);
+            let turning = [moment("lower.bottom") + pair.moment, moment("upper.top") - pair.moment];
+            assert!(lower <= most && upper <= most, "{seed} {degree:?}: {lower:e} {upper:e}");
+            let law = LAWS[seed as usize % 3];
+            if law != Law::Bonded {
+                let off = turning.map(f64::abs).into_iter().fold(0.0, f64::max);
+                assert!(off <= 10.0 * most, "{seed} {degree:?}: {turning:?}");
+            }
+        }
+    }
+}
+
+fn dense(lower: &LowerTriangle) -> Mat<f64> {
+    let n = lower.starts.len() - 1;
+    let mut all = Mat::zeros(n, n);
+    for column in 0..n {
+        for at in lower.starts[column]..lower.starts[column + 1] {
+            let row = lower.rows[at];
+            all[(row, column)] = lower.values[at];
+            all[(column, row)] = lower.values[at];
+        }
+    }
+    all
+}
+
+/// The largest eigenvalue of the stress that A subtracts, beside a(., .).
+fn largest_share(d: &Discretization) -> f64 {
+    let neighbours = Neighbours::across(&d.space, &d.contact);
+    let order: Vec<usize> = (0..d.space.nodes().len()).collect();
+    let numbering = Numbering::under(&order, &d.constraints);
+    let stiffness = dense(&matrix::assemble_stiffness(d, &numbering, &neighbours).unwrap());
+    let a = dense(&matrix::assemble(d, &numbering, &neighbours).unwrap());
+    let subtracted = &stiffness - &a;
+    let factor = stiffness.llt(Side::Lower).unwrap();
+    let l = factor.L();
+    let half = l.partial_piv_lu().solve(&subtracted);
+    let both = l.partial_piv_lu().solve(half.transpose());
+    let symmetric =
+        Mat::from_fn(both.nrows(), both.ncols(), |i, j| (both[(i, j)] + both[(j, i)]) / 2.0);
+    let values = symmetric.self_adjoint_eigenvalues(Side::Lower).unwrap();
+    values.into_iter().fold(0.0, f64::max)
+}
+
+#[test]
+fn the_stress_that_is_subtracted_is_at_most_kappa_times_the_energy() {
+    let (mut most, mut doubled): (f64, f64) = (0.0, f64::INFINITY);
+    for seed in 1..=20 {
+        for (law, degree) in LAWS.into_iter().zip([Degree::One, Degree::Two, Degree::Two]) {
+            let problem = drawn(seed, law);
+            let free = Method { allow_noncoercive: true, ..with_kappa(degree, 1.0) };
+            let mut d = discretize(&problem, &free).unwrap();
+            assert!((d.kappa() - 1.0).abs() <= 1e-12);
+            let share = largest_share(&d);
+            most = most.max(share);
+            assert!(share <= 1.0 + 1e-9, "{seed} {law:?} {degree:?}: {share}");
+            // The control: each piece counted twice.
+            let again: Vec<Piece> = d.contact.clone();
+            d.contact.extend(again);
+            doubled = doubled.min(largest_share(&d));
+        }
+    }
+    println!("largest eigenvalue {most}; with all pieces twice at least {doubled}");
+    assert!(most > 0.5 && doubled > 1.0);
+}

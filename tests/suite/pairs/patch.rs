@@ -1,0 +1,223 @@
+//! Exact solutions: uniform stress in blocks whose meshes do not match, 7 cells against 11, is found to rounding.
+
+use super::*;
+use crate::common::DEGREES;
+
+/// What rounding may make of displacements, relative to the largest, in numbers of size 1.
+const ROUNDING: f64 = 1e-12;
+
+const POISSON: f64 = 0.3;
+
+/// A turn about the origin.
+#[derive(Clone, Copy)]
+struct Turn {
+    cos: f64,
+    sin: f64,
+}
+
+impl Turn {
+    fn by(degrees: f64) -> Self {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        // Exactly nothing where there is no turn.
+        Turn { cos, sin }
+    }
+
+    fn of(self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [self.cos * x - self.sin * y, self.sin * x + self.cos * y]
+    }
+
+    fn back(self, v: [f64; 2]) -> [f64; 2] {
+        Turn { sin: -self.sin, ..self }.of(v)
+    }
+}
+
+/// Two unit blocks, 7 and 11 cells wide, one on top of the other, turned.
+fn two_blocks(moduli: [f64; 2], turn: Turn, law: Law) -> Problem {
+    let lower = rectangle([0.0, 0.0], [1.0, 1.0]);
+    let upper = rectangle([0.0, 1.0], [1.0, 2.0]);
+    let [lower, upper]: [Box<dyn Fn([f64; 2]) -> [f64; 2]>; 2] =
+        [Box::new(move |x| turn.of(lower(x))), Box::new(move |x| turn.of(upper(x)))];
+    let block =
+        |name, cells, modulus, map| Block { name, cells, material: young(modulus, POISSON), map };
+    bodies(
+        &[block("lower", [7, 5], moduli[0], &*lower), block("upper", [11, 6], moduli[1], &*upper)],
+        &[Pair::new("lower.top", "upper.bottom").with_law(law)],
+    )
+}
+
+/// The prescribed displacement u . n and the rest free, u . n being the same all along.
+fn along_normal(value: f64) -> Condition {
+    Condition::Support { normal: Some(Arc::new(move |_: [f64; 2]| value)), tangential: None }
+}
+
+/// The uniform compression of 1 along y, as the blocks are before they are turned.
+fn compressed(moduli: [f64; 2], turn: Turn, law: Law) -> (Problem, impl Fn([f64; 2]) -> [f64; 2]) {
+    let strain = move |i: usize| {
+        let factor = (1.0 + POISSON) / moduli[i];
+        [POISSON * factor, -(1.0 - POISSON) * factor]
+    };
+    let exact = move |x: [f64; 2]| {
+        let [x, y] = turn.back(x);
+        let ([ex, ey], [gx, gy]) = (strain(0), strain(1));
+        turn.of(if y <= 1.0 { [ex * x, ey * y] } else { [gx * x, ey + gy * (y - 1.0)] })
+    };
+    let roller = Condition::roller;
+    let problem = two_blocks(moduli, turn, law)
+        .with("lower.bottom", roller())
+        .with("lower.left", roller())
+        .with("upper.left", roller());
+    (problem, exact)
+}
+
+/// How far a solution is from the exact displacement, relative to the largest.
+fn off(
+    problem: &Problem,
+    u: &[[f64; 2]],
+    degree: Degree,
+    exact: impl Fn([f64; 2]) -> [f64; 2],
+) -> f64 {
+    let space = signorini::fem::Space::new(&problem.mesh, degree);
+    let expected: Vec<[f64; 2]> = space
+        .nodes()
+        .iter()
+        .enumerate()
+        .map(|(node, &x)| {
+            // The nodes of both bodies on the interface are in one place; those of the lower body come first.
+            let _ = node;
+            exact(x)
+        })
+        .collect();
+    apart(u, &expected) / largest(&expected)
+}
+
+#[test]
+fn uniform_pressure_is_exact_on_meshes_that_do_not_match() {
+    for (moduli, degrees) in
+        [([1.0, 1.0], 0.0), ([1.0, 1e6], 0.0), ([1e6, 1.0], 37.0), ([1.0, 1.0], 37.0)]
+    {
+        let turn = Turn::by(degrees);
+        let (problem, exact) = compressed(moduli, turn, Law::Contact);
+        let top = exact(turn.of([0.0, 2.0]));
+        let down = turn.back(top)[1];
+        // Held from above: the condensed route; or only by the other body: the assembled one.
+        let held = problem.clone().with("upper.top", along_normal(down));
+        let pressed = problem.with("upper.top", Condition::pressure(|_| 1.0));
+        for degree in DEGREES {
+            for problem in [&held, &pressed] {
+                let s = proved(problem, &method(degree));
+                let error = off(problem, &s.displacement, degree, &exact);
+                // A condition number of 1e6 and more where the moduli differ: rounding of the softer body is that of the stiffer.
+                let most = if moduli[0] == moduli[1] { ROUNDING } else { 100.0 * ROUNDING };
+                assert!(error <= most, "{moduli:?} turned by {degrees}, {degree:?}: {error:e}");
+                let [pair] = &s.boundaries[..] else { panic!("{:?}", s.boundaries) };
+                assert_eq!(pair.partner.as_deref(), Some("upper.bottom"));
+                let expected = turn.of([0.0, -1.0]);
+                let force = apart(&[pair.resultant], &[expected]);
+                assert!(force <= 1e-11, "{:?}", pair.resultant);
+            }
+        }
+    }
+}
+
+#[test]
+fn bodies_that_slide_without_lifting_off_and_glued_ones_are_exact_in_tension() {
+    let turn = Turn::by(0.0);
+    for (law, moduli) in [(Law::Sliding, [1.0, 5.0]), (Law::Bonded, [1.0, 1.0])] {
+        let (problem, exact) = compressed(moduli, turn, law);
+        let stretched = move |x: [f64; 2]| exact(x).map(|c| -c);
+        let up = stretched([0.0, 2.0])[1];
+        let problem = problem.with("upper.top", along_normal(up));
+        for degree in DEGREES {
+            let s = proved(&problem, &method(degree));
+            let error = off(&problem, &s.displacement, degree, &stretched);
+            assert!(error <= ROUNDING, "{law:?} {degree:?}: {error:e}");
+        }
+        // The control: bodies in contact let go.
+        let (loose, _) = compressed(moduli, turn, Law::Contact);
+        let s = proved(&loose.with("upper.top", along_normal(up)), &method(Degree::One));
+        assert_eq!(s.boundaries[0].force, 0.0);
+    }
+}
+
+#[test]
+fn glued_bodies_are_exact_in_shear() {
+    let shear = 0.2;
+    for moduli in [[1.0, 1.0], [1.0, 1e3]] {
+        let mu = moduli.map(|e| e / (2.0 * (1.0 + POISSON)));
+        let exact = move |[_, y]: [f64; 2]| {
+            [
+                if y <= 1.0 {
+                    shear * y / mu[0]
+                } else {
+                    shear / mu[0] + shear * (y - 1.0) / mu[1]
+                },
+                0.0,
+            ]
+        };
+        let side = |sign: f64| Condition::traction(|_| 0.0, move |_| sign * shear);
+        let top = exact([0.0, 2.0])[0];
+        let problem = |law| {
+            two_blocks(moduli, Turn::by(0.0), law)
+                .with("lower.bottom", Condition::clamped())
+                .with("upper.top", Condition::displacement(move |_| top, |_| 0.0))
+                .with("lower.left", side(-1.0))
+                .with("lower.right", side(1.0))
+                .with("upper.left", side(-1.0))
+                .with("upper.right", side(1.0))
+        };
+        for degree in DEGREES {
+            let bonded = problem(Law::Bonded);
+            let s = proved(&bonded, &method(degree));
+            let error = off(&bonded, &s.displacement, degree, exact);
+            assert!(error <= ROUNDING, "{moduli:?} {degree:?}: {error:e}");
+            // The force on the lower body, and nothing along the normal.
+            let [x, y] = s.boundaries[0].resultant;
+            assert!((x - shear).abs() <= 1e-11 && y.abs() <= 1e-11, "{x} {y}");
+        }
+        // The control: bodies that slide carry no shear.
+        let s = proved(&problem(Law::Sliding), &method(Degree::One));
+        assert!(off(&problem(Law::Sliding), &s.displacement, Degree::One, exact) > 1e-2);
+    }
+}
+
+#[test]
+fn control_the_stress_of_the_second_body_with_the_wrong_sign_is_noticed() {
+    let turn = Turn::by(0.0);
+    let (problem, exact) = compressed([1.0, 1.0], turn, Law::Contact);
+    let problem = problem.with("upper.top", along_normal(exact([0.0, 2.0])[1]));
+    for degree in DEGREES {
+        let right = with_planted(&problem, &method(degree), |d| with_stress(d, |_, _| 1.0));
+        assert!(off(&problem, &right.unwrap(), degree, &exact) <= ROUNDING);
+        let turned = |_: &Piece, i: usize| if i == 0 { 1.0 } else { -1.0 };
+        let wrong = with_planted(&problem, &method(degree), |d| with_stress(d, turned));
+        assert!(wrong.is_err() || off(&problem, &wrong.unwrap(), degree, &exact) > 1e-4);
+    }
+}
+
+#[test]
+fn three_blocks_carry_one_force_through_the_middle_one() {
+    let maps = [0.0, 1.0, 2.0].map(|y| rectangle([0.0, y], [1.0, y + 1.0]));
+    let block = |name, cells, map| Block { name, cells, material: young(1.0, POISSON), map };
+    for tilt in [0.0, 0.02] {
+        let problem = bodies(
+            &[
+                block("lower", [7, 4], &maps[0]),
+                block("middle", [11, 4], &maps[1]),
+                block("upper", [9, 4], &maps[2]),
+            ],
+            &[Pair::new("lower.top", "middle.bottom"), Pair::new("upper.bottom", "middle.top")],
+        )
+        .with("lower.bottom", Condition::clamped())
+        .with("upper.top", Condition::displacement(|_| 0.0, move |[x, _]| -0.05 - tilt * x))
+        .with("middle.left", Condition::roller());
+        for degree in DEGREES {
+            let s = proved(&problem, &method(degree));
+            let force = |k: usize| Vector2::from(s.boundaries[k].resultant);
+            // Down on the lower body, up on the upper one: what the middle one feels of both is nothing, but for the roller.
+            let unbalanced = (force(0) + force(1))[1].abs() / s.boundaries[0].force;
+            assert!(unbalanced <= 1e-12, "{degree:?}: {unbalanced:e}");
+            assert!(s.boundaries[0].force > 0.01);
+            assert!(s.newton.iterations() <= 12, "{} steps", s.newton.iterations());
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Pairs at random: flat and curved, any ratio of moduli, matching and not, held by supports or only by the other body. The number
+//! in the environment variable SIGNORINI_PAIRS sets how many are drawn, SIGNORINI_PAIRS_FROM the first seed.
+
+use std::collections::BTreeMap;
+
+use super::*;
+use crate::common::{DEGREES, Random};
+
+fn number_from(variable: &str, default: u64) -> u64 {
+    std::env::var(variable).ok().map_or(default, |text| text.parse().unwrap())
+}
+
+struct Drawn {
+    kind: &'static str,
+    said: String,
+    problem: Problem,
+    method: Method,
+}
+
+/// A lower body on its support and an upper one above it, over an interface y = f(x), with a little room or overlap.
+fn drawn(seed: u64) -> Drawn {
+    let mut random = Random(seed);
+    random.next();
+    let matching = random.one_in(3);
+    let n = random.whole(2, 14);
+    let m = if matching { n } else { random.whole(2, 14) };
+    let rows = [0, 1].map(|_| random.whole(1, 6));
+    let ratio = random.decades(-4.0, 4.0);
+    let curved = random.one_in(2);
+    let bend = if curved { random.between(-0.3, 0.3) } else { 0.0 };
+    let gap = random.between(-0.01, 0.01);
+    let poisson = [0, 1].map(|_| random.between(0.0, 0.45));
+    let size = random.decades(-3.0, 3.0);
+    let [shift_x, shift_y] = [0, 1].map(|_| random.between(-10.0, 10.0));
+    let narrow = if random.one_in(2) { [0.0, 1.0] } else { [0.2, 0.9] };
+    let curve = move |x: f64| bend * x * (1.0 - x);
+    let place = move |[x, y]: [f64; 2]| [size * (x + shift_x), size * (y + shift_y)];
+    let lower = move |[x, t]: [f64; 2]| place([x, -1.0 + (1.0 + curve(x)) * t]);
+    let upper = move |[s, t]: [f64; 2]| {
+        let x = narrow[0] + (narrow[1] - narrow[0]) * s;
+        let foot = curve(x) + gap;
+        place([x, foot + (1.0 - foot) * t])
+    };
+    let degree = DEGREES[random.below(2)];
+    let law =
+        [Law::Contact, Law::Contact, Law::Contact, Law::Sliding, Law::Bonded][random.below(5)];
+    let reach = 0.3 * size;
+    let block = |name, cells, modulus, poisson, map| Block {
+        name,
+        cells,
+        material: young(modulus, poisson),
+        map,
+    };
+    let problem = bodies(
+        &[
+            block("lower", [n, rows[0]], 1.0, poisson[0], &lower),
+            block("upper", [m, rows[1]], ratio, poisson[1], &upper),
+        ],
+        &[Pair::new("lower.top", "upper.bottom").with_law(law).with_reach(reach)],
+    )
+    .with("lower.bottom", Condition::clamped());
+    let pressure = 0.01 * ratio.min(1.0);
+    let tilt = random.between(-0.3, 0.3);
+    let (low, wide) = (size * (narrow[0] + shift_x), size * (narrow[1] - narrow[0]));
+    let load = move |[x, _]: [f64; 2]| -pressure * (1.0 + tilt * ((x - low) / wide - 0.5));
+    let (kind, problem) = match random.below(3) {
+        0 => {
+            let down = size * random.between(0.0, 0.02);
+            let held = Condition::displacement(|_| 0.0, move |_| -down);
+            ("held", problem.with("upper.top", held))
+        }
+        1 => {
+            let pressed = Condition::traction(|_| 0.0, load);
+            ("guided", problem.with("upper.top", pressed).with("upper.left", Condition::roller()))
+        }
+        _ => {
+            let pressed = Condition::traction(|_| 0.0, load);
+            ("free", problem.with("upper.top", pressed))
+        }
+    };
+    let said = format!(
+        "{n}:{m} x {rows:?}, {degree:?}, {law:?}, E2/E1 = {ratio:.1e}, bend {bend:.2}, gap {gap:.3}, size {size:.1e}"
+    );
+    Drawn { kind, said, problem, method: method(degree) }
+}
+
+#[test]
+fn ninety_nine_of_a_hundred_pairs_are_proved() {
+    let (from, count) =
+        (number_from("SIGNORINI_PAIRS_FROM", 1), number_from("SIGNORINI_PAIRS", 100));
+    let mut table: BTreeMap<(&str, &str), u64> = BTreeMap::new();
+    let (mut steps, mut missed) = (Vec::new(), 0);
+    for seed in from..from + count {
+        let Drawn { kind, said, problem, method } = drawn(seed);
+        let outcome = match solve(&problem, &method, &Settings::default()) {
+            Ok((s, _)) if s.verdict.name() == "proved" => {
+                steps.push(s.newton.iterations());
+                "proved"
+            }
+            Ok((s, _)) => {
+                println!("seed {seed}: {kind}: {:?} [{said}]", s.verdict);
+                "not proved"
+            }
+            // A body on the verge of tipping, or with a motion that nothing stops, is refused with its motion.
+            Err(SolveError::Data(error)) => {
+                println!("seed {seed}: {kind}: {error} [{said}]");
+                "refused"
+            }
+            Err(error) => {
+                println!("seed {seed}: {kind}: {error} [{said}]");
+                "not solved"
+            }
+        };
+        missed += u64::from(outcome == "not proved" || outcome == "not solved");
+        *table.entry((kind, outcome)).or_default() += 1;
+    }
+    for ((kind, outcome), number) in &table {
+        println!("{kind:7} {number:5} {outcome}");
+    }
+    steps.sort_unstable();
+    println!("steps: median {}, most {}", steps[steps.len() / 2], steps[steps.len() - 1]);
+    let refused: u64 = table.iter().filter(|((_, o), _)| *o == "refused").map(|(_, n)| n).sum();
+    assert!(100 * missed <= count, "{missed} of {count} are not proved");
+    // What is drawn is meant to be a problem.
+    assert!(3 * refused <= count, "{refused} of {count} are refused");
+}
+
+#[test]
+fn two_bodies_that_nothing_holds_are_said_to_move_together() {
+    let (lower, upper) = (rectangle([0.0, 0.0], [1.0, 1.0]), rectangle([0.0, 1.0], [1.0, 2.0]));
+    let block = |name, n, map| Block { name, cells: [n, n], material: young(1.0, 0.3), map };
+    let problem = bodies(
+        &[block("lower", 3, &lower), block("upper", 4, &upper)],
+        &[Pair::new("lower.top", "upper.bottom")],
+    )
+    .with("lower.bottom", Condition::pressure(|_| 1.0))
+    .with("upper.top", Condition::pressure(|_| 1.0));
+    let error = solve(&problem, &method(Degree::One), &Settings::default()).unwrap_err();
+    let said = error.to_string();
+    assert!(said.contains("both bodies move together"), "{said}");
+    // The control: with the lower one held, the upper one slides, and the pressure holds it otherwise.
+    let held = problem.with("lower.bottom", Condition::clamped());
+    let s = proved(&held, &method(Degree::One));
+    assert_eq!(s.plays.len(), 1, "{:?}", s.plays);
+}
