@@ -175,7 +175,7 @@ fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines
     parts.sort_by(|a, b| quote::natural(&a.boundary, &b.boundary));
     for (i, part) in parts.into_iter().enumerate() {
         let name = if i == 0 { "contact" } else { "" };
-        let boundary = quote::cut(&part.boundary);
+        let boundary = quote::cut(&part.label());
         if !r.is_in_contact(part) {
             lines.line(name, format!("{boundary}: no contact"));
             continue;
@@ -208,6 +208,10 @@ fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines
             if part.penetration.is_finite() {
                 let depth = shown.number(part.penetration, Measure::Length);
                 words += &format!(", penetration {depth}{}", at(part.penetration_at));
+            }
+            if let Some(opening) = part.opening.filter(|opening| opening.is_finite()) {
+                let opening = shown.number(opening, Measure::Length);
+                words += &format!(", largest opening {opening}");
             }
             lines.line("", words);
         }

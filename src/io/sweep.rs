@@ -22,6 +22,7 @@ use super::run;
 use super::summary;
 use crate::quote;
 use crate::solve::Solution;
+use crate::solve::answers::label;
 
 /// The most runs of a sweep: more are a mistake of the person who asks for them.
 pub const MOST_RUNS: usize = 10_000;
@@ -311,15 +312,16 @@ fn cells(r: &Results, shown: NumberFormat) -> Vec<(String, String)> {
     let mut cells: Vec<(String, String)> = brief.collect();
     let mut add = |of: &str, what: &str, x: f64| cells.push((format!("{of}.{what}"), shown(x)));
     for part in &r.contact {
-        add(&part.boundary, "force", part.force);
-        add(&part.boundary, "length", part.length);
-        add(&part.boundary, "peak_pressure", part.peak_pressure);
+        let name = part.label();
+        add(&name, "force", part.force);
+        add(&name, "length", part.length);
+        add(&name, "peak_pressure", part.peak_pressure);
     }
     let proved = r.certificate.as_ref().and_then(|c| c.discrete.as_ref()?.intervals.as_ref());
     for part in proved.iter().flat_map(|intervals| &intervals.contact) {
-        let [low, high] = part.force;
-        add(&part.boundary, "force_low", low);
-        add(&part.boundary, "force_high", high);
+        let (name, [low, high]) = (label(&part.boundary, part.partner.as_deref()), part.force);
+        add(&name, "force_low", low);
+        add(&name, "force_high", high);
     }
     let certified = r.certificate.as_ref().and_then(|c| c.continuous.as_ref());
     for part in &r.contact {

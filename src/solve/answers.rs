@@ -287,7 +287,20 @@ pub(crate) fn contact_boundaries(
     all
 }
 
+/// How a contact boundary is called, and a pair of boundaries.
+pub fn label(boundary: &str, partner: Option<&str>) -> String {
+    match partner {
+        None => boundary.to_owned(),
+        Some(partner) => format!("{boundary} on {partner}"),
+    }
+}
+
 impl ContactBoundary {
+    /// Its name, and that of the other body's boundary if there is one.
+    pub fn label(&self) -> String {
+        label(&self.boundary, self.partner.as_deref())
+    }
+
     fn empty(boundary: &str, partner: Option<String>) -> Self {
         ContactBoundary {
             boundary: boundary.to_owned(),

@@ -134,6 +134,8 @@ pub struct PieceValues {
 pub struct PieceNodeValues {
     /// The places on the edges of the two bodies, undeformed.
     pub at: [[f64; 2]; 2],
+    /// u^h there, of each body.
+    pub displacement: [[f64; 2]; 2],
     /// n~, the direction of contact, from the first body to the second.
     pub direction: [f64; 2],
     /// Arc length along the pieces of the pair from the start of the first one.
@@ -331,6 +333,13 @@ fn piece_values(
             let PieceNode { direction, gap, .. } = piece.geometry.nodes[a];
             PieceNodeValues {
                 at: [first, second].map(|stretch| stretch.place(d.space.mesh(), a)),
+                displacement: [first, second].map(|stretch| {
+                    let nodes = d.space.edge_nodes(stretch.edge);
+                    [0, 1].map(|c| {
+                        let values: Vec<f64> = nodes.iter().map(|&node| u[node][c]).collect();
+                        d.space.degree().value_at(&values, stretch.positions[a])
+                    })
+                }),
                 direction: direction.into(),
                 arc: start + s * piece.length,
                 u_n: jumps[a],

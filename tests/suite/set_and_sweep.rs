@@ -388,7 +388,7 @@ fn forces_reactions_and_energies_of_a_sweep_are_those_of_the_whole_thickness() {
     }
     let expected = [
         "contact_force",
-        "energy",
+        "elastic_energy",
         "bottom.force",
         "bottom.force_low",
         "bottom.force_high",

@@ -4,14 +4,17 @@ use super::contact::{FURTHEST_WHERE_BENT, turns};
 use super::draw::{Point, distance, moved, short};
 use super::loads;
 use crate::certify::quantities::Zone;
+use crate::fem::mesh::ROUNDED;
 use crate::fem::tree::Bounds;
 use crate::fem::{BoundaryEdge, Condition, Degree, Obstacle};
 use crate::io::case::{Case, Measure};
 use crate::io::numbers::round_below;
 use crate::io::result::{ContinuousCertificate, Results};
 use crate::quote;
-use crate::solve::solution::{ContactEdgeValues, ContactValues};
-use crate::solve::{Solution, Verdict};
+use crate::solve::solution::{
+    ContactEdgeValues, ContactValues, PieceNodeValues, PieceValues,
+};
+use crate::solve::{ContactBoundary, Solution, Verdict};
 
 #[derive(Clone, Debug)]
 pub(super) struct Scene {
@@ -252,7 +255,7 @@ fn contact_surfaces(case: &Case, s: &Solution, results: &Results) -> Vec<Contact
     let mut surfaces: Vec<ContactSurface> = Vec::new();
     for edges in s.contact.chunk_by(|a, b| a.boundary == b.boundary) {
         let name = edges[0].boundary.to_string();
-        let carries = results.contact.iter().find(|part| part.boundary == name);
+        let carries = results.contact.iter().find(|part| part.boundary == name && part.partner.is_none());
         let presses = carries.is_some_and(|part| results.is_in_contact(part));
         let connected = |a: &ContactEdgeValues, b: &ContactEdgeValues| {
             a.points.last().map(|p| p.node) == b.points.first().map(|p| p.node)
@@ -281,9 +284,46 @@ fn contact_surfaces(case: &Case, s: &Solution, results: &Results) -> Vec<Contact
             name,
         });
     }
+    surfaces.extend(pairs(s, results));
     if s.degree == Degree::Two {
         surfaces.iter_mut().flat_map(|surface| &mut surface.parts).for_each(|part| smooth(part));
     }
     surfaces.sort_by(|a, b| quote::natural(&a.name, &b.name));
     surfaces
+}
+
+/// The pairs of bodies: the pressure stands on the first of them, and no obstacle is drawn.
+fn pairs(s: &Solution, results: &Results) -> Vec<ContactSurface> {
+    let of_pairs = s.between.chunk_by(|a, b| a.boundaries == b.boundaries);
+    let surface = |pieces: &[PieceValues]| {
+        let [first, second] = &pieces[0].boundaries;
+        let is_this = |part: &&ContactBoundary| {
+            part.boundary == **first && part.partner.as_deref() == Some(&**second)
+        };
+        let carries = results.contact.iter().find(is_this);
+        let presses = carries.is_some_and(|part| results.is_in_contact(part));
+        let sample = |p: &PieceNodeValues| ContactSample {
+            arc: p.arc,
+            position: p.at[0],
+            normal: p.direction,
+            displacement: p.displacement[0],
+            gap: f64::INFINITY,
+            pressure: if presses { p.pressure } else { 0.0 },
+        };
+        let connected = |a: &PieceValues, b: &PieceValues| {
+            // The end of one piece and the start of the next are one place up to rounding.
+            let ends = [a.points.last(), b.points.first()].map(|p| p.map(|p| p.at[0]));
+            let [Some([x, y]), Some([p, q])] = ends else { return false };
+            (x - p).hypot(y - q) <= ROUNDED * (x.hypot(y) + p.hypot(q))
+        };
+        let parts = pieces.chunk_by(connected);
+        ContactSurface {
+            parts: parts
+                .map(|part| part.iter().flat_map(|e| &e.points).map(sample).collect())
+                .collect(),
+            zones: None,
+            name: carries.map_or_else(|| first.to_string(), ContactBoundary::label),
+        }
+    };
+    of_pairs.map(surface).collect()
 }
