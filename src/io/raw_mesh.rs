@@ -5,7 +5,7 @@
 //! corners, and an element that is listed once for each of its groups is one. What is decided is said in a remark: quadrangles
 //! are split, and a plane z = c is taken for the plane of the body. A group without a name is called by its number.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use nalgebra::Vector2;
 

@@ -11,9 +11,7 @@ use crate::io::case::{Case, Measure};
 use crate::io::numbers::round_below;
 use crate::io::result::{ContinuousCertificate, Results};
 use crate::quote;
-use crate::solve::solution::{
-    ContactEdgeValues, ContactValues, PieceNodeValues, PieceValues,
-};
+use crate::solve::solution::{ContactEdgeValues, ContactValues, PieceNodeValues, PieceValues};
 use crate::solve::{ContactBoundary, Solution, Verdict};
 
 #[derive(Clone, Debug)]
@@ -255,7 +253,8 @@ fn contact_surfaces(case: &Case, s: &Solution, results: &Results) -> Vec<Contact
     let mut surfaces: Vec<ContactSurface> = Vec::new();
     for edges in s.contact.chunk_by(|a, b| a.boundary == b.boundary) {
         let name = edges[0].boundary.to_string();
-        let carries = results.contact.iter().find(|part| part.boundary == name && part.partner.is_none());
+        let carries =
+            results.contact.iter().find(|part| part.boundary == name && part.partner.is_none());
         let presses = carries.is_some_and(|part| results.is_in_contact(part));
         let connected = |a: &ContactEdgeValues, b: &ContactEdgeValues| {
             a.points.last().map(|p| p.node) == b.points.first().map(|p| p.node)
@@ -321,6 +320,7 @@ fn pairs(s: &Solution, results: &Results) -> Vec<ContactSurface> {
             parts: parts
                 .map(|part| part.iter().flat_map(|e| &e.points).map(sample).collect())
                 .collect(),
+            rigid: false,
             zones: None,
             name: carries.map_or_else(|| first.to_string(), ContactBoundary::label),
         }
