@@ -362,15 +362,15 @@ def _toml(value: Any, functions: Optional[List[Callable[[float, float], float]]]
 def _unmasked(values: Any, name: str) -> npt.NDArray[Any]:
     if np.ma.is_masked(values):
         raise CaseError(f"{name} has masked entries; expected numbers in all of them")
-    return np.asarray(values)
+    try:
+        return np.asarray(values)
+    except ValueError as error:
+        raise CaseError(f"{name} is no array of numbers: {error}") from None
 
 
 def _array(values: Any, kind: str, shape: "tuple[Optional[int], ...]", name: str) -> npt.NDArray[Any]:
     """The values as doubles ("f") or as whole numbers of 64 bits ("i"), in rows; None stands for any number."""
-    try:
-        array = _unmasked(values, name)
-    except ValueError as error:
-        raise CaseError(f"{name} is no array of numbers: {error}") from None
+    array = _unmasked(values, name)
     fits = array.ndim == len(shape) and all(want in (None, have) for want, have in zip(shape, array.shape))
     if not fits:
         expected = ", ".join("n" if want is None else str(want) for want in shape) + ("," if len(shape) == 1 else "")
