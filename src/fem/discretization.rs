@@ -15,7 +15,7 @@ use super::problem::Problem;
 use super::rigid::FreeMotion;
 use super::solvability::{self, NotHeld, Slides};
 use super::space::Space;
-use super::stress_points::{StressPoint, each_stress};
+use super::stress_points::{Nodal, StressPoint, each_stress};
 use crate::kernel::PreciseBall;
 use crate::kernel::contact_edge::integral_of_product;
 
@@ -57,10 +57,6 @@ pub struct Functional {
     pub magnitudes: Vec<[f64; 2]>,
     /// a(u, u), from the strains: forces times displacements would cancel where a body moves far and bends little.
     pub energy: f64,
-}
-
-fn in_doubles(u: &[[f64; 2]]) -> impl Fn(usize, usize) -> Vector2<f64> {
-    |node, from| Vector2::from(u[node]) - Vector2::from(u[from])
 }
 
 impl Functional {
@@ -180,18 +176,14 @@ impl<'a> Discretization<'a> {
 
     /// A(u, v) - L(v) for every basis function v.
     pub fn linear_residual(&self, u: &[[f64; 2]]) -> Functional {
-        self.linear_residual_by(in_doubles(u))
+        self.linear_residual_by(u)
     }
 
-    /// [`Discretization::linear_residual`] of a displacement that is known to more than double precision, by its differences
-    /// between nodes: the first node's value less the second one's.
-    pub(crate) fn linear_residual_by(
-        &self,
-        difference: impl Fn(usize, usize) -> Vector2<f64>,
-    ) -> Functional {
-        let mut r = self.internal_forces_by(&difference);
+    /// [`Discretization::linear_residual`] of a displacement that is known to more than double precision.
+    pub(crate) fn linear_residual_by(&self, u: &(impl Nodal<f64> + ?Sized)) -> Functional {
+        let mut r = self.internal_forces_by(u);
         for edge in &self.contact {
-            let stress = edge.sigma_n(|node| difference(node, edge.nodes[0]).into());
+            let stress = edge.sigma_n(|node| u.difference(node, edge.nodes[0]).into());
             let factors = edge.stress_factors(stress);
             edge.each_force(&edge.functionals.sigma_n(), &factors, |node, f| {
                 r.add(node, f, norm_1(f));
@@ -205,19 +197,23 @@ impl<'a> Discretization<'a> {
 
     /// a(u, v) = int sigma(u):eps(v) for every basis function v.
     pub fn internal_forces(&self, u: &[[f64; 2]]) -> Functional {
-        self.internal_forces_by(in_doubles(u))
+        self.internal_forces_by(u)
     }
 
-    fn internal_forces_by(&self, difference: impl Fn(usize, usize) -> Vector2<f64>) -> Functional {
+    fn internal_forces_by(&self, u: &(impl Nodal<f64> + ?Sized)) -> Functional {
         let mut forces = Functional::zero(self.space.nodes().len());
         let itself = |triangle| triangle;
-        each_stress(&self.space, &self.problem.material, itself, difference, |point| {
+        each_stress(&self.space, &self.problem.material, itself, u, |point| {
             let &StressPoint { nodal, slopes, gradient, weight, .. } = point;
             let [xx, yy, xy] = point.stress.components();
             let shear = xy * (gradient.m12 + gradient.m21);
             forces.energy += weight * (xx * gradient.m11 + yy * gradient.m22 + shear);
             let strain: f64 = nodal.iter().zip(slopes).map(|(u, g)| norm_1(*u) * norm_1(*g)).sum();
-            let most = weight * material::largest_entry(point.material) * strain;
+            let mut most = weight * material::largest_entry(point.material) * strain;
+            if let Some(hoop) = &point.hoop {
+                forces.energy += hoop.work();
+                most = hoop.most * (most + weight * hoop.stress.abs());
+            }
             point.each_force(|node, force, slope| forces.add(node, force, most * norm_1(slope)));
         });
         forces

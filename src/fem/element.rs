@@ -3,6 +3,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use crate::kernel::axial;
 use crate::kernel::contact_edge;
 use crate::kernel::edge_integral;
 use crate::kernel::element::displacement_gradient;
@@ -80,6 +81,18 @@ impl Degree {
         with_element!(self, E => {
             displacement_gradient(&std::array::from_fn(&nodal), &E::gradients(l, barycentric))
         })
+    }
+
+    /// The hoop strain on a triangle with these `radii`, at the points of the stiffness rule: [`axial::hoop_strain`].
+    pub fn hoop_strain<S: Scalar>(self, radii: [S; 3], radial: impl Fn(usize) -> S) -> [S; 3] {
+        with_element!(self, E => {
+            axial::hoop_strain::<E, _, _, _>(radii, &std::array::from_fn(radial))
+        })
+    }
+
+    /// The value at `l` of a function of degree p - 1 with these values at the points of the stiffness rule.
+    pub fn value_from_points<S: Scalar>(self, at_points: [S; 3], l: [S; 3]) -> S {
+        with_element!(self, E => axial::value_at::<E, _, _, _>(at_points, l))
     }
 
     /// The share of an edge in kappa_T / gamma0 of its triangle: [`contact_edge::coercivity_constant`].

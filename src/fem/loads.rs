@@ -1,4 +1,4 @@
-//! L(v) = int_Omega f . v + int_{Gamma_N} t . v for every basis function v.
+//! L(v) = int_Omega f . v + int_{Gamma_N} t . v for every basis function v; in a body of revolution with the weight r, for a radian.
 
 use super::data::{DataError, checked};
 use super::element::{Degree, with_element};
@@ -38,7 +38,12 @@ fn vanishes(load: &dyn Function) -> bool {
 /// # Errors
 /// [`DataError::NotFinite`] where a load has no value, and unknown boundary names.
 pub fn assemble(problem: &Problem, space: &Space) -> Result<Vec<[f64; 2]>, DataError> {
-    assemble_with(problem, space, |load| points(load, space.degree().number()))
+    assemble_with(problem, space, |load| points(load, tested(problem, space)))
+}
+
+/// The degree of what a load is tested with: a shape function, in a body of revolution times r.
+fn tested(problem: &Problem, space: &Space) -> usize {
+    space.degree().number() + usize::from(problem.material.are_of_revolution())
 }
 
 /// [`assemble`] with as many points along each direction as `points` says for a load.
@@ -74,7 +79,7 @@ pub(crate) fn assemble_twice(problem: &Problem, space: &Space) -> Result<LoadVec
     each_force(
         problem,
         space,
-        |load| points(load, space.degree().number()),
+        |load| points(load, tested(problem, space)),
         |force| {
             force.add_to(space.degree(), &mut in_doubles);
             force.add_to(space.degree(), &mut in_balls);
@@ -127,6 +132,11 @@ fn each_force(
     points: impl Fn(&dyn Function) -> usize,
     mut add: impl FnMut(Force),
 ) -> Result<(), DataError> {
+    let of_revolution = problem.material.are_of_revolution();
+    let radius = |x: [f64; 2]| if of_revolution { x[0] } else { 1.0 };
+    let mut add = |force: Force, x: [f64; 2]| {
+        add(Force { value: force.value * radius(x), ..force });
+    };
     let rule = |load: &dyn Function| {
         Rule::new(Features { kink: load.kink(), singular: None }, points(load))
     };
@@ -179,14 +189,17 @@ fn each_body_force(
     space: &Space,
     triangles: impl Iterator<Item = usize>,
     what: impl Fn() -> String,
-    mut add: impl FnMut(Force),
+    mut add: impl FnMut(Force, [f64; 2]),
 ) -> Result<(), DataError> {
     let mut wrong = None;
     for t in triangles {
         let nodes = space.nodes_of(t);
         rule.on_triangle(&space.mesh().triangle(t), |l, x, weight| {
             match checked(f.at(x), x, &what) {
-                Ok(f) => add(Force { c, value: weight * f, nodes, place: ElementPoint::Inside(l) }),
+                Ok(f) => {
+                    let place = ElementPoint::Inside(l);
+                    add(Force { c, value: weight * f, nodes, place }, x);
+                }
                 Err(error) => wrong = wrong.take().or(Some(error)),
             }
         });
@@ -201,7 +214,7 @@ fn each_force_on_boundary(
     value: impl Fn([f64; 2], [f64; 2]) -> Result<f64, DataError>,
     rule: &Rule,
     space: &Space,
-    mut add: impl FnMut(Force),
+    mut add: impl FnMut(Force, [f64; 2]),
 ) -> Result<(), DataError> {
     let mut wrong = None;
     for &edge in space.mesh().edges_of(name)? {
@@ -211,7 +224,7 @@ fn each_force_on_boundary(
         rule.on_edge(ends, [], |point| match value(point.x, normal.into()) {
             Ok(t) => {
                 let value = point.weight * length * t;
-                add(Force { c, value, nodes, place: ElementPoint::OnEdge(point.s) });
+                add(Force { c, value, nodes, place: ElementPoint::OnEdge(point.s) }, point.x);
             }
             Err(error) => wrong = wrong.take().or(Some(error)),
         });

@@ -44,7 +44,7 @@ pub mod rounded_stress;
 #[doc(hidden)]
 pub mod solvability;
 pub mod space;
-mod stress_points;
+pub(crate) mod stress_points;
 #[doc(hidden)]
 pub mod structured;
 #[doc(hidden)]

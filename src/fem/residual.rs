@@ -24,8 +24,7 @@ pub fn add_internal_forces<S: Scalar + From<f64>>(
     u: &[[S; 2]],
     forces: &mut [[S; 2]],
 ) {
-    let difference = |node: usize, from: usize| Vector2::from(u[node]) - Vector2::from(u[from]);
-    each_stress(space, materials, exactly, difference, |point| {
+    each_stress(space, materials, exactly, u, |point| {
         point.each_force(|node, force, _| {
             forces[node][0] += force[0];
             forces[node][1] += force[1];

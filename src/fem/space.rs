@@ -94,6 +94,12 @@ impl<'a> Space<'a> {
         elements.iter().enumerate().map(|(t, nodes)| (self.mesh.triangle(t), nodes))
     }
 
+    /// The hoop strain of `field` on triangle `t` of a body of revolution, at the points of the stiffness rule.
+    pub(crate) fn hoop_strain(&self, t: usize, field: &[[f64; 2]]) -> [f64; 3] {
+        let (radii, nodes) = (self.mesh.triangle(t).vertices.map(|x| x[0]), self.nodes_of(t));
+        self.degree.hoop_strain(radii, |j| field[nodes[j]][0])
+    }
+
     /// The mean of the gradient of `field` on triangle `t`: its average over the points of the stiffness rule, which is exact for
     /// it.
     pub(crate) fn mean_gradient(&self, t: usize, field: &[[f64; 2]]) -> Matrix2<f64> {

@@ -9,6 +9,7 @@ use nalgebra::Vector2;
 use super::system::System;
 use crate::fem::discretization::{Discretization, Functional};
 use crate::fem::residual;
+use crate::fem::stress_points::Nodal;
 use crate::fem::solvability::{Play, Slides};
 use crate::fem::{ContactFace, EdgeRule};
 use crate::kernel::DoubleDouble;
@@ -38,6 +39,22 @@ pub struct Evaluation {
     pub noise: f64,
     /// In double-doubles.
     pub precisely: bool,
+}
+
+/// A displacement in double-doubles.
+struct Parts<'a> {
+    heads: &'a [[f64; 2]],
+    tails: &'a [[f64; 2]],
+}
+
+impl Nodal<f64> for Parts<'_> {
+    fn difference(&self, node: usize, from: usize) -> Vector2<f64> {
+        self.heads.difference(node, from) + self.tails.difference(node, from)
+    }
+
+    fn radial(&self, node: usize) -> f64 {
+        self.heads.radial(node)
+    }
 }
 
 impl Iterate {
@@ -82,13 +99,8 @@ impl Iterate {
             let (linear, energy) = (system.numbering.gather(&forces), d.strain_energy(&heads));
             return Evaluation { forces, linear, p, p_magnitudes, energy, noise, precisely };
         }
-        let difference = |of: &[[f64; 2]], node: usize, from: usize| {
-            Vector2::from(of[node]) - Vector2::from(of[from])
-        };
         let Functional { values: forces, magnitudes, energy } =
-            d.linear_residual_by(|node, from| {
-                difference(&heads, node, from) + difference(&tails, node, from)
-            });
+            d.linear_residual_by(&Parts { heads: &heads, tails: &tails });
         let by_points = matches!(d.rule, EdgeRule::Gauss(_));
         let p: Vec<DoubleDouble> = if by_points {
             residual::p(d, &self.u).enumerate().map(idle).collect()

@@ -23,6 +23,10 @@ const KEYS: [&str; 8] =
 /// The moduli that a material may be given by.
 pub(super) const EXPECTED: &str = "lambda and mu, young and poisson, stiffness, or orthotropic";
 
+/// The names of the planes.
+const PLANES: [(&str, Plane); 3] =
+    [("strain", Plane::Strain), ("stress", Plane::Stress), ("axisymmetric", Plane::Axisymmetric)];
+
 /// A material as the case has it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -38,7 +42,7 @@ pub struct MaterialEcho {
     /// `[C11, C12, C16, C22, C26, C66]` of one that is not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<[f64; 6]>,
-    /// "strain" or "stress".
+    /// "strain", "stress" or "axisymmetric".
     pub plane: String,
 }
 
@@ -46,7 +50,8 @@ impl MaterialEcho {
     fn new(material: &Material<f64>, moduli: Option<[f64; 2]>) -> Self {
         let stiffness = moduli.is_none().then(|| material.stiffness());
         let [young, poisson] = [0, 1].map(|k| moduli.map(|moduli| moduli[k]));
-        let plane = if material.plane() == Plane::Strain { "strain" } else { "stress" }.to_owned();
+        let plane = PLANES.into_iter().find(|(_, plane)| *plane == material.plane());
+        let plane = plane.map_or("", |(name, _)| name).to_owned();
         MaterialEcho { surfaces: Vec::new(), young, poisson, stiffness, plane }
     }
 
@@ -129,8 +134,7 @@ fn on_surface<'m>(mesh: &'m Mesh, at: &Spot, key: &str) -> Result<&'m [usize], F
 }
 
 fn read_plane(table: &Table, default: Plane) -> Result<Plane, FileError> {
-    let planes = [("strain", Plane::Strain), ("stress", Plane::Stress)];
-    Ok(table.optional("plane", |plane| plane.one_of(&planes))?.unwrap_or(default))
+    Ok(table.optional("plane", |plane| plane.one_of(&PLANES))?.unwrap_or(default))
 }
 
 fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, MaterialEcho), FileError> {
@@ -165,6 +169,10 @@ fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, Material
                 }
                 (Plane::Stress, Some(_)) => {
                     return Err(table.at.found("across in plane stress", "plane strain with it"));
+                }
+                (Plane::Axisymmetric, _) => {
+                    let found = "stiffness in a body of revolution";
+                    return Err(table.at.found(found, "orthotropic, whose third axis is the hoop"));
                 }
             };
             let stiffness = value("stiffness")?;
@@ -218,20 +226,28 @@ fn read_orthotropic(
 ) -> Result<Result<Material<f64>, MaterialError>, FileError> {
     let table = moduli.table()?;
     let mut keys = vec!["e1", "e2", "nu12", "g12", "angle"];
-    if plane == Plane::Strain {
+    if plane != Plane::Stress {
         keys.extend(["e3", "nu13", "nu23"]);
     }
     table.only(&keys)?;
     let number = |key, expected| table.require(key, expected)?.number();
-    let out = |key| number(key, "a number, in plane strain");
+    let out = |key| number(key, "a number, beyond plane stress");
     let across = match plane {
         Plane::Stress => None,
-        Plane::Strain => Some(Across { e3: out("e3")?, nu13: out("nu13")?, nu23: out("nu23")? }),
+        Plane::Strain | Plane::Axisymmetric => Some(Across { e3: out("e3")?, nu13: out("nu13")?, nu23: out("nu23")? }),
     };
     let angle = table.optional("angle", Value::number)?.unwrap_or(0.0);
     let [e1, e2, nu12, g12] = ["e1", "e2", "nu12", "g12"].map(|key| number(key, "a number"));
     let (e1, e2, nu12, g12) = (e1?, e2?, nu12?, g12?);
-    Ok(stable_orthotropic(Orthotropic { e1, e2, nu12, g12, angle, across }))
+    let material = stable_orthotropic(Orthotropic { e1, e2, nu12, g12, angle, across });
+    let Some(Across { e3, .. }) = across.filter(|_| plane == Plane::Axisymmetric) else {
+        return Ok(material);
+    };
+    if angle % 90.0 != 0.0 {
+        let expected = "a multiple of 90: in a body of revolution the axes of a material are r, z and the hoop";
+        return Err(moduli.at.found(&format!("angle {}", quote::number(angle)), expected));
+    }
+    Ok(material.and_then(|material| stable(material.of_revolution(e3))))
 }
 
 /// The force on the whole body, and those on its surfaces; an exact solution has its own.
