@@ -164,6 +164,11 @@ fn certify_near(
     (start, field): (&[[f64; 2]], &[[f64; 2]]),
     asked: &Asked,
 ) -> Result<Continuous, CertifyError> {
+    if problem.material.are_of_revolution() {
+        return Err(CertifyError::Unsupported(
+            "the body is one of revolution, and certificates are about plane bodies".to_owned(),
+        ));
+    }
     // Beside a quadratic v each is cut in four.
     let quadratic = solution.degree == Degree::Two && start.len() > problem.mesh.vertices().len();
     let quarters = if quadratic { 4 } else { 1 };

@@ -12,6 +12,7 @@ use super::element::Degree;
 use super::loads::{self, LoadVector};
 use super::material;
 use super::problem::Problem;
+use super::revolution;
 use super::rigid::FreeMotion;
 use super::solvability::{self, NotHeld, Slides};
 use super::space::Space;
@@ -90,6 +91,7 @@ impl<'a> Discretization<'a> {
         for &material in problem.material.distinct() {
             material::stable(material)?;
         }
+        revolution::check(problem)?;
         let coercivity = Coercivity::new(problem, degree)?;
         let gamma = gamma(&coercivity).into();
         let gamma0 = coercivity.gamma0(gamma);

@@ -307,7 +307,9 @@ pub fn least_eigenvalue(material: &Material<f64>) -> f64 {
     }
     if material.is_isotropic() {
         let (lambda, mu) = (Ball::point(material.lambda()), Ball::point(material.mu()));
-        return (Ball::from(2) * mu).lower().min((Ball::from(3) * lambda + Ball::from(2) * mu).lower());
+        return (Ball::from(2) * mu)
+            .lower()
+            .min((Ball::from(3) * lambda + Ball::from(2) * mu).lower());
     }
     // sigma:eps = A(eps + a h):(eps + a h) + e h^2, at least c (|eps| - |a| |h|)^2 + e h^2: a form of two numbers, whose smaller
     // eigenvalue is above its determinant over its trace.

@@ -137,6 +137,18 @@ impl Mesh {
         })
     }
 
+    /// Moves the vertices for which `to` says so, and returns how many there were.
+    pub(super) fn move_vertices(&mut self, to: impl Fn([f64; 2]) -> Option<[f64; 2]>) -> usize {
+        let mut moved = 0;
+        for vertex in &mut self.vertices {
+            if let Some(place) = to(*vertex) {
+                (*vertex, moved) = (place, moved + 1);
+            }
+        }
+        self.boxes = OnceLock::new();
+        moved
+    }
+
     /// The vertices.
     pub fn vertices(&self) -> &[[f64; 2]] {
         &self.vertices

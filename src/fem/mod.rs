@@ -37,6 +37,7 @@ pub mod problem;
 pub mod quadrature;
 #[doc(hidden)]
 pub mod residual;
+mod revolution;
 #[doc(hidden)]
 pub mod rigid;
 #[doc(hidden)]

@@ -95,11 +95,7 @@ enum Part {
 }
 
 /// Calls `add` with the parts of the forces of the stress s that doubles give for `u`. Returns the bound of [`add_forces`].
-fn each_force(
-    d: &Discretization,
-    u: &[[PreciseBall; 2]],
-    add: impl FnMut(usize, Part),
-) -> f64 {
+fn each_force(d: &Discretization, u: &[[PreciseBall; 2]], add: impl FnMut(usize, Part)) -> f64 {
     with_element!(d.space.degree(), E => each_force_of::<E, _, _>(d, u, add))
 }
 
@@ -351,7 +347,8 @@ impl RoundedHoop {
             let product = (0..E::POINTS).fold(-means[a], |sum, b| sum + mass[a][b] * strains[b]);
             product.abs()
         });
-        let (left, largest): (f64, f64) = (left.sum(), points.fold(0.0, |m, s| f64::max(m, s.abs())));
+        let (left, largest): (f64, f64) =
+            (left.sum(), points.fold(0.0, |m, s| f64::max(m, s.abs())));
         let radii = radii.iter().sum::<f64>();
         let sizes: f64 = radial.iter().map(|u| u.abs()).sum();
         let off: f64 = nodal.iter().map(|u| u[0].radius() + u[0].centre().tail().abs()).sum();

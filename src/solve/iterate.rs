@@ -9,8 +9,8 @@ use nalgebra::Vector2;
 use super::system::System;
 use crate::fem::discretization::{Discretization, Functional};
 use crate::fem::residual;
-use crate::fem::stress_points::Nodal;
 use crate::fem::solvability::{Play, Slides};
+use crate::fem::stress_points::Nodal;
 use crate::fem::{ContactFace, EdgeRule};
 use crate::kernel::DoubleDouble;
 

@@ -24,7 +24,7 @@ const KEYS: [&str; 8] =
 pub(super) const EXPECTED: &str = "lambda and mu, young and poisson, stiffness, or orthotropic";
 
 /// The names of the planes.
-const PLANES: [(&str, Plane); 3] =
+pub(super) const PLANES: [(&str, Plane); 3] =
     [("strain", Plane::Strain), ("stress", Plane::Stress), ("axisymmetric", Plane::Axisymmetric)];
 
 /// A material as the case has it.
@@ -63,15 +63,18 @@ impl MaterialEcho {
 }
 
 /// The material of each triangle, and the materials as the case has them: one for the whole body, or one for each physical
-/// surface of the mesh.
+/// surface of the mesh. `of_body` is the plane that the table of the body says.
 pub(super) fn read_materials(
     table: &Table,
     mesh: &Mesh,
+    of_body: Option<Plane>,
 ) -> Result<(Materials, Vec<MaterialEcho>), FileError> {
+    let default = of_body.unwrap_or(Plane::Strain);
     let mut surfaces = table.keys_of_tables();
     surfaces.retain(|key| !KEYS.contains(key));
     let Some(first) = surfaces.first().map(|key| table.under_header(key).name) else {
-        let (material, echo) = read_material(table, Plane::Strain)?;
+        let (material, echo) = read_material(table, default)?;
+        agrees(table, of_body, &echo)?;
         let surfaces = mesh.surfaces().keys().cloned().collect();
         return Ok((material.into(), vec![MaterialEcho { surfaces, ..echo }]));
     };
@@ -80,12 +83,13 @@ pub(super) fn read_materials(
         return Err(table.at.found(&format!("{key} beside {first}"), expected));
     }
     table.only(&[&surfaces[..], &["plane"]].concat())?;
-    let plane = read_plane(table, Plane::Strain)?;
+    let plane = read_plane(table, default)?;
     let mut parts: Vec<(Material<f64>, &[usize])> = Vec::new();
     let mut echoes: Vec<MaterialEcho> = Vec::new();
     for &key in &surfaces {
         let one = table.subsection(key)?;
         let (material, echo) = read_material(&one, plane)?;
+        agrees(&one, of_body, &echo)?;
         if let Some(other) = echoes.first()
             && other.plane != echo.plane
         {
@@ -117,6 +121,9 @@ pub(super) fn only_isotropic(
     table: &Table,
 ) -> Result<Material<f64>, FileError> {
     let (found, expected) = match materials.only() {
+        Some(material) if material.plane() == Plane::Axisymmetric => {
+            ("a body of revolution", "a plane body: the exact solutions are plane")
+        }
         Some(material) if material.is_isotropic() => return Ok(*material),
         Some(_) => ("a material that is not isotropic", "lambda and mu, or young and poisson"),
         None => ("materials by surface", "one material for the whole body"),
@@ -130,6 +137,17 @@ fn on_surface<'m>(mesh: &'m Mesh, at: &Spot, key: &str) -> Result<&'m [usize], F
         Err(error) => Err(at.mesh(error)),
         Ok([]) => Err(at.found("no triangle in this mesh", "at least one")),
         Ok(triangles) => Ok(triangles),
+    }
+}
+
+/// Checks that a material has the plane of the body, if its table says one.
+fn agrees(table: &Table, of_body: Option<Plane>, echo: &MaterialEcho) -> Result<(), FileError> {
+    match PLANES.iter().find(|(_, plane)| of_body == Some(*plane)) {
+        Some((name, _)) if *name != echo.plane => {
+            let found = format!("plane {} beside [body] plane {name}", echo.plane);
+            Err(table.at.found(&found, "the same, or one of the two"))
+        }
+        _ => Ok(()),
     }
 }
 
@@ -234,7 +252,9 @@ fn read_orthotropic(
     let out = |key| number(key, "a number, beyond plane stress");
     let across = match plane {
         Plane::Stress => None,
-        Plane::Strain | Plane::Axisymmetric => Some(Across { e3: out("e3")?, nu13: out("nu13")?, nu23: out("nu23")? }),
+        Plane::Strain | Plane::Axisymmetric => {
+            Some(Across { e3: out("e3")?, nu13: out("nu13")?, nu23: out("nu23")? })
+        }
     };
     let angle = table.optional("angle", Value::number)?.unwrap_or(0.0);
     let [e1, e2, nu12, g12] = ["e1", "e2", "nu12", "g12"].map(|key| number(key, "a number"));

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::body::constant;
 use super::exact::read_kind;
 use super::table::{Spot, Table, Value};
-use crate::fem::{Condition, Mesh, Obstacle, PointSupport, SharedFunction, Side};
+use crate::fem::{BoundaryEdge, Condition, Mesh, Obstacle, PointSupport, SharedFunction, Side};
 use crate::io::input::FileError;
 use crate::quote::names;
 use crate::study::Exact;
@@ -17,13 +17,30 @@ type Obstacles<'s> = BTreeMap<&'s str, (Spot<'s>, Obstacle)>;
 /// The conditions on the boundaries of the mesh and, beside \[exact\], the kind of each.
 type Boundaries = (BTreeMap<String, Condition>, BTreeMap<String, Kind>);
 
-/// Reads the conditions on the boundaries. A whole force acts on the length of its boundary times the thickness, which is 1 if
-/// it is not given.
+/// What a boundary's length makes an area with.
+#[derive(Clone, Copy)]
+pub(super) enum Depth {
+    /// The thickness of a plane body, 1 if it is not given.
+    Of(f64),
+    /// The circle that each point of a body of revolution goes round.
+    Revolution,
+}
+
+/// The area of a boundary of a body of revolution.
+fn area_of_revolution(mesh: &Mesh, edges: &[BoundaryEdge]) -> f64 {
+    let of = |&edge: &BoundaryEdge| {
+        let [[a, _], [b, _]] = mesh.places_of_ends(edge);
+        mesh.length_and_normal(edge).0 * std::f64::consts::PI * (a + b)
+    };
+    edges.iter().map(of).sum()
+}
+
+/// Reads the conditions on the boundaries. A whole force acts on the area of its boundary.
 pub(super) fn read_boundaries(
     root: &Table,
     solution: Option<&Exact>,
     mesh: &Mesh,
-    thickness: Option<f64>,
+    depth: Depth,
 ) -> Result<Boundaries, FileError> {
     let expected = match solution {
         None => "one boundary with contact, such as [boundary.bottom] contact = { gap = \"0\" }",
@@ -40,9 +57,14 @@ pub(super) fn read_boundaries(
         }
         let condition = match solution {
             None => {
-                let length: f64 = edges.iter().map(|&e| mesh.length_and_normal(e).0).sum();
-                let area = length * thickness.unwrap_or(1.0);
-                read_condition(&all.subsection(key)?, &obstacles, area)?
+                let area = match depth {
+                    Depth::Of(thickness) => {
+                        let lengths = edges.iter().map(|&e| mesh.length_and_normal(e).0);
+                        lengths.sum::<f64>() * thickness
+                    }
+                    Depth::Revolution => area_of_revolution(mesh, edges),
+                };
+                read_condition(&all.subsection(key)?, &obstacles, (area, depth))?
             }
             Some(solution) => {
                 let kind = read_kind(&all.require(key, "a kind")?)?;
@@ -72,12 +94,22 @@ const CONDITIONS: [&str; 7] =
     ["displacement", "traction", "pressure", "normal", "tangential", "contact", "force"];
 
 /// The condition on a boundary that has this area.
-fn read_condition(table: &Table, obstacles: &Obstacles, area: f64) -> Result<Condition, FileError> {
+fn read_condition(
+    table: &Table,
+    obstacles: &Obstacles,
+    (area, depth): (f64, Depth),
+) -> Result<Condition, FileError> {
     table.only(&CONDITIONS)?;
     let value = |key| table.require(key, "a value");
     Ok(match table.given(&CONDITIONS)[..] {
         ["force"] => {
-            Condition::Traction(value("force")?.vector()?.map(|force| constant(force / area)))
+            let (force, whole) = (value("force")?, value("force")?.vector()?);
+            if matches!(depth, Depth::Revolution) && whole[0] != 0.0 {
+                return Err(force.wrong(
+                    "[0, Fz] on a body of revolution, whose radial forces cancel all round: traction and pressure have them",
+                ));
+            }
+            Condition::Traction(whole.map(|force| constant(force / area)))
         }
         ["displacement"] => Condition::Displacement(components(&value("displacement")?)?),
         ["traction"] => Condition::Traction(value("traction")?.functions()?),
