@@ -7,6 +7,8 @@
 //! short edges of a graded mesh it goes round by long ones. Each part of the body has a root, and
 //! prescribed components hold its motion.
 //!
+//! In a body of revolution the hoop strain holds the mean of v_r on each triangle, and c_T has the weight (docs/theory.md, 11.5).
+//!
 //! Everything but the areas and the matrix of those equations, which are balls, is a sum or product of positive
 //! doubles of some million terms at most: rounding changes it by far less than the factor `SAFETY`.
 
@@ -71,7 +73,8 @@ impl Korn {
             passed: vec![f64::NAN; left.len()],
         };
         let mut parts: Vec<Vec<Hold>> = Vec::new();
-        for hold in supports(space, constraints).into_iter().chain(holds.iter().cloned()) {
+        let by_supports = supports(space, constraints).into_iter();
+        for hold in by_supports.chain(holds.iter().cloned()).chain(hoops(mesh, materials)) {
             if paths.part[hold.triangle] == NONE {
                 paths.explore(hold.triangle, parts.len());
                 parts.push(Vec::new());
@@ -190,6 +193,27 @@ fn supports(space: &Space, constraints: &Constraints) -> Vec<Hold> {
     holds
 }
 
+/// The mean of the weight on triangle `t`: 1 in the plane, r in a body of revolution.
+fn mean_weight(materials: &Materials, t: usize, triangle: &Triangle<f64>) -> f64 {
+    materials.of(t).radii(triangle).map_or(1.0, |[a, b, c]| (a + b + c) / 3.0)
+}
+
+/// What the hoop strain of a body of revolution holds on each triangle: the mean of v_r.
+fn hoops(mesh: &Mesh, materials: &Materials) -> Vec<Hold> {
+    let hold = |triangle: usize| {
+        let at = mesh.triangle(triangle);
+        let stiffness = least_eigenvalue(materials.of(triangle));
+        let weight = mean_weight(materials, triangle, &at);
+        let most = SAFETY * (weight * 2.0 / (stiffness * at.double_area())).sqrt();
+        let exact = at.vertices.map(|x| x.map(Ball::point));
+        let middle = (exact[0] + exact[1] + exact[2]) / Ball::from(3);
+        let along_r = [Ball::from(1), Ball::from(0)];
+        Hold { triangle, terms: vec![(middle.into(), along_r)], most }
+    };
+    let count = if materials.are_of_revolution() { mesh.triangles().len() } else { 0 };
+    (0..count).map(hold).collect()
+}
+
 /// c_T^2
 fn squared_remainder(mesh: &Mesh, degree: Degree, materials: &Materials, t: usize) -> Option<f64> {
     let doubles = mesh.triangle(t);
@@ -203,12 +227,13 @@ fn squared_remainder(mesh: &Mesh, degree: Degree, materials: &Materials, t: usiz
     if !(area > SMALLEST && stiffness > 0.0) {
         return None;
     }
-    let affine = square / (2.0 * stiffness * area);
+    let affine = square / (2.0 * stiffness * area * mean_weight(materials, t, &doubles));
     Some(if degree == Degree::One {
         affine
     } else {
         let turning = 1.0 + 3.0 * square / area;
-        12.0 * affine * turning * turning
+        let factor = if materials.are_of_revolution() { 20.0 } else { 12.0 };
+        factor * affine * turning * turning
     })
 }
 
