@@ -7,7 +7,7 @@ use crate::kernel::axial;
 use crate::kernel::contact_edge;
 use crate::kernel::edge_integral;
 use crate::kernel::element::displacement_gradient;
-use crate::kernel::{Element, P1, P2, Scalar};
+use crate::kernel::{Element, Scalar};
 
 /// The polynomial degree of V^h.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,41 +114,58 @@ impl Degree {
         with_element!(self, E => contact_edge::turning_factor::<E, _, _, _>(cosine))
     }
 
+    /// The length by which an edge counts in kappa, along which the direction of contact turns by an angle with this `cosine`, if it
+    /// does; in a body of revolution with r at its two ends and at the corner opposite.
+    pub fn counted_length<S: Scalar>(
+        self,
+        length: S,
+        cosine: Option<S>,
+        radii: Option<[S; 3]>,
+        root: impl Fn(S) -> S,
+    ) -> S {
+        let Some([start, end, opposite]) = radii else {
+            return cosine.map_or(length, |cosine| self.turning_factor(cosine) * length);
+        };
+        let ends = [start, end];
+        let (turning, sharp, plane) = with_element!(self, E => (
+            cosine.map(|cosine| axial::turning_factor::<E, _, _, _>(ends, cosine, &root)),
+            axial::trace_constant::<E, _, _, _>(ends, opposite, &root),
+            E::TRACE_CONSTANT,
+        ));
+        let length = turning.map_or(length, |turning| turning * length);
+        length * sharp / S::from(plane)
+    }
+
     /// Calls `f` at the points, with their weights, of a rule that is exact for a product of two gradients.
     pub fn at_stiffness_points<S: Scalar>(self, f: impl FnMut([S; 3], S)) {
         with_element!(self, E => E::at_stiffness_points(f));
     }
-}
 
-/// The value at `s` of the polynomial on an edge with these values at its nodes, two or three.
-pub fn value_at<S: Scalar>(p: &[S], s: S) -> S {
-    match *p {
-        [start, end] => edge_integral::value_at::<P1, _, _, _>([start, end], s),
-        _ => edge_integral::value_at::<P2, _, _, _>([p[0], p[1], p[2]], s),
+    /// The value at `s` of the polynomial on an edge with the values `p` at its nodes.
+    pub fn value_at<S: Scalar>(self, p: &[S], s: S) -> S {
+        with_element!(self, E => {
+            edge_integral::value_at::<E, _, _, _>(std::array::from_fn(|a| p[a]), s)
+        })
     }
-}
 
-/// The places inside (0, 1) where it changes its sign, in no particular order.
-pub fn roots(p: &[f64]) -> Vec<f64> {
-    match *p {
-        [start, end] => edge_integral::roots::<P1, _, _>([start, end]).collect(),
-        _ => edge_integral::roots::<P2, _, _>([p[0], p[1], p[2]]).collect(),
+    /// The places inside (0, 1) where that polynomial changes its sign, in no particular order.
+    pub fn roots(self, p: &[f64]) -> Vec<f64> {
+        with_element!(self, E => {
+            edge_integral::roots::<E, _, _>(std::array::from_fn(|a| p[a])).collect()
+        })
     }
-}
 
-/// Its largest value on the edge.
-pub fn maximum(p: &[f64]) -> f64 {
-    match *p {
-        [start, end] => edge_integral::maximum::<P1, _, _>([start, end]),
-        _ => edge_integral::maximum::<P2, _, _>([p[0], p[1], p[2]]),
+    /// The largest value of that polynomial on the edge.
+    pub fn maximum(self, p: &[f64]) -> f64 {
+        with_element!(self, E => edge_integral::maximum::<E, _, _>(std::array::from_fn(|a| p[a])))
     }
-}
 
-/// Its Bernstein coefficients: it lies between the least and the largest.
-pub fn bernstein<S: Scalar>(p: &[S]) -> Vec<S> {
-    let mut coefficients = p.to_vec();
-    if let [start, end, middle] = &mut coefficients[..] {
-        *middle = S::from(2) * *middle - (*start + *end) / S::from(2);
+    /// The Bernstein coefficients of that polynomial, which lies between the least and the largest of them.
+    pub fn bernstein<S: Scalar>(self, p: &[S]) -> Vec<S> {
+        let mut coefficients = p.to_vec();
+        if self == Degree::Two {
+            coefficients[2] = S::from(2) * p[2] - (p[0] + p[1]) / S::from(2);
+        }
+        coefficients
     }
-    coefficients
 }

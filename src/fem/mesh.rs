@@ -60,6 +60,13 @@ pub struct BoundaryEdge {
     pub local: usize,
 }
 
+impl BoundaryEdge {
+    /// Values at the corners of its triangle as those at its start, at its end and opposite.
+    pub(crate) fn from_its_ends<T: Copy>(self, corners: [T; 3]) -> [T; 3] {
+        [1, 2, 0].map(|k| corners[(self.local + k) % 3])
+    }
+}
+
 impl Mesh {
     /// The mesh of [`Mesh::new`], of which is checked all but how its triangles lie in the plane.
     pub(super) fn of_edges(

@@ -53,8 +53,6 @@ pub(super) struct StressPoint<'a, S> {
 pub(super) struct Hoop<'a, S> {
     /// sigma_hh(u)
     pub stress: S,
-    /// theta(u)
-    pub strain: S,
     /// The integral of v_r that it is tested with, as the share of each node in thirtieths of the area.
     pub shares: &'a [i32],
     /// A thirtieth of the area.
@@ -173,7 +171,6 @@ fn each_stress_of<E, const N: usize, const M: usize, S>(
                 weight: area,
                 hoop: Some(Hoop {
                     stress: states[b].1,
-                    strain: strains[b],
                     shares: &shares[b],
                     thirtieth: area / thirty,
                     radial: &radial,

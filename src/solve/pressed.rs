@@ -9,10 +9,10 @@
 
 use nalgebra::DMatrix;
 
-use crate::fem::element::{bernstein, roots};
 use crate::fem::korn::Hold;
-use crate::fem::{ContactFace, Degree, Discretization, EdgeRule};
+use crate::fem::{Degree, Discretization, EdgeRule, Piece};
 use crate::kernel::ball::{PreciseBall, up};
+use crate::kernel::edge_integral;
 
 /// A piece is taken for pressed where P is at least this share of the most that it is all along some piece; where that proves
 /// nothing, the next one: with all pieces that are pressed more holds the body, with fewer these stay pressed on a larger ball. With
@@ -25,6 +25,24 @@ const INSET: f64 = 1.0 / 64.0;
 
 /// Covers the rounding of a few sums, products and roots of positive doubles.
 const SAFETY: f64 = 1.001;
+
+/// r at the start and at the end of an edge, in a body of revolution: the weight of its integrals.
+type Radii = Option<[PreciseBall; 2]>;
+
+/// A weight times r at a place of an edge.
+fn weighted(radii: Radii, place: PreciseBall, weight: PreciseBall) -> PreciseBall {
+    radii.map_or(weight, |radii| weight * edge_integral::radius(radii, place))
+}
+
+/// The most that the square of a polynomial with `count` coefficients is on \[0, 1\] whose square has the integral 1 with the weight r:
+/// count^2 over the smaller r; or, as r is at least its larger value times the distance from the other end, count^2 (count + 1)^2 / 2
+/// over that (docs/theory.md, 11.5).
+fn most_in_revolution(count: usize, radii: [PreciseBall; 2]) -> f64 {
+    let [least, most] = [f64::min, f64::max].map(|of| of(radii[0].lower(), radii[1].lower()));
+    let (square, next) = ((count * count) as f64, ((count + 1) * (count + 1)) as f64);
+    let by_least = if least > 0.0 { square / least } else { f64::INFINITY };
+    up(by_least.min(square * next / 2.0 / most))
+}
 
 /// Values at the nodes of an edge, or what is multiplied by them.
 type Row = Vec<PreciseBall>;
@@ -62,13 +80,15 @@ pub struct Pressed {
 
 impl EdgePiece {
     /// The pieces of an edge on which P is positive.
-    fn pressed(degree: Degree, rule: &EdgeRule, p: &Row) -> Vec<Self> {
+    fn pressed(degree: Degree, rule: &EdgeRule, radii: Radii, p: &Row) -> Vec<Self> {
         let EdgeRule::Gauss(points) = rule else {
-            return Self::between_roots(degree, p);
+            return Self::between_roots(degree, radii, p);
         };
         let at = |&(s, weight): &(f64, f64)| {
-            let (shapes, weight) =
-                (degree.edge_values(PreciseBall::from(s)), PreciseBall::from(weight));
+            let (shapes, weight) = (
+                degree.edge_values(PreciseBall::from(s)),
+                weighted(radii, s.into(), weight.into()),
+            );
             let mass = products(weight, &shapes);
             EdgePiece {
                 ends: [s, s],
@@ -81,27 +101,26 @@ impl EdgePiece {
     }
 
     /// Those in the stretches between the roots of P.
-    fn between_roots(degree: Degree, p: &Row) -> Vec<Self> {
-        let mut cuts = roots(&p.iter().map(|p| p.head()).collect::<Vec<_>>());
+    fn between_roots(degree: Degree, radii: Radii, p: &Row) -> Vec<Self> {
+        let mut cuts = degree.roots(&p.iter().map(|p| p.head()).collect::<Vec<_>>());
         cuts.extend([0.0, 1.0]);
         cuts.sort_unstable_by(f64::total_cmp);
         let stretch = |cut: &[f64]| {
             let inset = INSET * (cut[1] - cut[0]);
             let start = if cut[0] > 0.0 { cut[0] + inset } else { 0.0 };
             let end = if cut[1] < 1.0 { cut[1] - inset } else { 1.0 };
-            Self::between(degree, [start, end])
+            Self::between(degree, radii, [start, end])
         };
         cuts.windows(2).map(stretch).filter(|piece| piece.least(p) > 0.0).collect()
     }
 
     /// The piece of an edge with these ends. Boole's rule is exact for the products. The square is at most the sum of 2 k + 1
     /// over the length, for k up to the degree p: that is (p + 1)^2, as Legendre's polynomials are at most 1.
-    fn between(degree: Degree, ends: [f64; 2]) -> Self {
+    fn between(degree: Degree, radii: Radii, ends: [f64; 2]) -> Self {
         let start = PreciseBall::from(ends[0]);
         let length = PreciseBall::from(ends[1]) - start;
-        let at = |i: i32| {
-            degree.edge_values(start + PreciseBall::from(i) / PreciseBall::from(4) * length)
-        };
+        let place = |i: i32| start + PreciseBall::from(i) / PreciseBall::from(4) * length;
+        let at = |i: i32| degree.edge_values(place(i));
         let coefficients = match degree {
             Degree::One => vec![at(0), at(4)],
             Degree::Two => {
@@ -112,11 +131,17 @@ impl EdgePiece {
             }
         };
         let count = degree.nodes_per_edge();
-        let square = PreciseBall::from((count * count) as i32) / length;
+        let square = match radii {
+            None => PreciseBall::from((count * count) as i32) / length,
+            Some(_) => {
+                let radius = |i: i32| weighted(radii, place(i), PreciseBall::from(1));
+                PreciseBall::from(most_in_revolution(count, [radius(0), radius(4)])) / length
+            }
+        };
         let mut mass = vec![vec![PreciseBall::from(0); count]; count];
         for (i, weight) in [(0, 7), (1, 32), (2, 12), (3, 32), (4, 7)] {
             let weight = length * PreciseBall::from(weight) / PreciseBall::from(90);
-            add(&mut mass, &products(weight, &at(i)));
+            add(&mut mass, &products(weighted(radii, place(i), weight), &at(i)));
         }
         EdgePiece { ends, coefficients, square, mass }
     }
@@ -129,13 +154,16 @@ impl EdgePiece {
 
 impl PressedEdge {
     /// The part of the edge `line` in these pieces, where P has the values `p`. `None` where there are none.
-    fn new(line: &ContactFace<PreciseBall>, p: &Row, pieces: &[&EdgePiece]) -> Option<Self> {
+    fn new(line: &Piece<PreciseBall>, p: &Row, pieces: &[&EdgePiece]) -> Option<Self> {
         let mut mass = vec![vec![PreciseBall::from(0); p.len()]; p.len()];
         pieces.iter().for_each(|piece| add(&mut mass, &piece.mass));
         let most = |piece: &EdgePiece| SAFETY * root_of(line) * piece.square.upper().sqrt();
         let bounds = pieces.iter().map(|piece| [piece.least(p), most(piece)]).collect();
+        // In the plane the most of the square of P0 is above that of the stress, which is affine.
+        let of_stress = SAFETY * root_of(line) * line.radii.map_or(0.0, |_| stress_factor(line));
         let at_ends = |piece: &&EdgePiece| {
-            let (ends, most) = (piece.coefficients.iter().take(2), most(piece));
+            let ends = piece.coefficients.iter().take(2);
+            let most = most(piece).max(of_stress);
             ends.map(|shapes| (shapes.clone(), most)).collect::<Vec<_>>()
         };
         let places = pieces.iter().flat_map(at_ends).collect();
@@ -153,21 +181,21 @@ impl Pressed {
     /// Finds the pieces that are surely pressed at the displacement `u`, those that have their `share` of the pressure.
     pub fn at(
         d: &Discretization,
-        lines: &[ContactFace<PreciseBall>],
+        lines: &[Piece<PreciseBall>],
         u: &[[PreciseBall; 2]],
         share: f64,
     ) -> Self {
         let edges = lines.iter().map(|line| {
             let p = line.p(u);
             let least = |piece: EdgePiece| (piece.least(&p), piece);
-            let pieces = EdgePiece::pressed(d.space.degree(), &d.rule, &p).into_iter().map(least);
-            let pieces: Vec<(f64, EdgePiece)> = pieces.collect();
+            let pieces = EdgePiece::pressed(d.space.degree(), &d.rule, line.radii, &p);
+            let pieces: Vec<(f64, EdgePiece)> = pieces.into_iter().map(least).collect();
             (p, pieces)
         });
         let edges: Vec<(Row, Vec<(f64, EdgePiece)>)> = edges.collect();
         let all = edges.iter().flat_map(|(_, pieces)| pieces);
         let enough = share * all.fold(0.0, |most: f64, (least, _)| most.max(*least));
-        let part = |(line, (p, pieces)): (&ContactFace<PreciseBall>, &(Row, Vec<_>))| {
+        let part = |(line, (p, pieces)): (&Piece<PreciseBall>, &(Row, Vec<_>))| {
             let taken = pieces.iter().filter(|(least, _)| *least >= enough);
             PressedEdge::new(line, p, &taken.map(|(_, piece)| piece).collect::<Vec<_>>())
         };
@@ -192,13 +220,13 @@ impl Pressed {
 
     /// The holds of S: sums of n~ . v at the nodes of its edges, each times its shape function at a place of the edge:
     /// n~ . v = P0(v) + gamma s(v), for |v|_S (1 - kappa)^{-1/2} <= 1: at most what P0(v) is beside |v|_S.
-    pub fn holds(&self, d: &Discretization, lines: &[ContactFace<PreciseBall>]) -> Vec<Hold> {
+    pub fn holds(&self, d: &Discretization, lines: &[Piece<PreciseBall>]) -> Vec<Hold> {
         let mesh = d.space.mesh();
         let mut holds = Vec::new();
         for (line, part) in lines.iter().zip(&self.edges) {
             let Some(part) = part else { continue };
             let [start, end] =
-                mesh.ends(line.edge).map(|v| mesh.vertices()[v].map(PreciseBall::from));
+                mesh.ends(line.edge()).map(|v| mesh.vertices()[v].map(PreciseBall::from));
             let middle = [0, 1].map(|c| (start[c] + end[c]) * PreciseBall::from(0.5));
             for (shapes, most) in &part.places {
                 let nodes = [start, end, middle].into_iter().zip(shapes).enumerate();
@@ -206,7 +234,7 @@ impl Pressed {
                     let direction: [PreciseBall; 2] = line.direction(a).into();
                     (at.map(PreciseBall::rounded), direction.map(|n| (shape * n).rounded()))
                 });
-                let (triangle, terms) = (line.edge.triangle, terms.collect());
+                let (triangle, terms) = (line.edge().triangle, terms.collect());
                 holds.push(Hold { triangle, terms, most: *most });
             }
         }
@@ -214,10 +242,10 @@ impl Pressed {
     }
 
     /// For each contact edge the matrix of its springs, in doubles.
-    pub fn springs(&self, lines: &[ContactFace<PreciseBall>]) -> Vec<DMatrix<f64>> {
-        let of = |(line, part): (&ContactFace<PreciseBall>, &Option<PressedEdge>)| {
-            let weight = (line.length / line.gamma).head();
-            let nodes = line.gap.len();
+    pub fn springs(&self, lines: &[Piece<PreciseBall>]) -> Vec<DMatrix<f64>> {
+        let of = |(line, part): (&Piece<PreciseBall>, &Option<PressedEdge>)| {
+            let weight = line.weight().head();
+            let nodes = line.p0.len();
             let mass =
                 |a: usize, b: usize| part.as_ref().map_or(0.0, |part| part.mass[a][b].head());
             DMatrix::from_fn(nodes, nodes, |a, b| weight * mass(a, b))
@@ -228,13 +256,13 @@ impl Pressed {
     /// Adds what the springs of S do against v, the integral over S of P0(v) P0(w) / gamma for every basis function w.
     pub fn add_springs(
         &self,
-        lines: &[ContactFace<PreciseBall>],
+        lines: &[Piece<PreciseBall>],
         v: &[[PreciseBall; 2]],
         forces: &mut [[PreciseBall; 2]],
     ) {
         for (line, part) in lines.iter().zip(&self.edges) {
             let Some(part) = part else { continue };
-            let weight = line.length / line.gamma;
+            let weight = line.weight();
             let p0 = line.p0(v);
             let springs: Row = part.mass.iter().map(|row| weight * dot(row, &p0)).collect();
             line.add_contact(&springs, forces);
@@ -258,17 +286,22 @@ fn products(weight: PreciseBall, values: &[PreciseBall]) -> Vec<Row> {
 }
 
 /// (gamma / |E|)^{1/2}
-fn root_of(line: &ContactFace<PreciseBall>) -> f64 {
+fn root_of(line: &Piece<PreciseBall>) -> f64 {
     up((line.gamma / line.length).upper().sqrt())
 }
 
 /// An upper bound of a polynomial on an edge by its Bernstein coefficients, from its values at the nodes.
-pub fn greatest(p: &[PreciseBall]) -> f64 {
-    bernstein(p).iter().map(|p| p.upper()).fold(f64::NEG_INFINITY, f64::max)
+pub fn greatest(degree: Degree, p: &[PreciseBall]) -> f64 {
+    degree.bernstein(p).iter().map(|p| p.upper()).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// How much P0(v) is along an edge at most where |v| is at most `far` at its nodes and `radius` in the energy norm a: n~ . v
-/// is at most 5/4 of the largest nodal value, gamma |s(v)| at most 2 (gamma / |E|)^{1/2} |v|_a.
-pub fn change(line: &ContactFace<PreciseBall>, far: f64, radius: f64) -> f64 {
-    up(SAFETY * (1.25 * far + 2.0 * root_of(line) * radius))
+/// is at most 5/4 of the largest nodal value, gamma |s(v)| at most 2 (gamma / |E|)^{1/2} |v|_a in the plane.
+pub fn change(line: &Piece<PreciseBall>, far: f64, radius: f64) -> f64 {
+    up(SAFETY * (1.25 * far + stress_factor(line) * root_of(line) * radius))
+}
+
+/// The most that an affine function is on an edge whose square has the integral 1 over \[0, 1\], with the weight.
+fn stress_factor(line: &Piece<PreciseBall>) -> f64 {
+    line.radii.map_or(2.0, |radii| up(most_in_revolution(2, radii).sqrt()))
 }

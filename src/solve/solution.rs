@@ -9,13 +9,14 @@ use serde::{Deserialize, Serialize};
 use super::answers::{self, ContactBoundary, EnergyBalance};
 use super::enclosure::{Enclosure, Unproved};
 use super::iterate::Evaluated;
+use super::whole::of_the_whole;
 use super::{MethodReport, NewtonReport, Report, Verdict};
-use crate::fem::Degree;
 use crate::fem::contact_line::{Coercivity, Gamma};
 use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
-use crate::fem::element::maximum;
+use crate::fem::piece::PieceNode;
 use crate::fem::solvability::Play;
+use crate::fem::{Degree, Piece};
 use crate::kernel::DoubleDouble;
 use crate::kernel::Stress;
 use crate::kernel::contact::pressure;
@@ -34,12 +35,14 @@ pub struct Solution {
     pub nodes_per_triangle: usize,
     /// u^h at the nodes.
     pub displacement: Vec<[f64; 2]>,
-    /// The mean stress on each triangle, with sigma_zz.
+    /// The mean stress on each triangle, with sigma_zz; in a body of revolution the stress in the meridian, with the hoop stress.
     pub stress: Vec<(Stress<f64>, f64)>,
     /// The von Mises stress of the mean stress on each triangle.
     pub von_mises: Vec<f64>,
     /// The edges of Gamma_C, chained along the boundary.
     pub contact: Vec<ContactEdgeValues>,
+    /// The pieces of Gamma_C with what method (8) has on them.
+    pub pieces: Vec<Piece>,
     /// gamma0, kappa and where the limit comes from.
     pub gamma: GammaReport,
     /// How Newton's method went.
@@ -142,22 +145,22 @@ impl Solution {
     /// Evaluates all reported quantities of a displacement.
     pub fn new(d: &Discretization, evaluated: Evaluated, report: Report) -> Self {
         let stress = mean_stresses(d, &evaluated.u);
+        let of_revolution = d.problem.material.are_of_revolution();
         let quantities = quantities(d, &evaluated);
         let Evaluated { u, p, residual } = evaluated;
         let recovered = answers::recovered_pressure(d, &p);
-        let with_material =
-            || stress.iter().enumerate().map(|(t, &s)| (d.problem.material.of(t), s));
-        Solution {
+        let solution = Solution {
             degree: d.space.degree(),
             nodes: d.space.nodes().to_vec(),
             elements: d.space.connectivity().to_vec(),
             nodes_per_triangle: d.space.degree().nodes_per_triangle(),
-            von_mises: with_material().map(|(m, s)| m.von_mises_squared(s).sqrt()).collect(),
-            stress: with_material().map(|(m, s)| (s, m.stress_zz(s))).collect(),
+            von_mises: stress.iter().map(|(s, zz)| s.von_mises_squared(*zz).sqrt()).collect(),
+            stress,
             contact: contact_values(d, &u, &p, &recovered),
             boundaries: answers::contact_boundaries(d, &u, &p, &recovered),
             largest_strain: answers::largest_strain(d, &u),
             balance: answers::energy_balance(d, &u, &p, &residual, quantities.energy),
+            pieces: d.contact.clone(),
             gamma: GammaReport::new(d),
             newton: report.newton,
             method: report.method,
@@ -166,7 +169,8 @@ impl Solution {
             verdict: report.verdict,
             quantities,
             displacement: u,
-        }
+        };
+        if of_revolution { of_the_whole(solution) } else { solution }
     }
 
     /// u^h at the point with the barycentric coordinates `l` of triangle `t`, as [`Mesh::locate`] finds them.
@@ -192,16 +196,19 @@ impl Solution {
 }
 
 impl GammaReport {
-    /// The stresses of a discretization.
+    /// Reports gamma, kappa and the limit of a discretization.
     pub fn new(d: &Discretization) -> Self {
         let (kappa, coercivity) = (d.kappa(), d.coercivity);
         GammaReport { gamma: d.gamma, gamma0: d.gamma0, kappa, coercivity }
     }
 }
 
-/// The mean of sigma(u) on each triangle.
-fn mean_stresses(d: &Discretization, u: &[[f64; 2]]) -> Vec<Stress<f64>> {
-    let stress = |t| d.problem.material.of(t).stress(d.space.mean_gradient(t, u));
+/// The mean of sigma(u) on each triangle, and the one across the plane.
+fn mean_stresses(d: &Discretization, u: &[[f64; 2]]) -> Vec<(Stress<f64>, f64)> {
+    let stress = |t| {
+        let material = d.problem.material.of(t);
+        material.state(d.space.mean_gradient(t, u), d.space.mean_hoop_strain(t, material, u))
+    };
     (0..d.space.mesh().triangles().len()).map(stress).collect()
 }
 
@@ -214,22 +221,23 @@ fn contact_values(
     let mut start = 0.0;
     let mut line = Vec::with_capacity(d.contact.len());
     for ((edge, p), recovered) in d.contact.iter().zip(p).zip(recovered) {
-        if line.last().is_none_or(|last: &ContactEdgeValues| last.boundary != edge.boundary) {
+        if line.last().is_none_or(|last: &ContactEdgeValues| last.boundary != *edge.boundary()) {
             start = 0.0;
         }
-        let triangle = edge.edge.triangle;
-        let sigma_n = edge.sigma_n(|node| u[node]);
-        let nodes = d.space.edge_nodes(edge.edge);
+        let triangle = edge.edge().triangle;
+        let sigma_n = edge.sigma_n(u);
+        let nodes = d.space.edge_nodes(edge.edge());
         let positions = d.space.degree().edge_positions();
         let mut points: Vec<ContactValues> = (0..nodes.len())
             .map(|a| {
                 let [x, y] = u[nodes[a]];
+                let PieceNode { direction, gap, .. } = edge.geometry.nodes[a];
                 ContactValues {
                     node: nodes[a],
-                    direction: edge.directions[a].into(),
+                    direction: direction.into(),
                     arc: start + positions[a] * edge.length,
-                    u_n: x * edge.directions[a][0] + y * edge.directions[a][1],
-                    gap: edge.gap[a],
+                    u_n: x * direction[0] + y * direction[1],
+                    gap,
                     sigma_n: (1.0 - positions[a]) * sigma_n[0] + positions[a] * sigma_n[1],
                     lambda: pressure(p[a].head(), edge.gamma) + 0.0,
                     pressure: recovered[a],
@@ -237,8 +245,8 @@ fn contact_values(
             })
             .collect();
         points.sort_by(|a, b| a.arc.total_cmp(&b.arc));
-        let boundary = Arc::clone(&edge.boundary);
-        line.push(ContactEdgeValues { triangle, boundary, normal: edge.normal.into(), points });
+        let (boundary, normal) = (Arc::clone(edge.boundary()), edge.normal().into());
+        line.push(ContactEdgeValues { triangle, boundary, normal, points });
         start += edge.length;
     }
     line
@@ -257,18 +265,16 @@ fn quantities(d: &Discretization, Evaluated { u, p, residual }: &Evaluated) -> Q
         reaction_moments: BTreeMap::new(),
     };
     for (edge, p) in d.contact.iter().zip(p) {
-        let integrals = d.rule.integrals(p);
-        // The shape functions add up to one, so this is the integral of [P]+ / gamma.
-        let force = edge.length / edge.gamma * integrals.gradient.iter().sum::<f64>();
-        q.contact_force += force;
-        for (g, n) in integrals.gradient.iter().zip(&edge.directions) {
+        let contact = edge.contribution(&d.rule, p);
+        q.contact_force += contact.resultant;
+        for (force, n) in contact.force.iter().zip(edge.geometry.directions()) {
             for c in 0..2 {
-                q.contact_resultant[c] -= edge.length / edge.gamma * g * n[c];
+                q.contact_resultant[c] -= force * n[c];
             }
         }
-        q.contact_length += edge.length * integrals.active;
+        q.contact_length += contact.active;
         let heads: Vec<f64> = p.iter().map(|p| p.head()).collect();
-        let peak = -pressure(maximum(&heads), edge.gamma);
+        let peak = -pressure(edge.degree.maximum(&heads), edge.gamma);
         q.peak_pressure = q.peak_pressure.max(peak);
     }
     for (boundary, held) in d.constraints.holders() {

@@ -6,7 +6,7 @@
 use super::solution::Solution;
 use crate::fem::Problem;
 
-/// sigma_xx, sigma_yy, sigma_zz, sigma_xy
+/// sigma_xx, sigma_yy, sigma_zz, sigma_xy; in a body of revolution sigma_rr, sigma_zz, the hoop stress and sigma_rz.
 pub type Components = [f64; 4];
 
 /// The von Mises stress, sigma_zz included.
@@ -95,6 +95,9 @@ impl Solution {
             let (triangle, material) = (problem.mesh.triangle(t), problem.material.of(t));
             let (barycentric, area) = (triangle.barycentric_gradients(), triangle.double_area());
             let nodal = |j: usize| self.displacement[nodes[j]].into();
+            let hoop = material.radii(&triangle).map_or([0.0; 3], |radii| {
+                self.degree.hoop_strain(radii, |j| self.displacement[nodes[j]][0])
+            });
             for (j, &node) in nodes.iter().enumerate() {
                 // Corner j, or the middle of the edge opposite corner j - 3.
                 let l = [0, 1, 2].map(|k| match j {
@@ -102,8 +105,9 @@ impl Solution {
                     _ => f64::from(u8::from(k != j - 3)) / 2.0,
                 });
                 let gradient = self.degree.displacement_gradient(l, barycentric, nodal);
-                let stress = material.stress(gradient);
-                let ([xx, yy, xy], zz) = (stress.components(), material.stress_zz(stress));
+                let hoop = self.degree.value_from_points(hoop, l);
+                let (stress, zz) = material.state(gradient, hoop);
+                let [xx, yy, xy] = stress.components();
                 let (sum, weight, _) = sums[node].get_or_insert(([0.0; 4], 0.0, t));
                 for (sum, s) in sum.iter_mut().zip([xx, yy, zz, xy]) {
                     *sum += area * s;
