@@ -414,7 +414,7 @@ impl<const N: usize> RoundedStrain<N> {
     /// [`RoundedStrain::stress_error_squared`] in a body of revolution: the hoop strain, the weights and the roundings to multiples of
     /// a power of two have their own errors, all of them relative to the largest stress (docs/theory.md, 11.5).
     fn error_squared_of_revolution(&self, hoop: &RoundedHoop, moduli: &Moduli) -> f64 {
-        let rounding = 48.0 * f64::EPSILON * (self.size + hoop.largest());
+        let rounding = 64.0 * f64::EPSILON * (self.size + hoop.largest());
         let off = moduli.most * (self.error + hoop.error + rounding) + f64::MIN_POSITIVE;
         off * off * (self.gradients.area * hoop.radii / moduli.least) + f64::MIN_POSITIVE
     }

@@ -43,6 +43,8 @@ pub struct LargestStresses {
     pub principal_max: Extreme,
     /// The smallest principal stress, sigma_zz included: the largest compression.
     pub principal_min: Extreme,
+    /// The largest and the smallest hoop stress of a body of revolution.
+    pub hoop: Option<[Extreme; 2]>,
 }
 
 impl Solution {
@@ -56,6 +58,7 @@ impl Solution {
     /// The largest stresses, of `problem`, which is the one that this solves; none without a triangle.
     pub fn largest_stresses(&self, problem: &Problem) -> Option<LargestStresses> {
         let mut largest: Option<LargestStresses> = None;
+        let of_revolution = problem.material.are_of_revolution();
         for place in 0..problem.material.distinct().len() {
             let means = self.nodal_means(problem, |t| problem.material.place_of(t) == place);
             for (&at, (stress, triangle)) in
@@ -67,6 +70,7 @@ impl Solution {
                     von_mises: extreme(von_mises(stress)),
                     principal_max: extreme(first.max(stress[2])),
                     principal_min: extreme(second.min(stress[2])),
+                    hoop: of_revolution.then(|| [extreme(stress[2]); 2]),
                 };
                 let so_far = largest.get_or_insert(here);
                 if here.von_mises.value > so_far.von_mises.value {
@@ -77,6 +81,10 @@ impl Solution {
                 }
                 if here.principal_min.value < so_far.principal_min.value {
                     so_far.principal_min = here.principal_min;
+                }
+                if let (Some([most, least]), Some([here, _])) = (&mut so_far.hoop, here.hoop) {
+                    *most = if here.value > most.value { here } else { *most };
+                    *least = if here.value < least.value { here } else { *least };
                 }
             }
         }

@@ -35,6 +35,7 @@ mod recovered;
 mod reference;
 #[cfg(feature = "cli")]
 mod reported;
+mod revolution;
 mod routes;
 #[cfg(feature = "cli")]
 mod set_and_sweep;

@@ -249,7 +249,11 @@ fn read_orthotropic(
     }
     table.only(&keys)?;
     let number = |key, expected| table.require(key, expected)?.number();
-    let out = |key| number(key, "a number, beyond plane stress");
+    let beyond = match plane {
+        Plane::Axisymmetric => "a number, in a body of revolution",
+        _ => "a number, in plane strain",
+    };
+    let out = |key| number(key, beyond);
     let across = match plane {
         Plane::Stress => None,
         Plane::Strain | Plane::Axisymmetric => {

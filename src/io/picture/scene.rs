@@ -30,6 +30,8 @@ pub(super) struct Scene {
     /// The edges of the whole boundary, from start to end, the body on their left.
     pub(super) outline: Vec<[usize; 2]>,
     pub(super) contact: Vec<ContactSurface>,
+    /// The body is one of revolution about x = 0: its other half is drawn, too.
+    pub(super) of_revolution: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -113,6 +115,7 @@ impl Scene {
             interfaces: interfaces(case).into_iter().flat_map(parts).collect(),
             outline: mesh.outline().iter().copied().flat_map(parts).collect(),
             contact: contact_surfaces(s, results),
+            of_revolution: case.problem.material.are_of_revolution(),
         }
     }
 
