@@ -62,7 +62,9 @@ fn solve(
             .into_iter()
             .map(|(name, bytes)| Ok((name, members(&bytes)?)))
             .collect::<PyResult<_>>()?;
-        let mesh = Mesh::new(doubles(points), indices(triangles)?, boundaries).map_err(wrong)?;
+        let pairs = Case::pairs(Path::new("case"), text).map_err(wrong)?;
+        let mesh = Mesh::with_pairs(doubles(points), indices(triangles)?, boundaries, &pairs);
+        let mesh = mesh.map_err(wrong)?;
         let mesh = mesh.with_names(surfaces, named_points.into_iter().collect());
         let case = Case::on_mesh(Path::new("case"), text, mesh).map_err(wrong)?;
         solved(case, start)

@@ -55,6 +55,7 @@ pub use self::quantities::ProvedQuantities;
 use crate::fem::{Degree, Mesh, Problem};
 use crate::kernel::{Ball, Scalar, Triangle};
 use crate::memory;
+use crate::quote::quoted;
 use crate::solve::Solution;
 
 /// The number of times that the stress is improved around every vertex.
@@ -168,6 +169,12 @@ fn certify_near(
         return Err(CertifyError::Unsupported(
             "the body is one of revolution, and certificates are about plane bodies".to_owned(),
         ));
+    }
+    if let Some(pair) = problem.pairs.first() {
+        let [first, second] = pair.boundaries.each_ref().map(|name| quoted(name, '\''));
+        return Err(CertifyError::Unsupported(format!(
+            "{first} and {second} are a pair, and there are no certificates for two bodies yet"
+        )));
     }
     // Beside a quadratic v each is cut in four.
     let quadratic = solution.degree == Degree::Two && start.len() > problem.mesh.vertices().len();

@@ -116,26 +116,99 @@ impl SmoothBoundary {
 
     /// Start, end and middle of the smooth boundary along an edge, if it is not straight there.
     pub fn along(&self, mesh: &Mesh, edge: BoundaryEdge) -> Option<[SmoothPoint; 3]> {
-        let [n, m] = self.at_ends(edge)?;
-        let [a, b] = mesh.places_of_ends(edge).map(Vector2::from);
-        let chord = b - a;
-        let half = ((1.0 + n.x * m.x + n.y * m.y) / 2.0).max(0.0).sqrt();
-        let speed = 2.0 * length(chord) / (1.0 + half);
-        let (t, s) = (left_of(n), left_of(m));
-        let middle = (a + b) / 2.0 + (t - s) * (speed / 8.0);
-        // The derivative of the curve there.
-        let tangent = chord * 1.5 - (t + s) * (speed / 4.0);
-        let point = |place: Vector2<f64>, normal| SmoothPoint { place: place.into(), normal };
-        Some([point(a, n), point(b, m), point(middle, unit(-left_of(tangent)))])
+        let normals = self.at_ends(edge)?;
+        let ends = mesh.places_of_ends(edge).map(Vector2::from);
+        let curve = SmoothEdge { ends, normals, curved: true };
+        Some([curve.end(0), curve.end(1), curve.middle()])
+    }
+
+    /// The curve along an edge.
+    pub(crate) fn edge(&self, mesh: &Mesh, edge: BoundaryEdge) -> SmoothEdge {
+        let ends = mesh.places_of_ends(edge).map(Vector2::from);
+        match self.at_ends(edge) {
+            Some(normals) => SmoothEdge { ends, normals, curved: true },
+            None => {
+                SmoothEdge { ends, normals: [mesh.length_and_normal(edge).1; 2], curved: false }
+            }
+        }
     }
 }
 
-fn unit(v: Vector2<f64>) -> Vector2<f64> {
+/// The smooth boundary between two of its points: the cubic curve of the head of this file, or a straight line.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SmoothEdge {
+    /// Start and end, the body on the left.
+    pub ends: [Vector2<f64>; 2],
+    /// The outward normals there.
+    pub normals: [Vector2<f64>; 2],
+    /// The boundary is not the chord.
+    pub curved: bool,
+}
+
+impl SmoothEdge {
+    fn end(&self, k: usize) -> SmoothPoint {
+        SmoothPoint { place: self.ends[k].into(), normal: self.normals[k] }
+    }
+
+    /// |b - a|
+    pub fn length(&self) -> f64 {
+        length(self.ends[1] - self.ends[0])
+    }
+
+    /// The point of the chord at `s`, from 0 to 1.
+    pub fn on_chord(&self, s: f64) -> Vector2<f64> {
+        let [a, b] = self.ends;
+        if s < 0.5 { a + (b - a) * s } else { b + (a - b) * (1.0 - s) }
+    }
+
+    /// m, the length of the derivative at both ends.
+    fn speed(&self) -> f64 {
+        let [n, m] = self.normals;
+        let half = ((1.0 + n.x * m.x + n.y * m.y) / 2.0).max(0.0).sqrt();
+        2.0 * self.length() / (1.0 + half)
+    }
+
+    fn middle(&self) -> SmoothPoint {
+        let ([a, b], [t, s], speed) = (self.ends, self.normals.map(left_of), self.speed());
+        let middle = (a + b) / 2.0 + (t - s) * (speed / 8.0);
+        // The derivative of the curve there.
+        let tangent = (b - a) * 1.5 - (t + s) * (speed / 4.0);
+        SmoothPoint { place: middle.into(), normal: unit(-left_of(tangent)) }
+    }
+
+    /// The point of the curve at `s`, from 0 to 1.
+    pub fn at(&self, s: f64) -> (Vector2<f64>, Vector2<f64>) {
+        if s <= 0.0 || s >= 1.0 {
+            let k = usize::from(s >= 1.0);
+            return (self.ends[k], self.normals[k]);
+        }
+        let chord = self.on_chord(s);
+        if !self.curved {
+            return (chord, self.normals[0]);
+        }
+        let ([a, b], [t, u], speed) = (self.ends, self.normals.map(left_of), self.speed());
+        let r = 1.0 - s;
+        // Off the chord: s r ((r - s) (a - b) + m (r t - s u)).
+        let place = chord + ((a - b) * (r - s) + (t * r - u * s) * speed) * (s * r);
+        let tangent =
+            (b - a) * (6.0 * s * r) + (t * (r * (r - 2.0 * s)) + u * (s * (s - 2.0 * r))) * speed;
+        (place, unit(-left_of(tangent)))
+    }
+
+    /// The curvature of the circle through both ends with these normals.
+    pub fn curvature(&self) -> f64 {
+        let [n, m] = self.normals;
+        length(m - n) / self.length()
+    }
+}
+
+/// v / |v|
+pub(crate) fn unit(v: Vector2<f64>) -> Vector2<f64> {
     v / length(v)
 }
 
 /// v turned left by a right angle.
-fn left_of(v: Vector2<f64>) -> Vector2<f64> {
+pub(crate) fn left_of(v: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-v.y, v.x)
 }
 
@@ -163,6 +236,28 @@ mod tests {
 
     fn on_circle(angles: &[f64]) -> Vec<[f64; 2]> {
         angles.iter().map(|a| [2.0 * a.cos(), 2.0 * a.sin()]).collect()
+    }
+
+    #[test]
+    fn the_curve_between_points_of_a_circle_lies_on_it_to_the_sixth_power_of_its_angle() {
+        let normal = |angle: f64| Vector2::new(angle.cos(), angle.sin());
+        let off = |angle: f64| {
+            let normals = [normal(0.3), normal(0.3 + angle)];
+            let curve = SmoothEdge { ends: normals.map(|n| n * 2.0), normals, curved: true };
+            assert_abs_diff_eq!(curve.curvature(), 0.5, epsilon = ROUNDING);
+            let SmoothPoint { place, normal } = curve.middle();
+            let (at, n) = curve.at(0.5);
+            assert_abs_diff_eq!(at, Vector2::from(place), epsilon = ROUNDING);
+            assert_abs_diff_eq!(n, normal, epsilon = ROUNDING);
+            let off = (1..20).map(|k| curve.at(f64::from(k) / 20.0)).map(|(x, n)| {
+                // A normal of the curve is one of the circle, as far as the curve is the circle.
+                assert!(length(n - unit(x)) < 2e-3 * angle.powi(5));
+                (length(x) - 2.0).abs()
+            });
+            off.fold(0.0, f64::max)
+        };
+        let (coarse, fine) = (off(0.4), off(0.2));
+        assert!(coarse < 1e-6 && (55.0..70.0).contains(&(coarse / fine)), "{coarse:e} {fine:e}");
     }
 
     #[test]

@@ -4,7 +4,8 @@ use super::dense::{dot, norm};
 use super::discretization::Discretization;
 use super::piece::Piece;
 use super::rigid::{FreeMotion, NEGLIGIBLE, Parts, null_space};
-use super::solvability::{Slides, all, negligible, rows};
+use super::solvability::{Slides, all, joined, negligible, rows};
+use crate::kernel::Response;
 
 /// An edge presses where P is above this share of the largest; below it P is what the tolerance of Newton's method leaves. With a
 /// hundredth of it, edges that touch without a force are taken to hold the body.
@@ -19,13 +20,14 @@ impl Slides {
         let p: Vec<Vec<f64>> = d.contact.iter().map(|edge| edge.p(u)).collect();
         let degree = d.space.degree();
         let most = |p: &[f64]| degree.bernstein(p).into_iter().fold(0.0, f64::max);
-        let largest = p.iter().map(|p| most(p)).fold(0.0, f64::max);
+        let pushing = p.iter().zip(&d.contact).filter(|(_, piece)| !pulls(piece));
+        let largest = pushing.map(|(p, _)| most(p)).fold(0.0, f64::max);
         let far = size(u.as_flattened());
         let presses = |(p, piece): (&Vec<f64>, &Piece)| {
             let gap = piece.geometry.gaps().fold(0.0, |m: f64, g| m.max(g.abs()));
             let rounding = 8.0 * f64::EPSILON * (far + gap);
             let active = piece.contribution(&d.rule, p).active;
-            most(p) > rounding.max(PRESSES * largest) && active > 0.0
+            pulls(piece) || (most(p) > rounding.max(PRESSES * largest) && active > 0.0)
         };
         let pressing = p.iter().zip(&d.contact).map(presses);
         let pressing: Vec<bool> = pressing.zip(idle).map(|(yes, idle)| yes && !idle).collect();
@@ -36,23 +38,19 @@ impl Slides {
         let (mut bounds, mut stopping) = (Vec::new(), Vec::new());
         let edges = d.contact.iter().zip(&p).zip(pressing).zip(idle);
         for (e, (((edge, p), pressing), idle)) in edges.enumerate() {
-            let nodes = d.space.edge_nodes(edge.edge());
-            let lengths = basis.iter().flat_map(|b| nodes.iter().map(|&node| b[node]));
+            if pressing {
+                continue;
+            }
+            let lengths = basis.iter().flat_map(|b| edge.edge_nodes().map(|node| b[node]));
             let none = rounding * lengths.fold(0.0, |m: f64, [x, y]| m.max(x.hypot(y)));
-            let row = |a: usize| {
-                let direction = edge.geometry.nodes[a].direction;
-                let along = |b: &Vec<[f64; 2]>| dot(&b[nodes[a]], direction.as_slice());
-                basis.iter().map(along).collect::<Vec<f64>>()
-            };
-            let rows: Vec<Vec<f64>> = (0..nodes.len()).map(row).collect();
             let coefficients = degree.bernstein(p);
             // Not a step towards an edge of which a coefficient is positive although P is not.
             let open = *idle || coefficients.iter().all(|p| *p <= 0.0);
+            let jumps: Vec<Vec<f64>> =
+                basis.iter().map(|b| degree.bernstein(&edge.jumps(b))).collect();
             for (a, coefficient) in coefficients.into_iter().enumerate() {
-                let row: Vec<f64> = (0..basis.len())
-                    .map(|j| degree.bernstein(&rows.iter().map(|r| r[j]).collect::<Vec<f64>>())[a])
-                    .collect();
-                if !pressing && norm(&row) > none {
+                let row: Vec<f64> = jumps.iter().map(|jump| jump[a]).collect();
+                if norm(&row) > none {
                     let bound = if open { -coefficient } else { 0.0 } + dot(&row, &at);
                     bounds.push((row, bound));
                     stopping.push(e);
@@ -64,10 +62,15 @@ impl Slides {
     }
 }
 
+/// Returns whether a piece pulls as well as it pushes: it never lets go.
+fn pulls(piece: &Piece) -> bool {
+    piece.responses().all(|(response, _)| response == Response::Bilateral)
+}
+
 /// The motions of `d` that neither supports nor the contact edges that are pressing stop.
 pub(crate) fn free_where(d: &Discretization, parts: &Parts, pressing: &[bool]) -> Vec<FreeMotion> {
     let mut free = Vec::new();
-    for of_part in d.motions.chunk_by(|a, b| a.part == b.part) {
+    for of_part in &joined(&d.motions, parts, &d.contact) {
         let count = of_part.len();
         let rows = all(&rows(of_part, parts, &d.space, &d.contact, |e| pressing[e]));
         let none = negligible(&rows, count, d.rounding_of_directions());

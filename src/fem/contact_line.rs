@@ -14,9 +14,11 @@ use super::function::SharedFunction;
 use super::law::Law;
 use super::mesh::{BoundaryEdge, ROUNDED};
 use super::obstacle::Closest;
+use super::pairs::{self, PairPiece, PairSide};
 use super::piece::{Piece, PieceGeometry, PieceNode, SideData, Stretch};
 use super::problem::{Condition, Problem};
 use super::space::Space;
+use crate::kernel::Scalar;
 use crate::kernel::contact_edge::traction_stiffness;
 use crate::quote::key;
 
@@ -85,7 +87,7 @@ fn contact_edges(problem: &Problem) -> Result<Vec<(BoundaryEdge, &str)>, DataErr
             edges.extend(chained.into_iter().map(|edge| (edge, name.as_str())));
         }
     }
-    if edges.is_empty() { Err(DataError::NoContact) } else { Ok(edges) }
+    if edges.is_empty() && problem.pairs.is_empty() { Err(DataError::NoContact) } else { Ok(edges) }
 }
 
 /// Sorts edges into chains: each is followed by the one that starts where it ends, if there is one.
@@ -131,7 +133,14 @@ impl ContactLine {
             pieces.push(Arc::new(obstacles.piece(space, edge, boundary)?));
         }
         check_sides(problem, &pieces)?;
-        Ok(ContactLine { degree: space.degree(), pieces })
+        let degree = space.degree();
+        let of_pairs = pairs::of_problem(problem, &obstacles.smooth, degree)?;
+        for (pair, of_pair) in problem.pairs.iter().zip(of_pairs) {
+            let names = pair.boundaries.each_ref().map(|name| Arc::from(name.as_str()));
+            let between = |piece| Arc::new(obstacles.piece_between(&names, pair.law, piece));
+            pieces.extend(of_pair.into_iter().map(between));
+        }
+        Ok(ContactLine { degree, pieces })
     }
 
     /// Its pieces, each boundary in chains along the boundary.
@@ -166,28 +175,34 @@ impl ContactLine {
     /// kappa / gamma0 on each triangle with an edge on Gamma_C.
     fn constants(&self, problem: &Problem) -> BTreeMap<usize, f64> {
         let mesh = &problem.mesh;
-        let mut constants: BTreeMap<usize, f64> = BTreeMap::new();
+        let mut shares = Vec::new();
         for piece in &self.pieces {
             let [start, end] = [0, 1].map(|a| piece.nodes[a].direction);
-            for &Stretch { edge, .. } in &piece.stretches {
+            let lengths = piece.stretches.iter().map(|s| mesh.length_and_normal(s.edge).0);
+            let chords = piece.chords(&lengths.collect::<Vec<f64>>());
+            for (i, &Stretch { edge, .. }) in piece.stretches.iter().enumerate() {
                 let (length, normal) = mesh.length_and_normal(edge);
+                let (both, cosine) = (piece.law.components() > 1, start.dot(&end));
                 let t = edge.triangle;
                 let (triangle, material) = (mesh.triangle(t), problem.material.of(t));
                 let area = triangle.double_area() / 2.0;
-                let cosine = (start != end).then(|| start.dot(&end));
-                let radii = material.radii(&triangle).map(|radii| edge.from_its_ends(radii));
-                let counted = self.degree.counted_length(length, cosine, radii, f64::sqrt);
-                let stiffness = traction_stiffness(
-                    material,
-                    normal,
-                    (start == end).then_some(start),
-                    f64::sqrt,
-                );
-                *constants.entry(t).or_default() +=
+                let radii = piece.radii(i, |edge| {
+                    let triangle = edge.triangle;
+                    problem.material.of(triangle).radii(&mesh.triangle(triangle))
+                });
+                let share = chords.map(|chords| chords.share(i, radii, f64::max));
+                let ratio = share.map_or(length, |share| share * length);
+                let turning = (start != end).then_some((cosine, both));
+                let radii = radii.map(|radii| (radii.of_piece, radii.of_triangle));
+                let counted = self.degree.counted_length(ratio, turning, radii, f64::sqrt);
+                let direction = (start == end && !both).then_some(start);
+                let stiffness = traction_stiffness(material, normal, direction, f64::sqrt);
+                let value =
                     self.degree.coercivity_constant(stiffness, mesh.diameter(t), counted, area);
+                shares.push(Share::new(piece, i, value));
             }
         }
-        constants
+        by_triangle(shares, f64::max)
     }
 
     /// The pieces of method (8).
@@ -217,6 +232,55 @@ impl ContactLine {
         };
         self.pieces.iter().map(piece).collect()
     }
+}
+
+/// What a side of a piece adds to kappa on its triangle, were it the only one on its edge.
+pub(crate) struct Share<S> {
+    /// The triangle, its edge, and the boundary on the other side, if there is one.
+    place: (usize, usize, Option<Arc<str>>),
+    /// The part of the edge.
+    part: [f64; 2],
+    value: S,
+}
+
+impl<S> Share<S> {
+    /// The share of side `i` of a piece.
+    pub fn new(piece: &PieceGeometry, i: usize, value: S) -> Self {
+        let Stretch { edge, positions, .. } = &piece.stretches[i];
+        let other = piece.stretches.len() > 1;
+        let partner = other.then(|| Arc::clone(&piece.stretches[1 - i].boundary));
+        let part = [positions[0].min(positions[1]), positions[0].max(positions[1])];
+        Share { place: (edge.triangle, edge.local, partner), part, value }
+    }
+}
+
+/// kappa on each triangle: the sum over its edges and their partners. Of pieces that share an edge but no part of it the `largest`
+/// counts, for the integrals over their parts are together that over the edge at most.
+pub(crate) fn by_triangle<S: Scalar>(
+    shares: Vec<Share<S>>,
+    largest: impl Fn(S, S) -> S,
+) -> BTreeMap<usize, S> {
+    let mut groups: Vec<Vec<Share<S>>> = Vec::new();
+    let mut number = BTreeMap::new();
+    for share in shares {
+        let group = *number.entry(share.place.clone()).or_insert(groups.len());
+        if group == groups.len() {
+            groups.push(Vec::new());
+        }
+        groups[group].push(share);
+    }
+    let mut sums = BTreeMap::new();
+    for mut group in groups {
+        group.sort_by(|a, b| a.part[0].total_cmp(&b.part[0]));
+        let apart = group.windows(2).all(|pair| pair[0].part[1] <= pair[1].part[0]);
+        let triangle = group[0].place.0;
+        let values = group.into_iter().map(|share| share.value);
+        let value = values.reduce(|a, b| if apart { largest(a, b) } else { a + b });
+        if let Some(value) = value {
+            *sums.entry(triangle).or_insert(S::from(0)) += value;
+        }
+    }
+    sums
 }
 
 /// All pieces of Gamma_C.
@@ -302,6 +366,22 @@ impl Obstacles<'_> {
             along_normal,
             bulge,
         })
+    }
+
+    /// A piece between two bodies.
+    fn piece_between(&self, names: &[Arc<str>; 2], law: Law, piece: PairPiece) -> PieceGeometry {
+        let PairPiece { sides, directions, gap, .. } = piece;
+        let curved = self.smooth.at_ends(sides[0].edge).is_some();
+        let stretch = |(side, name): (PairSide, &Arc<str>)| Stretch {
+            edge: side.edge,
+            boundary: Arc::clone(name),
+            positions: side.places,
+        };
+        let stretches: Vec<Stretch> = sides.into_iter().zip(names).map(stretch).collect();
+        let place = |a: usize| stretches[0].place(&self.problem.mesh, a);
+        let node = |(a, (direction, gap))| PieceNode { place: place(a), direction, gap };
+        let nodes = directions.into_iter().zip(gap).enumerate().map(node).collect();
+        PieceGeometry { nodes, law, curved, along_normal: false, bulge: 0.0, stretches }
     }
 
     /// Gap and direction at a point of the boundary `name`.

@@ -5,6 +5,7 @@ use thiserror::Error;
 use super::function::Function;
 use super::material::MaterialError;
 use super::mesh::MeshError;
+use super::pairs::PairError;
 use super::rigid::FreeMotion;
 use crate::quote::{key, number, quoted};
 
@@ -15,6 +16,8 @@ use crate::quote::{key, number, quoted};
 pub enum DataError {
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    #[error(transparent)]
+    Pair(#[from] PairError),
     #[error("{what} is {value} at ({}, {}); expected a finite number at every point of the mesh", number(*x), number(*y))]
     NotFinite { what: String, value: f64, x: f64, y: f64 },
     #[error(

@@ -114,26 +114,38 @@ impl Degree {
         with_element!(self, E => contact_edge::turning_factor::<E, _, _, _>(cosine))
     }
 
-    /// The length by which an edge counts in kappa, along which the direction of contact turns by an angle with this `cosine`, if it
-    /// does; in a body of revolution with r at its two ends and at the corner opposite.
+    /// The length by which an edge counts in kappa, along which the direction of contact turns by an angle with this cosine, if it does,
+    /// of one component or of both; in a body of revolution with r at the two ends of the piece, and at the start and the end of the
+    /// edge and opposite.
     pub fn counted_length<S: Scalar>(
         self,
         length: S,
-        cosine: Option<S>,
-        radii: Option<[S; 3]>,
+        turning: Option<(S, bool)>,
+        radii: Option<([S; 2], [S; 3])>,
         root: impl Fn(S) -> S,
     ) -> S {
-        let Some([start, end, opposite]) = radii else {
-            return cosine.map_or(length, |cosine| self.turning_factor(cosine) * length);
+        let Some((piece, [start, end, opposite])) = radii else {
+            return match turning {
+                None => length,
+                Some((cosine, false)) => self.turning_factor(cosine) * length,
+                Some((cosine, true)) => self.turning_factor_of_both(cosine, root) * length,
+            };
         };
-        let ends = [start, end];
         let (turning, sharp, plane) = with_element!(self, E => (
-            cosine.map(|cosine| axial::turning_factor::<E, _, _, _>(ends, cosine, &root)),
-            axial::trace_constant::<E, _, _, _>(ends, opposite, &root),
+            turning.map(|(cosine, both)| match both {
+                false => axial::turning_factor::<E, _, _, _>(piece, cosine, &root),
+                true => axial::turning_factor_of_both::<E, _, _, _>(piece, &root),
+            }),
+            axial::trace_constant::<E, _, _, _>([start, end], opposite, &root),
             E::TRACE_CONSTANT,
         ));
         let length = turning.map_or(length, |turning| turning * length);
         length * sharp / S::from(plane)
+    }
+
+    /// The same as [`Degree::turning_factor`] where the component across acts as well: [`contact_edge::turning_factor_of_both`].
+    pub fn turning_factor_of_both<S: Scalar>(self, cosine: S, root: impl Fn(S) -> S) -> S {
+        with_element!(self, E => contact_edge::turning_factor_of_both::<E, _, _, _>(cosine, root))
     }
 
     /// Calls `f` at the points, with their weights, of a rule that is exact for a product of two gradients.

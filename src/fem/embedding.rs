@@ -16,9 +16,13 @@
 //! that is meant needs edges along it shorter than 1/`TOUCHING` times its width. The local edge of a vertex is the
 //! shortest one of the outline that ends there; of two places that nearly touch the smaller counts.
 
+mod bodies;
+
 use nalgebra::Vector2;
 
+use self::bodies::Linked;
 use super::mesh::{BoundaryEdge, Mesh, MeshError, TOUCHING, length};
+use super::pairs::Pair;
 use super::rigid::connected_by_edges;
 use super::tree::{Bounds, Tree};
 
@@ -45,8 +49,29 @@ impl Mesh {
         triangles: Vec<[usize; 3]>,
         named: impl IntoIterator<Item = (String, Vec<[usize; 2]>)>,
     ) -> Result<Mesh, MeshError> {
-        let mesh = Mesh::of_edges(vertices, triangles, named)?;
-        check(&mesh)?;
+        Mesh::with_pairs(vertices, triangles, named, &[])
+    }
+
+    /// The mesh of [`Mesh::new`], in which the boundaries of these pairs may touch, and bodies that are a pair overlap within its
+    /// reach.
+    ///
+    /// # Errors
+    /// As [`Mesh::new`]; [`MeshError::Bodies`].
+    pub fn with_pairs(
+        vertices: Vec<[f64; 2]>,
+        triangles: Vec<[usize; 3]>,
+        named: impl IntoIterator<Item = (String, Vec<[usize; 2]>)>,
+        pairs: &[Pair],
+    ) -> Result<Mesh, MeshError> {
+        if pairs.is_empty() {
+            let mesh = Mesh::of_edges(vertices, triangles, named, |_, _| false)?;
+            check(&mesh)?;
+            return Ok(mesh);
+        }
+        let named: Vec<(String, Vec<[usize; 2]>)> = named.into_iter().collect();
+        let linked = Linked::new(vertices.len(), &triangles, &named, pairs);
+        let mesh = Mesh::of_edges(vertices, triangles, named, |a, b| linked.may_meet(a, b))?;
+        bodies::check_pairs(&mesh, pairs)?;
         Ok(mesh)
     }
 }
@@ -256,7 +281,7 @@ fn turn(a: Vector2<f64>, b: Vector2<f64>, c: Vector2<f64>) -> f64 {
 }
 
 /// The inner parts of two segments cross.
-fn cross([a, b]: [Vector2<f64>; 2], [c, d]: [Vector2<f64>; 2]) -> bool {
+pub(super) fn cross([a, b]: [Vector2<f64>; 2], [c, d]: [Vector2<f64>; 2]) -> bool {
     let opposite = |s: f64, t: f64| (s > 0.0 && t < 0.0) || (s < 0.0 && t > 0.0);
     opposite(turn(a, b, c), turn(a, b, d)) && opposite(turn(c, d, a), turn(c, d, b))
 }

@@ -5,7 +5,8 @@
 //! On a triangle v is a rigid motion r_T up to c_T |v|_{a,T}. Motions of neighbours differ on their common edge by what both
 //! leave; along the tree that adds up to |r_T - r_root| <= S_T^{1/2} |v|_a. The tree is that of the smallest S_T: next to the
 //! short edges of a graded mesh it goes round by long ones. Each part of the body has a root, and
-//! prescribed components hold its motion.
+//! prescribed components hold its motion. What couples two parts, as contact between them does, holds the motions of both: their
+//! roots have six unknowns together.
 //!
 //! In a body of revolution the hoop strain holds the mean of v_r on each triangle, and c_T has the weight (docs/theory.md, 11.5).
 //!
@@ -14,9 +15,13 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::{Matrix3, Vector3};
+use faer::Mat;
+use faer::linalg::solvers::Solve;
+use nalgebra::{DMatrix, Vector3};
 
 use super::constraints::Constraints;
+use super::dense::dot;
+use super::groups::groups;
 use super::material::least_eigenvalue;
 use super::space::Space;
 use super::tree::Bounds;
@@ -30,15 +35,24 @@ const SAFETY: f64 = 1.001;
 /// The smallest area of a triangle for which there is a bound: below, squares underflow.
 const SMALLEST: f64 = 1e-200;
 
-/// A hold beside the supports: a sum of components of v at nodes of a triangle is at most `most` where |v|_a is at most 1.
+/// A hold beside the supports: a sum of components of v at nodes is at most `most` where |v|_a is at most 1.
 #[derive(Clone, Debug)]
 pub struct Hold {
-    /// The triangle.
-    pub triangle: usize,
-    /// The nodes' places, each with what v there is multiplied by.
-    pub terms: Vec<([Ball; 2], [Ball; 2])>,
+    /// What is summed up, triangle by triangle.
+    pub terms: Vec<Term>,
     /// The bound.
     pub most: f64,
+}
+
+/// A component of v at a point.
+#[derive(Clone, Debug)]
+pub struct Term {
+    /// A triangle that has the point.
+    pub triangle: usize,
+    /// The point.
+    pub at: [Ball; 2],
+    /// What v is multiplied by there.
+    pub along: [Ball; 2],
 }
 
 /// |v(x_i)| <= `nodes[i]` |v|_a for all v in V^h and all nodes i.
@@ -72,25 +86,40 @@ impl Korn {
             part: vec![NONE; left.len()],
             passed: vec![f64::NAN; left.len()],
         };
-        let mut parts: Vec<Vec<Hold>> = Vec::new();
-        let by_supports = supports(space, constraints).into_iter();
-        for hold in by_supports.chain(holds.iter().cloned()).chain(hoops(mesh, materials)) {
-            if paths.part[hold.triangle] == NONE {
-                paths.explore(hold.triangle, parts.len());
-                parts.push(Vec::new());
+        // The parts in the order in which they are held, each by the triangle where its paths begin.
+        let mut roots: Vec<usize> = Vec::new();
+        let all = supports(space, constraints).into_iter().chain(holds.iter().cloned());
+        let all: Vec<Hold> = all.chain(hoops(mesh, materials)).collect();
+        for Term { triangle, .. } in all.iter().flat_map(|hold| &hold.terms) {
+            if paths.part[*triangle] == NONE {
+                paths.explore(*triangle, roots.len());
+                roots.push(*triangle);
             }
-            parts[paths.part[hold.triangle]].push(hold);
         }
         let Paths { along, part, .. } = paths;
         if part.contains(&NONE) {
             return None;
         }
         let of = |t: usize| left[t].sqrt() + along[t].sqrt();
-        let motion = |holds: &Vec<Hold>| {
-            let origin = mesh.vertices()[mesh.triangles()[holds[0].triangle][0]];
-            motion_of_root(holds, origin, size, of)
-        };
-        let root_motion: Vec<f64> = parts.iter().map(motion).collect::<Option<_>>()?;
+        // A hold of several parts holds them together.
+        let together = all.iter().flat_map(|hold| {
+            hold.terms.windows(2).map(|pair| [0, 1].map(|i| part[pair[i].triangle]))
+        });
+        let group = groups(roots.len(), together);
+        let mut root_motion = vec![f64::INFINITY; roots.len()];
+        for assembly in 0..group.iter().max().map_or(0, |last| last + 1) {
+            let members: Vec<usize> = (0..roots.len()).filter(|&p| group[p] == assembly).collect();
+            let own = |hold: &&Hold| group[part[hold.terms[0].triangle]] == assembly;
+            let holds: Vec<&Hold> =
+                all.iter().filter(|h| !h.terms.is_empty()).filter(own).collect();
+            let place = |t: usize| members.iter().position(|&p| p == part[t]).unwrap_or(0);
+            let origins: Vec<[f64; 2]> =
+                members.iter().map(|&p| mesh.vertices()[mesh.triangles()[roots[p]][0]]).collect();
+            let motions = motions_of_roots(&holds, place, &origins, size, of)?;
+            for (&member, motion) in members.iter().zip(motions) {
+                root_motion[member] = motion;
+            }
+        }
         let mut nodes = vec![f64::INFINITY; space.nodes().len()];
         for (t, members) in space.elements().enumerate() {
             let bound = SAFETY * (of(t) + root_motion[part[t]]);
@@ -183,8 +212,7 @@ fn supports(space: &Space, constraints: &Constraints) -> Vec<Hold> {
                 let exactly = |x: [f64; 2]| x.map(Ball::point);
                 let at = exactly(space.nodes()[node]);
                 holds.extend(constraints.directions(node).map(|direction| Hold {
-                    triangle,
-                    terms: vec![(at, exactly(direction))],
+                    terms: vec![Term { triangle, at, along: exactly(direction) }],
                     most: 0.0,
                 }));
             }
@@ -207,8 +235,8 @@ fn hoops(mesh: &Mesh, materials: &Materials) -> Vec<Hold> {
         let most = SAFETY * (weight * 2.0 / (stiffness * at.double_area())).sqrt();
         let exact = at.vertices.map(|x| x.map(Ball::point));
         let middle = (exact[0] + exact[1] + exact[2]) / Ball::from(3);
-        let along_r = [Ball::from(1), Ball::from(0)];
-        Hold { triangle, terms: vec![(middle.into(), along_r)], most }
+        let along = [Ball::from(1), Ball::from(0)];
+        Hold { terms: vec![Term { triangle, at: middle.into(), along }], most }
     };
     let count = if materials.are_of_revolution() { mesh.triangles().len() } else { 0 };
     (0..count).map(hold).collect()
@@ -237,38 +265,48 @@ fn squared_remainder(mesh: &Mesh, degree: Degree, materials: &Materials, t: usiz
     })
 }
 
-/// |r| <= this times |v|_a on the part, for the motion r = (a, b) + c J (x - origin) / size of its root, where r_T - r and
-/// v - r_T are together at most `of`(T) |v|_a at the nodes of T.
-fn motion_of_root(
-    holds: &[Hold],
-    origin: [f64; 2],
+/// |r_p| <= these times |v|_a on the parts p that `holds` hold together, for the motions r_p = (a, b) + c J (x - origin_p) / size of
+/// their roots, where r_T - r_p and v - r_T are together at most `of`(T) |v|_a at the nodes of a triangle T of part `place`(T).
+fn motions_of_roots(
+    holds: &[&Hold],
+    place: impl Fn(usize) -> usize,
+    origins: &[[f64; 2]],
     size: f64,
     of: impl Fn(usize) -> f64,
-) -> Option<f64> {
-    let row = |hold: &Hold| {
-        hold.terms.iter().fold([Ball::from(0); 3], |[x, y, turn], &(at, [p, q])| {
-            let from = [0, 1].map(|c| at[c] - Ball::point(origin[c]));
-            [x + p, y + q, turn + (q * from[0] - p * from[1]) / Ball::point(size)]
-        })
+) -> Option<Vec<f64>> {
+    let unknowns = 3 * origins.len();
+    let row = |hold: &&Hold| {
+        let mut row = vec![Ball::from(0); unknowns];
+        for Term { triangle, at, along: [p, q] } in &hold.terms {
+            let part = place(*triangle);
+            let from = [0, 1].map(|c| at[c] - Ball::point(origins[part][c]));
+            let turn = (*q * from[0] - *p * from[1]) / Ball::point(size);
+            for (entry, by) in row[3 * part..].iter_mut().zip([*p, *q, turn]) {
+                *entry += by;
+            }
+        }
+        row
     };
-    let rows: Vec<[Ball; 3]> = holds.iter().map(row).collect();
+    let rows: Vec<Vec<Ball>> = holds.iter().map(row).collect();
     let magnitude = |d: Ball| larger(d.lower().abs(), d.upper().abs());
-    // |row . (a, b, c)| at most
-    let most = |hold: &Hold| {
-        let sizes = hold.terms.iter().map(|(_, [p, q])| magnitude(*p).hypot(magnitude(*q)));
-        sizes.sum::<f64>() * of(hold.triangle) + hold.most
+    // |row . q| at most
+    let most = |hold: &&Hold| {
+        let of_triangle = |terms: &[Term]| {
+            let sizes = terms.iter().map(|t| magnitude(t.along[0]).hypot(magnitude(t.along[1])));
+            sizes.sum::<f64>() * of(terms[0].triangle)
+        };
+        let terms = hold.terms.chunk_by(|a, b| a.triangle == b.triangle).map(of_triangle);
+        terms.sum::<f64>() + hold.most
     };
     let most: Vec<f64> = holds.iter().map(most).collect();
-    let middle = |row: &[Ball; 3]| Vector3::from(row.map(|c| c.lower() / 2.0 + c.upper() / 2.0));
-    let doubles: Vec<Vector3<f64>> = rows.iter().map(middle).collect();
+    let middle = |c: &Ball| c.lower() / 2.0 + c.upper() / 2.0;
+    let doubles: Vec<Vec<f64>> = rows.iter().map(|row| row.iter().map(middle).collect()).collect();
     // Those that say most.
-    let weighted = doubles.iter().zip(&most).map(|(row, most)| row / *most);
-    let chosen = independent(weighted.collect())?;
-    // With M q = t and any R: q = R t + (1 - R M) q. R is the inverse of M in doubles, by Cramer's rule.
-    let [a, b, c] = chosen.map(|i| doubles[i]);
-    let columns = [b.cross(&c), c.cross(&a), a.cross(&b)];
-    let inverse = Matrix3::from_columns(&columns) / a.dot(&columns[0]);
-    let off = (0..3).map(|i| {
+    let weighted = |(row, most): (&Vec<f64>, &f64)| row.iter().map(|c| c / most).collect();
+    let chosen = independent(doubles.iter().zip(&most).map(weighted).collect(), unknowns)?;
+    // With M q = t and any R: q = R t + (1 - R M) q. R is the inverse of M in doubles.
+    let inverse = inverse(&chosen.iter().map(|&i| &doubles[i][..]).collect::<Vec<_>>());
+    let off = (0..unknowns).map(|i| {
         let entry = |j: usize| {
             let unit = Ball::from(i32::from(i == j));
             let product = chosen.iter().enumerate();
@@ -277,31 +315,52 @@ fn motion_of_root(
                     .fold(unit, |sum, (k, &row)| sum - Ball::point(inverse[(i, k)]) * rows[row][j]),
             )
         };
-        (0..3).map(entry).sum::<f64>()
+        (0..unknowns).map(entry).sum::<f64>()
     });
     let off = SAFETY * off.fold(0.0, larger);
     if !(off < 0.5) {
         return None;
     }
-    let image = inverse.map(f64::abs) * Vector3::from(chosen.map(|i| most[i]));
+    let image = |i: usize| -> f64 {
+        chosen.iter().enumerate().map(|(k, &row)| inverse[(i, k)].abs() * most[row]).sum()
+    };
+    let image: Vec<f64> = (0..unknowns).map(image).collect();
     let rest = off / (1.0 - off) * image.iter().copied().fold(0.0, larger);
-    let bound = SAFETY * ((image[0] + rest).hypot(image[1] + rest) + image[2] + rest);
-    bound.is_finite().then_some(bound)
+    let bound = |q: &[f64]| SAFETY * ((q[0] + rest).hypot(q[1] + rest) + q[2] + rest);
+    let bounds: Vec<f64> = image.chunks_exact(3).map(bound).collect();
+    bounds.iter().all(|bound| bound.is_finite()).then_some(bounds)
 }
 
-/// Three rows that are far from dependent, one after the other.
-fn independent(mut rest: Vec<Vector3<f64>>) -> Option<[usize; 3]> {
-    let mut chosen = [0; 3];
-    for choice in &mut chosen {
-        let squares = rest.iter().map(|row| row.dot(row)).enumerate();
+/// The inverse of a matrix with these rows, in doubles: by Cramer's rule for one part.
+fn inverse(rows: &[&[f64]]) -> DMatrix<f64> {
+    if let [a, b, c] = rows {
+        let [a, b, c] = [a, b, c].map(|row| Vector3::new(row[0], row[1], row[2]));
+        let columns = [b.cross(&c), c.cross(&a), a.cross(&b)];
+        let scale = a.dot(&columns[0]);
+        return DMatrix::from_fn(3, 3, |i, j| columns[j][i] / scale);
+    }
+    let n = rows.len();
+    let lu = Mat::from_fn(n, n, |i, j| rows[i][j]).partial_piv_lu();
+    let inverse = lu.solve(Mat::<f64>::identity(n, n));
+    DMatrix::from_fn(n, n, |i, j| inverse[(i, j)])
+}
+
+/// `count` rows that are far from dependent, one after the other.
+fn independent(mut rest: Vec<Vec<f64>>, count: usize) -> Option<Vec<usize>> {
+    let mut chosen = Vec::with_capacity(count);
+    for _ in 0..count {
+        let squares = rest.iter().map(|row| dot(row, row)).enumerate();
         let (best, largest) =
             squares.fold((0, 0.0), |best, (i, n)| if n > best.1 { (i, n) } else { best });
         if !(largest > 0.0) {
             return None;
         }
-        *choice = best;
-        let axis = rest[best] / largest.sqrt();
-        rest.iter_mut().for_each(|row| *row -= axis * axis.dot(row));
+        chosen.push(best);
+        let axis: Vec<f64> = rest[best].iter().map(|c| c / largest.sqrt()).collect();
+        for row in &mut rest {
+            let along = dot(&axis, row);
+            row.iter_mut().zip(&axis).for_each(|(c, a)| *c -= a * along);
+        }
     }
     Some(chosen)
 }

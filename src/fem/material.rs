@@ -368,6 +368,21 @@ mod tests {
     }
 
     #[test]
+    fn the_least_eigenvalue_of_a_body_of_revolution_is_that_of_the_law_in_three_dimensions() {
+        let of = |lambda, plane| least_eigenvalue(&Material::lame(lambda, 1.0, plane));
+        // min(2 mu, 3 lambda + 2 mu), in plane strain min(2 mu, 2 (lambda + mu)).
+        assert_eq!([of(-0.5, Plane::Axisymmetric), of(-0.5, Plane::Strain)], [0.5, 1.0]);
+        assert_eq!(of(3.0, Plane::Axisymmetric), 2.0);
+        // As a tensor, from below and within a factor of 2.
+        let (lambda, mu) = (1.0, 1.0);
+        let (nu, young) = (0.25, 2.5);
+        let c = [lambda + 2.0 * mu, lambda, 0.0, lambda + 2.0 * mu, 0.0, mu];
+        let tensor = Material::tensor(c, Some([nu, nu, 0.0])).of_revolution(young);
+        let least = least_eigenvalue(&tensor);
+        assert!(1.0 <= least && least <= 2.0, "{least}");
+    }
+
+    #[test]
     fn materials_that_are_not_stable_are_refused_with_the_reason() {
         for (found, expected) in [
             (

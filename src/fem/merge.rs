@@ -23,15 +23,21 @@ pub struct Merged {
     pub old_triangle: Vec<usize>,
 }
 
-/// Merges the vertices that are no further apart than `share` of the body's size. Each index must be that of a vertex.
-pub fn merge(vertices: &[[f64; 2]], triangles: &[[usize; 3]], share: f64) -> Merged {
+/// Merges the vertices that are no further apart than `share` of the body's size, but for two that `are_apart`. Each index must be
+/// that of a vertex.
+pub fn merge(
+    vertices: &[[f64; 2]],
+    triangles: &[[usize; 3]],
+    share: f64,
+    are_apart: impl Fn(usize, usize) -> bool,
+) -> Merged {
     let distance = share * Bounds::around(vertices.iter().copied()).size();
     let tree = Tree::new(vertices.iter().map(|&v| Bounds::around([v])).collect());
     let mut near = Vec::new();
     for (v, &[x, y]) in vertices.iter().enumerate() {
         tree.meeting(Bounds::around([[x, y]]).widened(distance), |w| {
             let [p, q] = vertices[w];
-            if w > v && (x - p).hypot(y - q) <= distance {
+            if w > v && (x - p).hypot(y - q) <= distance && !are_apart(v, w) {
                 near.push([v, w]);
             }
         });
@@ -63,19 +69,22 @@ mod tests {
         let triangles = vec![[0, 1, 2], [3, 4, 5]];
         let torn = Mesh::new(vertices.clone(), triangles.clone(), []);
         assert!(matches!(torn, Err(MeshError::Duplicate { .. })));
-        let merged = merge(&vertices, &triangles, 1e-6);
+        let merged = merge(&vertices, &triangles, 1e-6, |_, _| false);
         assert_eq!(merged.vertices, [[0.0, 0.0], [third, 0.0], [0.0, 1.0], [1.0, 1.0]]);
         assert_eq!(merged.triangles, [[0, 1, 2], [1, 3, 2]]);
         assert_eq!(merged.vertex, [0, 1, 2, 1, 3, 2]);
         assert_eq!(merged.old_vertex, [0, 1, 2, 4]);
         assert!(Mesh::new(merged.vertices, merged.triangles, []).is_ok());
-        assert_eq!(merge(&vertices, &triangles, 1e-8).vertices.len(), 5, "only what coincides");
+        let coinciding = merge(&vertices, &triangles, 1e-8, |_, _| false);
+        assert_eq!(coinciding.vertices.len(), 5);
+        let apart = merge(&vertices, &triangles, 1e-6, |v, w| [v, w] == [1, 3]);
+        assert_eq!(apart.vertex, [0, 1, 2, 3, 4, 2]);
     }
 
     #[test]
     fn triangles_that_lose_an_edge_are_left_out() {
         let vertices = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1e-9, 1.0]];
-        let merged = merge(&vertices, &[[0, 1, 2], [2, 1, 3]], 1e-6);
+        let merged = merge(&vertices, &[[0, 1, 2], [2, 1, 3]], 1e-6, |_, _| false);
         assert_eq!(merged.triangles, [[0, 1, 2]]);
         assert_eq!(merged.old_triangle, [0]);
     }

@@ -31,6 +31,9 @@ pub mod mesh;
 pub mod moments;
 #[doc(hidden)]
 pub mod obstacle;
+#[doc(hidden)]
+pub mod pairs;
+mod path;
 pub mod piece;
 #[doc(hidden)]
 pub mod problem;
@@ -61,7 +64,9 @@ pub use law::{EdgeRule, Law};
 pub use material::Materials;
 pub use mesh::bisection::Refinement;
 pub use mesh::{BoundaryEdge, Mesh, MeshError};
-pub use obstacle::{Closest, Distance, Obstacle, Side};
+pub use obstacle::{Closest, Distance, Hand, Obstacle, Side};
+pub use pairs::{Pair, PairError, PairPiece, PairSide};
+pub use path::{Path, PathError};
 pub use piece::Piece;
 pub use problem::{Condition, PointSupport, Problem, SurfaceForce};
 pub use rigid::{FreeMotion, Parts};

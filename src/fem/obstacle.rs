@@ -7,6 +7,8 @@
 //! | plane through p, unit normal m towards the body | (x - p) . m | -m |
 //! | circle of radius R around c, the body outside | \|x - c\| - R | -(x - c)/\|x - c\| |
 //! | the same, the body inside | R - \|x - c\| | (x - c)/\|x - c\| |
+//! | a line of sides and arcs, the body on its left | the distance from the closest point, negative on the right | -grad phi |
+//! | the same, the body on its right | minus that | -grad phi |
 //! | a distance by its expression | phi(x) | -grad phi(x) |
 //!
 //! phi is a distance only where \|grad phi\| = 1. An expression whose gradient is off by more than [`MOST_OFF`] at a node
@@ -20,6 +22,7 @@ use nalgebra::Vector2;
 use super::data::{DataError, finite};
 use super::function::Function;
 use super::mesh::length;
+use super::path::{Beside, Path};
 
 /// The length of grad phi may be off 1 by this much. An expression that is no distance (x^2 - 1, 2 x) is off by far more nearly
 /// everywhere; one that is a distance on the obstacle is off by its curvature times the gap, which is small where contact is.
@@ -45,6 +48,13 @@ pub enum Obstacle {
         /// Where the body is.
         side: Side,
     },
+    /// What lies beyond a line of straight sides and arcs.
+    Path {
+        /// The line.
+        path: Arc<Path>,
+        /// Where the body is.
+        body: Hand,
+    },
     /// The set where a signed distance is negative.
     Distance(Arc<dyn Distance>),
 }
@@ -56,6 +66,15 @@ pub enum Side {
     Outside,
     /// The obstacle is all but the disk.
     Inside,
+}
+
+/// On which side of a line the body is, for somebody who walks along it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hand {
+    /// On the left.
+    Left,
+    /// On the right.
+    Right,
 }
 
 /// A signed distance with its gradient.
@@ -71,6 +90,7 @@ impl fmt::Debug for Obstacle {
             Obstacle::Circle { center, radius, side } => {
                 write!(f, "circle around {center:?}, radius {radius}, body {side:?}")
             }
+            Obstacle::Path { path, body } => write!(f, "{path:?}, body {body:?}"),
             Obstacle::Distance(_) => write!(f, "distance"),
         }
     }
@@ -117,6 +137,13 @@ impl Obstacle {
                         Closest { gap: distance - radius, direction: Vector2::zeros() - out }
                     }
                     Side::Inside => Closest { gap: radius - distance, direction: out },
+                })
+            }
+            Obstacle::Path { path, body } => {
+                let Beside { left, growth } = path.beside(x.into());
+                Ok(match body {
+                    Hand::Left => Closest { gap: left, direction: -growth },
+                    Hand::Right => Closest { gap: -left, direction: growth },
                 })
             }
             Obstacle::Distance(distance) => {

@@ -13,13 +13,13 @@ use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use super::element::{Degree, with_element};
 use super::law::{EdgeRule, Integrals, Law};
-use super::mesh::BoundaryEdge;
+use super::mesh::{BoundaryEdge, Mesh};
 use super::space::Space;
 use super::stress_points::Nodal;
 use crate::kernel::axial::{HoopStress, edge_mass};
 use crate::kernel::contact_edge::integral_of_product;
 use crate::kernel::edge_integral::{self, weighted_product};
-use crate::kernel::{ContactEdge, DoubleDouble, Element, Material, Scalar, Triangle};
+use crate::kernel::{ContactEdge, DoubleDouble, Element, Material, Response, Scalar, Triangle};
 
 /// A node of a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +60,14 @@ pub struct PieceGeometry {
     pub bulge: f64,
 }
 
+impl Stretch {
+    /// The place of node `a` of the piece on the edge.
+    pub fn place(&self, mesh: &Mesh, a: usize) -> [f64; 2] {
+        let ([start, end], s) = (mesh.places_of_ends(self.edge), self.positions[a]);
+        [0, 1].map(|c| (1.0 - s) * start[c] + s * end[c])
+    }
+}
+
 impl PieceGeometry {
     /// Returns whether the direction of contact turns along the piece.
     pub fn turns(&self) -> bool {
@@ -71,6 +79,44 @@ impl PieceGeometry {
         &self.stretches[0]
     }
 
+    /// The lengths of the parts of edges on which the two sides lie, for the `lengths` of the edges; `None` where there is one side.
+    pub(crate) fn chords<S: Scalar + From<f64>>(&self, lengths: &[S]) -> Option<Chords<S>> {
+        let exact = <S as From<f64>>::from;
+        let part = |(stretch, &length): (&Stretch, &S)| {
+            let [from, to] = [stretch.positions[0], stretch.positions[1]];
+            (if to < from { exact(from) - exact(to) } else { exact(to) - exact(from) }) * length
+        };
+        let parts: Vec<S> = self.stretches.iter().zip(lengths).map(part).collect();
+        let [first, second] = parts[..] else { return None };
+        let length = (first + second) / <S as From<i32>>::from(2);
+        Some(Chords { length, ratios: [first / length, second / length] })
+    }
+
+    /// The radii of side `i`, given those at the corners of the triangle that has an edge; `None` in the plane.
+    pub(crate) fn radii<S: Scalar + From<f64>>(
+        &self,
+        i: usize,
+        corners: impl Fn(BoundaryEdge) -> Option<[S; 3]>,
+    ) -> Option<PieceRadii<S>> {
+        let at_ends = |stretch: &Stretch| {
+            let [start, end, _] = stretch.edge.from_its_ends(corners(stretch.edge)?);
+            let at = |a: usize| {
+                let place = <S as From<f64>>::from(stretch.positions[a]);
+                edge_integral::radius([start, end], place)
+            };
+            // The whole edge: no product with 1, which is not exact in balls.
+            Some(if self.stretches.len() == 1 { [start, end] } else { [at(0), at(1)] })
+        };
+        let each: Option<Vec<[S; 2]>> = self.stretches.iter().map(at_ends).collect();
+        let (each, edge) = (each?, self.stretches[i].edge);
+        let half = |a: usize| (each[0][a] + each[1][a]) / <S as From<i32>>::from(2);
+        Some(PieceRadii {
+            of_piece: if each.len() == 1 { each[0] } else { [half(0), half(1)] },
+            of_side: each[i],
+            of_triangle: edge.from_its_ends(corners(edge)?),
+        })
+    }
+
     /// g at the nodes.
     pub fn gaps(&self) -> impl Iterator<Item = f64> + '_ {
         self.nodes.iter().map(|node| node.gap)
@@ -79,6 +125,57 @@ impl PieceGeometry {
     /// n~ at the nodes.
     pub fn directions(&self) -> impl Iterator<Item = Vector2<f64>> + '_ {
         self.nodes.iter().map(|node| node.direction)
+    }
+}
+
+/// The lengths of the two sides of a piece.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Chords<S> {
+    /// Their mean, the length of the piece.
+    pub length: S,
+    /// Each over their mean.
+    pub ratios: [S; 2],
+}
+
+/// r along a side of a piece of a body of revolution.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PieceRadii<S> {
+    /// At the two ends of the piece, the means over its sides: the weight of its integrals.
+    pub of_piece: [S; 2],
+    /// There on the side itself.
+    pub of_side: [S; 2],
+    /// At the start and the end of the side's edge, and at the corner opposite.
+    pub of_triangle: [S; 3],
+}
+
+impl<S: Scalar> Chords<S> {
+    /// The length of side `i` over that of the piece; in a body of revolution the area over that.
+    pub(crate) fn ratio(&self, i: usize, radii: Option<PieceRadii<S>>) -> S {
+        let ratio = self.ratios[i];
+        radii.map_or(ratio, |PieceRadii { of_piece: [a, b], of_side: [c, d], .. }| {
+            ratio * (c + d) / (a + b)
+        })
+    }
+
+    /// What the constant of side `i` in kappa is multiplied by: the square of its ratio times the length of the piece over its own, in a
+    /// body of revolution times the largest quotient of the weight of the piece and its own r, which are affine.
+    pub(crate) fn share(
+        &self,
+        i: usize,
+        radii: Option<PieceRadii<S>>,
+        largest: impl Fn(S, S) -> S,
+    ) -> S {
+        let Some(PieceRadii { of_piece, of_side, .. }) = radii else { return self.ratios[i] };
+        let ratio = self.ratio(i, radii);
+        // At an end on the axis both are 0, and the quotient is that of the other end.
+        let on_axis = |a: usize| of_side[a] == S::from(0) && of_piece[a] == S::from(0);
+        let quotient = |a: usize| of_piece[a] / of_side[a];
+        let most = match [on_axis(0), on_axis(1)] {
+            [true, _] => quotient(1),
+            [_, true] => quotient(0),
+            _ => largest(quotient(0), quotient(1)),
+        };
+        ratio * ratio / self.ratios[i] * most
     }
 }
 
@@ -99,14 +196,6 @@ pub struct SideData<S> {
     pub radii: Option<[S; 3]>,
 }
 
-impl<S: Scalar> SideData<S> {
-    /// r where the nodes of a piece lie on edge `i` of the triangle.
-    fn radius(&self, i: usize, place: S) -> Option<S> {
-        self.radii
-            .map(|radii| edge_integral::radius([radii[(i + 1) % 3], radii[(i + 2) % 3]], place))
-    }
-}
-
 /// A side of a piece.
 #[derive(Clone, Debug)]
 pub struct Side<S = f64> {
@@ -116,10 +205,6 @@ pub struct Side<S = f64> {
     pub length: S,
     /// gamma of its triangle.
     pub gamma: S,
-    /// The share of its stress in that of the piece, its gamma over that of the piece.
-    pub weight: S,
-    /// The length of its part of the edge over that of the piece; in a body of revolution the area over that.
-    pub ratio: S,
     /// Its entries among the nodes of the piece's triangles.
     pub entries: Range<usize>,
     /// For each node of the piece the entry of the edge's node that is next to it.
@@ -218,12 +303,12 @@ fn hoop<E: Element<N, M>, const N: usize, const M: usize, S: Scalar>(
 
 impl<S: Scalar> HoopRows<S> {
     /// Adds it to the functionals P0 at the places `at` of the piece, with gamma, and to those of the stress; gives the functionals of
-    /// e_r, those of the stress times `share`, by which its functionals will be multiplied.
+    /// e_r, those of the stress times the share of the side in it, if there are two.
     fn add_to(
         self,
         [p0, stress]: [&mut Vec<Vec<Vector2<S>>>; 2],
         at: &[S],
-        (gamma, share): (S, S),
+        (gamma, share): (S, Option<S>),
     ) -> [Vec<S>; 2] {
         let between =
             |[start, end]: [S; 2], s: S| -(edge_integral::radius([start, end], s) * gamma);
@@ -236,7 +321,7 @@ impl<S: Scalar> HoopRows<S> {
             row.iter_mut().zip(hoop).for_each(|(entry, &hoop)| entry[0] += hoop);
         }
         let of_p0 = at.iter().map(|&s| between(self.ring, s)).collect();
-        [of_p0, self.ring.map(|ring| ring * share).to_vec()]
+        [of_p0, self.ring.map(|ring| share.map_or(ring, |share| ring * share)).to_vec()]
     }
 }
 
@@ -255,35 +340,26 @@ impl<S: Scalar + From<f64>> Piece<S> {
     ) -> Self {
         let degree = space.degree();
         let exact = <S as From<f64>>::from;
-        let (two, is_pair) = (<S as From<i32>>::from(2), data.len() > 1);
-        let part = |(stretch, data): (&Stretch, &SideData<S>)| {
-            let [from, to] = [stretch.positions[0], stretch.positions[1]];
-            let share = if to < from { exact(from) - exact(to) } else { exact(to) - exact(from) };
-            share * data.length
-        };
-        let mut parts: Vec<S> = geometry.stretches.iter().zip(data).map(part).collect();
+        let lengths: Vec<S> = data.iter().map(|side| side.length).collect();
+        let chords = geometry.chords(&lengths);
         let (mut length, mut gamma) = (data[0].length, data[0].gamma);
-        if is_pair {
-            length = (parts[0] + parts[1]) / two;
+        if let Some(chords) = chords {
+            length = chords.length;
             gamma += data[1].gamma;
         }
-        let radius = |a: usize| {
-            let of = |(stretch, data): (&Stretch, &SideData<S>)| {
-                data.radius(stretch.edge.local, exact(stretch.positions[a]))
-            };
-            let each: Option<Vec<S>> = geometry.stretches.iter().zip(data).map(of).collect();
-            each.map(|of| if is_pair { (of[0] + of[1]) / two } else { of[0] })
-        };
-        let radii = radius(0).zip(radius(1)).map(|(start, end)| [start, end]);
-        if let Some([start, end]) = radii.filter(|_| is_pair) {
-            for (part, (stretch, data)) in parts.iter_mut().zip(geometry.stretches.iter().zip(data))
-            {
-                let at = |a: usize| data.radius(stretch.edge.local, exact(stretch.positions[a]));
-                if let (Some(from), Some(to)) = (at(0), at(1)) {
-                    *part = *part * (from + to) / (start + end);
-                }
-            }
-        }
+        let radii: Option<Vec<PieceRadii<S>>> = (0..data.len())
+            .map(|i| {
+                let of = |edge: BoundaryEdge| {
+                    geometry
+                        .stretches
+                        .iter()
+                        .position(|s| s.edge == edge)
+                        .and_then(|k| data[k].radii)
+                };
+                geometry.radii(i, of)
+            })
+            .collect();
+        let radii_of = |i: usize| radii.as_ref().map(|radii| radii[i]);
         let mut piece = Piece {
             geometry: Arc::clone(geometry),
             degree,
@@ -291,20 +367,19 @@ impl<S: Scalar + From<f64>> Piece<S> {
             sides: Vec::with_capacity(data.len()),
             length,
             gamma,
-            radii,
+            radii: radii_of(0).map(|radii| radii.of_piece),
             nodes: Vec::new(),
             p0: vec![Vec::new(); geometry.law.components() * degree.nodes_per_edge()],
             sigma_n: vec![Vec::new(); 2 * geometry.law.components()],
         };
         for (i, (stretch, data)) in geometry.stretches.iter().zip(data).enumerate() {
-            let one = <S as From<i32>>::from(1);
-            let (weight, ratio) =
-                if is_pair { (data.gamma / gamma, parts[i] / length) } else { (one, one) };
-            let own_gamma = if is_pair { data.gamma * ratio } else { data.gamma };
+            // The stress of the only side is that of the piece: no product with 1, which is not exact in balls.
+            let shares = chords.map(|chords| (data.gamma / gamma, chords.ratio(i, radii_of(i))));
+            let own_gamma = shares.map_or(data.gamma, |(_, ratio)| data.gamma * ratio);
             let first = piece.nodes.len();
             piece.nodes.extend(space.nodes_of(stretch.edge.triangle));
             let positions: Vec<S> = stretch.positions.iter().map(|&s| exact(s)).collect();
-            let place = (stretch.edge.local, is_pair.then_some(&positions[..]));
+            let place = (stretch.edge.local, shares.is_some().then_some(&positions[..]));
             let mut rings = data.radii.map(|_| [Vec::new(), Vec::new()]);
             for k in 0..geometry.law.components() {
                 let toward = |node: &PieceNode| {
@@ -323,8 +398,9 @@ impl<S: Scalar + From<f64>> Piece<S> {
                         hoop::<E, _, _, _>(data, (stretch.edge.local, &positions), ends)
                     });
                     let at: Vec<S> = degree.edge_positions().into_iter().map(exact).collect();
+                    let share = shares.map(|(weight, ratio)| weight * ratio);
                     let [own_p0, own_stress] =
-                        of.add_to([&mut p0, &mut sigma_n], &at, (own_gamma, weight * ratio));
+                        of.add_to([&mut p0, &mut sigma_n], &at, (own_gamma, share));
                     rings[0].extend(own_p0);
                     rings[1].extend(own_stress);
                 }
@@ -334,10 +410,9 @@ impl<S: Scalar + From<f64>> Piece<S> {
                 }
                 for (all, own) in piece.sigma_n[2 * k..].iter_mut().zip(sigma_n) {
                     let own = own.into_iter();
-                    if is_pair {
-                        all.extend(own.map(|row| row * (weight * ratio)));
-                    } else {
-                        all.extend(own);
+                    match shares {
+                        Some((weight, ratio)) => all.extend(own.map(|f| f * (weight * ratio))),
+                        None => all.extend(own),
                     }
                 }
             }
@@ -345,14 +420,48 @@ impl<S: Scalar + From<f64>> Piece<S> {
                 normal: data.normal,
                 length: data.length,
                 gamma: data.gamma,
-                weight,
-                ratio,
                 entries: first..piece.nodes.len(),
                 nearest: nearest(degree, stretch).into_iter().map(|k| first + k).collect(),
                 rings,
             });
         }
         piece
+    }
+
+    /// The name of the boundary of the second side, if there is one.
+    pub fn partner(&self) -> Option<&Arc<str>> {
+        self.geometry.stretches.get(1).map(|stretch| &stretch.boundary)
+    }
+
+    /// Returns whether both lie on the same boundary with the same partner.
+    pub fn is_of_same_boundary<T>(&self, other: &Piece<T>) -> bool {
+        let names = |piece: &PieceGeometry| {
+            piece.stretches.iter().map(|s| Arc::clone(&s.boundary)).collect::<Vec<_>>()
+        };
+        names(&self.geometry) == names(&other.geometry)
+    }
+
+    /// What its law answers, component by component, each with the numbers of the component's values among those of the piece.
+    pub fn responses(&self) -> impl Iterator<Item = (Response, Range<usize>)> + use<S> {
+        let (count, law) = (self.degree.nodes_per_edge(), self.geometry.law);
+        law.responses().iter().enumerate().map(move |(k, &r)| (r, k * count..(k + 1) * count))
+    }
+
+    /// The nodes of the edges on which it lies.
+    pub fn edge_nodes(&self) -> impl Iterator<Item = usize> + '_ {
+        let of = |(side, stretch): (&Side<S>, &Stretch)| {
+            let first = side.entries.start;
+            let on_edge = self.degree.edge_nodes(stretch.edge.local).into_iter();
+            on_edge.map(|k| self.nodes[first + k]).collect::<Vec<_>>()
+        };
+        self.sides.iter().zip(&self.geometry.stretches).flat_map(of)
+    }
+
+    /// The largest of these numbers at the nodes of its edges, added up over its sides.
+    pub(crate) fn farthest(&self, at: impl Fn(usize) -> f64) -> f64 {
+        let count = self.degree.nodes_per_edge();
+        let nodes: Vec<f64> = self.edge_nodes().map(at).collect();
+        nodes.chunks(count).map(|side| side.iter().copied().fold(0.0, f64::max)).sum()
     }
 
     /// The numbers of its functionals among those of all pieces.
@@ -385,7 +494,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     }
 
     /// The direction of functional `i`, n~ or across it.
-    fn direction_of(&self, i: usize) -> Vector2<S> {
+    pub fn direction_of(&self, i: usize) -> Vector2<S> {
         let count = self.degree.nodes_per_edge();
         let d = self.direction(i % count);
         if i < count { d } else { across(d) }
@@ -519,7 +628,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     }
 
     /// Calls `add` with the forces that functionals are at the nodes of the triangles, each functional times its factor.
-    pub(super) fn each_force(
+    pub(crate) fn each_force(
         &self,
         functionals: &[Vec<Vector2<S>>],
         factors: &[S],
@@ -558,6 +667,41 @@ fn nearest(degree: Degree, stretch: &Stretch) -> Vec<usize> {
 }
 
 impl Piece {
+    /// The jump of a field along the direction of each functional: P0 without the stress.
+    pub fn jumps(&self, u: &[[f64; 2]]) -> Vec<f64> {
+        let count = self.degree.nodes_per_edge();
+        let displacement = |(side, stretch): (&Side, &Stretch), a: usize| {
+            let nodes = self.degree.edge_nodes(stretch.edge.local).into_iter();
+            let shapes = self.degree.edge_values(stretch.positions[a]);
+            nodes.zip(shapes).fold([0.0; 2], |sum, (k, shape)| {
+                let u = u[self.nodes[side.entries.start + k]];
+                [0, 1].map(|c| sum[c] + shape * u[c])
+            })
+        };
+        let jump = |i: usize| {
+            let mut sides = self.sides.iter().zip(&self.geometry.stretches);
+            let first = sides.next().map_or([0.0; 2], |side| displacement(side, i % count));
+            let [x, y] = sides.fold(first, |jump, side| {
+                let other = displacement(side, i % count);
+                [0, 1].map(|c| jump[c] - other[c])
+            });
+            let n = self.direction_of(i);
+            x * n[0] + y * n[1]
+        };
+        (0..self.p0.len()).map(jump).collect()
+    }
+
+    /// The places on the edges of its sides that functional `i` compares, each with the triangle and the direction that its
+    /// displacement is multiplied by.
+    pub fn compared(&self, mesh: &Mesh, i: usize) -> Vec<(usize, [f64; 2], Vector2<f64>)> {
+        let (n, a) = (self.direction_of(i), i % self.degree.nodes_per_edge());
+        let of = |(side, stretch): (usize, &Stretch)| {
+            let along = if side == 0 { n } else { -n };
+            (stretch.edge.triangle, stretch.place(mesh, a), along)
+        };
+        self.geometry.stretches.iter().enumerate().map(of).collect()
+    }
+
     /// What the piece adds to (8) and J_h where P has these values at its nodes.
     pub fn contribution<T: Copy + Into<DoubleDouble>>(
         &self,

@@ -8,6 +8,7 @@ use super::material::Materials;
 use super::mesh::Mesh;
 use super::mesh::bisection::Refinement;
 use super::obstacle::Obstacle;
+use super::pairs::Pair;
 
 fn zero() -> SharedFunction {
     Arc::new(|_| 0.0)
@@ -132,10 +133,12 @@ pub struct Problem {
     pub conditions: BTreeMap<String, Condition>,
     /// Supports in single points.
     pub points: Vec<PointSupport>,
+    /// Boundaries that may touch each other.
+    pub pairs: Vec<Pair>,
 }
 
 impl Problem {
-    /// A body with its loads and boundary conditions, without forces on parts of it and without supports in points.
+    /// A body with its loads and boundary conditions, without forces on parts of it, supports in points and pairs of boundaries.
     pub fn new(
         mesh: Mesh,
         material: impl Into<Materials>,
@@ -149,6 +152,7 @@ impl Problem {
             surface_forces: Vec::new(),
             conditions,
             points: Vec::new(),
+            pairs: Vec::new(),
         }
     }
 
@@ -169,6 +173,13 @@ impl Problem {
     /// Sets the condition on a named part of the boundary, in place of an earlier one.
     pub fn with(mut self, boundary: impl Into<String>, condition: Condition) -> Self {
         self.conditions.insert(boundary.into(), condition);
+        self
+    }
+
+    /// Adds two boundaries that may touch each other; neither has a condition.
+    #[must_use]
+    pub fn with_pair(mut self, pair: Pair) -> Self {
+        self.pairs.push(pair);
         self
     }
 

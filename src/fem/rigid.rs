@@ -16,6 +16,7 @@
 //! displacement that it makes at the distance of the box's half side. Coordinates enter as differences within one part
 //! only. The rank of a part's equations is that of their singular values.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use super::dense::singular_vectors;
@@ -39,8 +40,8 @@ struct PartFrame {
     place: [f64; 2],
 }
 
-/// A rigid motion of one part that no prescribed displacement stops, v(x) = shift + turn (-(y - c_y), x - c_x); the others
-/// stand still.
+/// A rigid motion of one part that no prescribed displacement stops, v(x) = shift + turn (-(y - c_y), x - c_x), and of others that
+/// move with it; the rest stands still.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreeMotion {
     /// The number of the part.
@@ -55,6 +56,8 @@ pub struct FreeMotion {
     half: f64,
     /// Where the part is, if the body has several.
     place: Option<[f64; 2]>,
+    /// The motions of other parts at the same time.
+    pub others: Vec<FreeMotion>,
 }
 
 /// A singular value below this share of the largest stops no motion; likewise a component of a motion beside its largest, and the
@@ -71,17 +74,38 @@ impl FreeMotion {
         [self.shift[0] - self.turn * dy, self.shift[1] + self.turn * dx]
     }
 
+    /// The motions of all parts that move.
+    fn all(&self) -> impl Iterator<Item = &FreeMotion> {
+        std::iter::once(self).chain(&self.others)
+    }
+
+    /// The displacement at `x` if that is a point of `part`.
+    pub(super) fn at_point_of(&self, part: usize, x: [f64; 2]) -> [f64; 2] {
+        self.all().find(|motion| motion.part == part).map_or([0.0; 2], |motion| motion.at(x))
+    }
+
     /// The motion as a field: its nodal values.
     pub fn field(&self, parts: &Parts, space: &Space) -> Vec<[f64; 2]> {
         let mut field = vec![[0.0; 2]; space.nodes().len()];
         for (nodes, &part) in space.elements().zip(&parts.of_triangle) {
-            if part == self.part {
+            if self.all().any(|motion| motion.part == part) {
                 for &node in nodes {
-                    field[node] = self.at(space.nodes()[node]);
+                    field[node] = self.at_point_of(part, space.nodes()[node]);
                 }
             }
         }
         field
+    }
+
+    /// Returns whether all parts that move do so as one rigid body.
+    fn is_of_one_body(&self) -> bool {
+        self.others.iter().all(|other| {
+            let size = other.half.max(self.half);
+            let [there, here] = [other.at(other.centre), self.at(other.centre)];
+            let shifted = (there[0] - here[0]).hypot(there[1] - here[1]);
+            let turned = (other.turn - self.turn).abs() * size;
+            shifted.max(turned) <= SAME_MOTION * (here[0].hypot(here[1]) + self.turn.abs() * size)
+        })
     }
 
     /// The centre of the rotation; `None` for a translation.
@@ -125,9 +149,20 @@ impl fmt::Display for FreeMotion {
                 write!(f, "translation along {}", point(self.shift.map(|c| c / norm), 1.0))?;
             }
         }
-        match self.place {
-            Some(place) => write!(f, " of the part of the body at {}", point(place, self.half)),
-            None => Ok(()),
+        let places: Vec<String> =
+            self.all().filter_map(|m| m.place.map(|place| point(place, m.half))).collect();
+        match &places[..] {
+            [] => Ok(()),
+            [place] => write!(f, " of the part of the body at {place}"),
+            [first, rest @ ..] if !self.is_of_one_body() => {
+                write!(f, " of the part of the body at {first}, with which others move, at ")?;
+                write!(f, "{}", rest.join(" and "))
+            }
+            all => {
+                let bodies = if all.len() == 2 { "both bodies" } else { "these bodies" };
+                write!(f, " of the parts of the body at {}: ", all.join(" and "))?;
+                write!(f, "{bodies} move together")
+            }
         }
     }
 }
@@ -179,24 +214,37 @@ impl Parts {
 
     /// The motion (t_x, t_y, w) of a part, the largest of its coefficients made 1.
     fn motion(&self, part: usize, values: [f64; 3]) -> FreeMotion {
-        let largest = values.iter().fold(0.0, |max: f64, v| max.max(v.abs()));
+        self.motion_beside(part, values, values.iter().fold(0.0, |max: f64, v| max.max(v.abs())))
+    }
+
+    /// The motion (t_x, t_y, w) of a part, divided by `largest`.
+    fn motion_beside(&self, part: usize, values: [f64; 3], largest: f64) -> FreeMotion {
         let [x, y, w] =
             values.map(|v| if v.abs() <= NEGLIGIBLE * largest { 0.0 } else { v / largest });
         let PartFrame { centre, half, place } = self.frames[part];
         let place = (self.count() > 1).then_some(place);
-        FreeMotion { part, centre, shift: [x, y], turn: w / half, half, place }
+        FreeMotion { part, centre, shift: [x, y], turn: w / half, half, place, others: Vec::new() }
     }
 
-    /// The sum of these motions of one part, each times its weight, with the largest coefficient made 1.
+    /// The sum of these motions, each times its weight, with the largest coefficient made 1.
     pub(super) fn combined(&self, motions: &[FreeMotion], weights: &[f64]) -> FreeMotion {
-        let mut values = [0.0; 3];
+        let mut of_parts: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
         for (motion, weight) in motions.iter().zip(weights) {
-            let [x, y] = motion.shift;
-            for (value, of) in values.iter_mut().zip([x, y, motion.turn * motion.half]) {
-                *value += weight * of;
+            for motion in motion.all() {
+                let [x, y] = motion.shift;
+                let values = of_parts.entry(motion.part).or_default();
+                for (value, of) in values.iter_mut().zip([x, y, motion.turn * motion.half]) {
+                    *value += weight * of;
+                }
             }
         }
-        self.motion(motions.first().map_or(0, |m| m.part), values)
+        let all = of_parts.values().flatten();
+        let largest = all.fold(0.0, |max: f64, v| max.max(v.abs()));
+        let moves = |values: &[f64; 3]| values.iter().any(|v| v.abs() > NEGLIGIBLE * largest);
+        let mut moving = of_parts.iter().filter(|(_, values)| moves(values));
+        let (part, values) = moving.next().map_or((0, [0.0; 3]), |(part, values)| (*part, *values));
+        let others = moving.map(|(part, values)| self.motion_beside(*part, *values, largest));
+        FreeMotion { others: others.collect(), ..self.motion_beside(part, values, largest) }
     }
 }
 
@@ -243,8 +291,12 @@ where
     motions
 }
 
-/// The solutions of homogeneous equations in `count` unknowns, at most three, given by their rows: a basis in which as many
-/// unknowns as can be are zero. A direction in which the equations have a singular value that `stops` is not free, beside the
+/// Motions of two parts that differ by this share of their size are one motion: singular vectors have some 1e-15 of rounding, and
+/// rows of rounded places more.
+const SAME_MOTION: f64 = 1e-6;
+
+/// The solutions of homogeneous equations in `count` unknowns, given by their rows: a basis in which as many unknowns as can be are
+/// zero. A direction in which the equations have a singular value that `stops` is not free, beside the
 /// largest value.
 pub(super) fn null_space(
     rows: &[Vec<f64>],
@@ -273,8 +325,37 @@ pub(super) fn null_space(
             let last = [w, y, x].into_iter().find(|c| c.abs() > NEGLIGIBLE).unwrap_or(1.0);
             vec![[x, y, w].map(|c| c / last).to_vec()]
         }
-        _ => Vec::new(),
+        _ => eliminated(stopped, count),
     }
+}
+
+/// The vectors that these independent rows multiply to zero, one for each unknown that is no pivot of an elimination.
+fn eliminated(mut rows: Vec<Vec<f64>>, count: usize) -> Vec<Vec<f64>> {
+    let mut pivots: Vec<usize> = Vec::new();
+    for k in 0..rows.len() {
+        let places = (k..rows.len()).flat_map(|i| (0..count).map(move |j| (i, j)));
+        let size = |&(i, j): &(usize, usize)| rows[i][j].abs();
+        let fresh = places.filter(|(_, j)| !pivots.contains(j));
+        let Some((i, pivot)) = fresh.max_by(|a, b| size(a).total_cmp(&size(b))) else { break };
+        rows.swap(k, i);
+        pivots.push(pivot);
+        let divisor = rows[k][pivot];
+        rows[k].iter_mut().for_each(|entry| *entry /= divisor);
+        let row = rows[k].clone();
+        for other in (0..rows.len()).filter(|&other| other != k) {
+            let factor = rows[other][pivot];
+            rows[other].iter_mut().zip(&row).for_each(|(entry, own)| *entry -= factor * own);
+        }
+    }
+    let vector = |free: usize| {
+        let mut vector = vec![0.0; count];
+        vector[free] = 1.0;
+        for (row, &pivot) in rows.iter().zip(&pivots) {
+            vector[pivot] = if row[free].abs() > NEGLIGIBLE { -row[free] } else { 0.0 };
+        }
+        vector
+    };
+    (0..count).filter(|k| !pivots.contains(k)).map(vector).collect()
 }
 
 /// The number of the part of each triangle: triangles with an edge in common are in one part.
@@ -334,8 +415,6 @@ pub(crate) fn pins(
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
     use approx::abs_diff_eq;
 
     use super::*;

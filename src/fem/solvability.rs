@@ -1,6 +1,7 @@
 //! Bodies that supports leave free to move, held by contact because the loads press them against their obstacles.
 //!
-//! Let R be the rigid motions of a part of the body that the supports leave free, and c_i(r) = r_n at the nodes of Gamma_C.
+//! Let R be the rigid motions of a part of the body that the supports leave free, or of parts that touch each other along Gamma_C,
+//! and c_i(r) = r_n at the nodes of Gamma_C, the jump where two parts meet.
 //! J_h has a minimiser if the loads on R are the work of a pressure, L(r) = sum over some edges of Gamma_C and their nodes of
 //! mu_i c_i(r) with all mu_i > 0 (docs/theory.md, Proposition 5.5). That is decided by non-negative least squares (Lawson &
 //! Hanson), whose residual is the motion that the loads drive. Motions with c = 0 on all of Gamma_C slide.
@@ -13,10 +14,12 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::dense::{dot, inner, least_squares, norm, singular_vectors};
+use super::groups::groups;
 use super::mesh::NO_ANGLE;
 use super::piece::Piece;
 use super::rigid::{FreeMotion, NEGLIGIBLE, Parts, null_space, subtract};
 use super::space::Space;
+use crate::kernel::Response;
 
 /// Loads must go on pressing when they are changed by this share of the largest work of single loads: a body on the verge of tipping
 /// is not held. Nobody knows loads better, and it is ten thousand times what is taken for rounding.
@@ -66,8 +69,34 @@ pub struct Play {
     pub most: Option<f64>,
 }
 
-/// The numbers of the contact edges of the part that has these `motions`, of those that are `taken`, with their rows c_i: r_n at
-/// their nodes for each of the motions, and not P0(r): the stress of a rigid motion is zero but for rounding.
+/// The motions of parts that pieces of Gamma_C join, part by part otherwise.
+pub(super) fn joined(
+    motions: &[FreeMotion],
+    parts: &Parts,
+    contact: &[Piece],
+) -> Vec<Vec<FreeMotion>> {
+    let moves = |part: &usize| motions.iter().any(|motion| motion.part == *part);
+    let of_piece = |piece: &Piece| {
+        let sides = piece.geometry.stretches.iter();
+        let of_sides: Vec<usize> = sides.map(|s| parts.of_triangle()[s.edge.triangle]).collect();
+        let [first, second] = of_sides[..] else { return None };
+        (moves(&first) && moves(&second)).then_some([first, second])
+    };
+    let group = groups(parts.count(), contact.iter().filter_map(of_piece));
+    let mut joined: Vec<Vec<FreeMotion>> = Vec::new();
+    for motion in motions {
+        let is_own = |of: &&mut Vec<FreeMotion>| group[of[0].part] == group[motion.part];
+        match joined.iter_mut().find(is_own) {
+            Some(of) => of.push(motion.clone()),
+            None => joined.push(vec![motion.clone()]),
+        }
+    }
+    joined
+}
+
+/// The numbers of the pieces of Gamma_C on the parts that have these `motions`, of those that are `taken`, with their rows c_i: the
+/// jump of r at their nodes for each of the motions, and not P0(r): the stress of a rigid motion is zero but for rounding. What pulls
+/// as well as it pushes has each row with both signs.
 pub(super) fn rows(
     motions: &[FreeMotion],
     parts: &Parts,
@@ -75,18 +104,35 @@ pub(super) fn rows(
     contact: &[Piece],
     taken: impl Fn(usize) -> bool,
 ) -> Vec<EdgeRows> {
-    let of_part = |(e, piece): &(usize, &Piece)| {
-        taken(*e) && parts.of_triangle()[piece.edge().triangle] == motions[0].part
+    let part = |triangle: usize| parts.of_triangle()[triangle];
+    let moves = |part: usize| motions.iter().any(|motion| motion.part == part);
+    let of_parts = |(e, piece): &(usize, &Piece)| {
+        let mut sides = piece.geometry.stretches.iter();
+        taken(*e) && sides.any(|stretch| moves(part(stretch.edge.triangle)))
     };
-    let of_edge = |(e, piece): (usize, &Piece)| {
-        let row = |(node, direction): (usize, Vector2<f64>)| {
-            let at = |motion: &FreeMotion| Vector2::from(motion.at(space.nodes()[node]));
-            motions.iter().map(|motion| at(motion).dot(&direction)).collect()
+    let of_piece = |(e, piece): (usize, &Piece)| {
+        let row = |i: usize| -> Vec<f64> {
+            let compared = piece.compared(space.mesh(), i);
+            let jump = |motion: &FreeMotion| {
+                let at = |&(triangle, place, along): &(usize, [f64; 2], Vector2<f64>)| {
+                    Vector2::from(motion.at_point_of(part(triangle), place)).dot(&along)
+                };
+                compared.iter().map(at).sum()
+            };
+            motions.iter().map(jump).collect()
         };
-        let nodes = space.edge_nodes(piece.edge()).into_iter();
-        (e, nodes.zip(piece.geometry.directions()).map(row).collect())
+        let mut rows = Vec::with_capacity(piece.p0.len());
+        for (response, values) in piece.responses() {
+            for own in values.map(row) {
+                if response == Response::Bilateral {
+                    rows.push(own.iter().map(|c| -c).collect());
+                }
+                rows.push(own);
+            }
+        }
+        (e, rows)
     };
-    contact.iter().enumerate().filter(of_part).map(of_edge).collect()
+    contact.iter().enumerate().filter(of_parts).map(of_piece).collect()
 }
 
 /// The rows of all these edges.
@@ -115,11 +161,11 @@ pub fn slides(
 ) -> Result<Slides, NotHeld> {
     let mut sliding = Vec::new();
     let mut idle = vec![false; contact.len()];
-    for of_part in motions.chunk_by(|a, b| a.part == b.part) {
+    for of_part in &joined(motions, parts, contact) {
         let count = of_part.len();
         let edges = rows(of_part, parts, space, contact, |_| true);
         if edges.is_empty() {
-            return Err(NotHeld { motions: of_part.to_vec(), drive: None });
+            return Err(NotHeld { motions: of_part.clone(), drive: None });
         }
         let fields: Vec<_> = of_part.iter().map(|motion| motion.field(parts, space)).collect();
         let work = |of: fn(f64) -> f64, r: &Vec<[f64; 2]>| -> f64 {
@@ -137,7 +183,7 @@ pub fn slides(
                 let drive = work(|w| w, &motion.field(parts, space)) / motion.size();
                 NotHeld { drive: driven.then_some(drive), motions: vec![motion] }
             }
-            None => NotHeld { motions: of_part.to_vec(), drive: None },
+            None => NotHeld { motions: of_part.clone(), drive: None },
         })?;
         for (i, rows) in &edges {
             idle[*i] = rows.iter().any(|row| norm(row) > none) && kept.iter().all(|(k, _)| k != i);

@@ -10,6 +10,7 @@ mod boundary;
 mod exact;
 mod mesh;
 mod method;
+mod pairs;
 mod source;
 mod table;
 
@@ -29,7 +30,7 @@ use self::source::Source;
 use self::table::{Table, Value};
 use super::input::{self, Failure, FileError, MOST_OF_A_CASE, Position};
 use crate::certify::{Asked, Target};
-use crate::fem::{Mesh, Perturbation, Problem, Structured};
+use crate::fem::{Mesh, Pair, Perturbation, Problem, Structured};
 use crate::kernel::Plane;
 use crate::memory;
 use crate::quote;
@@ -164,6 +165,16 @@ impl Case {
         parse(Source { file, text, settings }, None)
     }
 
+    /// The pairs of boundaries that the case with this text has, by which its mesh is checked.
+    ///
+    /// # Errors
+    /// As [`Case::parse`].
+    pub fn pairs(file: &Path, text: &str) -> Result<Vec<Pair>, FileError> {
+        let source = Source { file, text, settings: &[] };
+        let entries = source.entries(&[])?;
+        Ok(pairs::of_boundaries(&pairs::read_pairs(&Table::whole(source, &entries))?))
+    }
+
     /// The case with this text, which has no \[mesh\], on this mesh.
     ///
     /// # Errors
@@ -200,8 +211,8 @@ const MEMORY_PER_BYTE: u64 = 400;
 /// `given` is the mesh, if it is not the case that says which.
 fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileError> {
     root.only(&[
-        "title", "mesh", "material", "load", "exact", "boundary", "obstacle", "point", "method",
-        "solver", "adapt", "certify", "output", "units", "body",
+        "title", "mesh", "material", "load", "exact", "boundary", "obstacle", "pair", "point",
+        "method", "solver", "adapt", "certify", "output", "units", "body",
     ])?;
     let title = match root.get("title") {
         Some(title) => title.text()?.to_owned(),
@@ -211,8 +222,10 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
     let settings = root.optional_section("solver", read_settings)?.unwrap_or_default();
     let units = root.optional_section("units", read_units)?;
     let folder = file.parent().unwrap_or(Path::new(""));
-    let Meshed { mut mesh, structured, perturbation, file: mesh_file } =
-        read_mesh(root, given, folder)?;
+    let declared = pairs::read_pairs(root)?;
+    let Meshed { mesh, structured, perturbation, file: mesh_file } =
+        read_mesh(root, given, folder, &pairs::of_boundaries(&declared))?;
+    let mut mesh = pairs::split(mesh, &declared)?;
     let table = root.required_section("material", &format!("{} in it", body::EXPECTED))?;
     let body = root.section("body")?;
     let plane = body.as_ref().map(read_plane_of_body).transpose()?.flatten();
@@ -224,8 +237,13 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
     let solution = root
         .optional_section("exact", |exact| read_exact(exact, only_isotropic(&material, &table)?))?;
     let (body_force, surface_forces) = read_loads(root, solution.as_ref(), &mesh)?;
+    if let (Some(pair), Some(_)) = (root.get("pair"), &solution) {
+        return Err(pair.at.found("a pair beside [exact]", "the contact of the exact solution"));
+    }
+    let pairs = pairs::on_mesh(root, declared, &mesh)?;
     let depth = if of_revolution { Depth::Revolution } else { Depth::Of(thickness.unwrap_or(1.0)) };
-    let (conditions, kinds) = read_boundaries(root, solution.as_ref(), &mesh, depth)?;
+    let (conditions, kinds) =
+        read_boundaries(root, solution.as_ref(), &mesh, depth, !pairs.is_empty())?;
     let points = read_points(root, &mesh)?;
     let adapt = root.optional_section("adapt", |table| read_target(table, &conditions))?;
     let asked = root.optional_section("certify", |table| read_quantities(table, &conditions))?;
@@ -234,7 +252,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
     Ok(Case {
         file: file.to_owned(),
         title,
-        problem: Problem { mesh, material, body_force, surface_forces, conditions, points },
+        problem: Problem { mesh, material, body_force, surface_forces, conditions, points, pairs },
         materials,
         units,
         thickness,

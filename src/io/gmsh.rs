@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::input::{self, FileError, MOST_OF_A_MESH};
-use crate::fem::Mesh;
+use crate::fem::{Mesh, Pair};
 use crate::memory;
 use crate::quote;
 use cursor::{Cursor, Version, shown};
@@ -30,25 +30,26 @@ use mesh::{make_mesh, merge_nodes};
 
 type Result<T> = std::result::Result<T, FileError>;
 
-/// The mesh in this file, its nodes merged that are no further apart than a share of the body's size, if one is given.
+/// The mesh in this file, its nodes merged that are no further apart than a share of the body's size, if one is given. The
+/// boundaries of these pairs may touch each other, and are not merged.
 ///
 /// # Errors
 /// The first mistake found, with its place and the numbers that the file uses.
-pub fn read(file: &Path, share: Option<f64>) -> Result<Mesh> {
-    from_bytes(&input::read(file, MOST_OF_A_MESH)?, file, share)
+pub fn read(file: &Path, share: Option<f64>, pairs: &[Pair]) -> Result<Mesh> {
+    from_bytes(&input::read(file, MOST_OF_A_MESH)?, file, share, pairs)
 }
 
 /// The mesh in `bytes`, which messages call `file`; otherwise as [`read`].
-pub fn from_bytes(bytes: &[u8], file: &Path, share: Option<f64>) -> Result<Mesh> {
+pub fn from_bytes(bytes: &[u8], file: &Path, share: Option<f64>, pairs: &[Pair]) -> Result<Mesh> {
     // Names and entities: what is kept of one is no more than this many times what the file says of it.
     const MOST_TIMES: u64 = 4;
     let mut cursor = Cursor { bytes, file, at: 0, version: Version::Four, binary: false };
     memory::check(MOST_TIMES * bytes.len() as u64).map_err(|lack| cursor.in_the_file(lack))?;
     let mut content = read_sections(&mut cursor)?;
     if let Some(share) = share {
-        merge_nodes(&mut content, share);
+        merge_nodes(&mut content, share, pairs);
     }
-    make_mesh(content).map_err(|error| cursor.in_the_file(error))
+    make_mesh(content, pairs).map_err(|error| cursor.in_the_file(error))
 }
 
 /// Something for points, curves and surfaces each.
@@ -420,7 +421,7 @@ mod tests {
     const ALL: &[u8] = include_bytes!("../../tests/meshes/square-all.msh");
 
     fn parse(bytes: &[u8]) -> Result<Mesh> {
-        from_bytes(bytes, Path::new("x.msh"), None)
+        from_bytes(bytes, Path::new("x.msh"), None, &[])
     }
 
     fn message(bytes: &[u8]) -> String {

@@ -250,6 +250,24 @@ where
     one + (one - cosine) * rho / (one - rho)
 }
 
+/// The same where both components of the traction act, whatever the angle: (1 + rho) / (1 - rho). With the values at the ends multiplied by
+/// the roots of the diagonal of [`edge_mass`] the integral is between 1 - rho and 1 + rho times the sum of their squares.
+pub fn turning_factor_of_both<E, S, const N: usize, const M: usize>(
+    [a, b]: [S; 2],
+    root: impl Fn(S) -> S,
+) -> S
+where
+    E: Element<N, M>,
+    S: Scalar,
+{
+    let (one, three) = (S::from(1), S::from(3));
+    if E::DEGREE == 1 {
+        return one;
+    }
+    let rho = (a + b) / root((three * a + b) * (a + three * b));
+    (one + rho) / (one - rho)
+}
+
 fn sum<S: Scalar>([a, b, c]: [S; 3]) -> S {
     a + b + c
 }

@@ -132,6 +132,23 @@ where
     if E::DEGREE == 1 { S::from(1) } else { S::from(2) - cosine }
 }
 
+/// [`turning_factor`] where the component across n~ acts as well: x + (x^2 - 1)^(1/2) with x = (4 - cosine) / 3 for P2.
+#[cfg(not(kani))]
+pub fn turning_factor_of_both<E, S, const N: usize, const M: usize>(
+    cosine: S,
+    root: impl Fn(S) -> S,
+) -> S
+where
+    E: Element<N, M>,
+    S: Scalar,
+{
+    if E::DEGREE == 1 {
+        return S::from(1);
+    }
+    let x = (S::from(4) - cosine) / S::from(3);
+    x + root((x * x - S::from(1)).split(|_| S::from(0), |square| square))
+}
+
 /// The constant c of (n~ . sigma(v) n)^2 <= c sigma(v):eps(v) along an edge with the unit normal n: for one direction of contact d,
 /// d . Q(n) d with the acoustic tensor Q(n), which is A_nnnn for d = n; for directions that turn (`None`) the largest eigenvalue of
 /// Q(n), which serves |sigma(v) n|^2. lambda + 2 mu, which does for all unit vectors d, where A is isotropic.

@@ -1,6 +1,8 @@
 //! Quantities of each part of Gamma_C: resultant, moment, where there is contact, the recovered pressure, penetration; and
 //! the balance of energies.
 //!
+//! Of a pair of bodies all of this is of the first one; the force on the second is the opposite.
+//!
 //! The force of the obstacle on the body is the functional v -> -int (1/gamma) \[P\]+ I(n~ . v): -G_a n~_a at node a, with
 //! G_a = int (1/gamma) \[P\]+ N_a. With v a rigid motion it gives resultant and moment, and these balance loads and reactions
 //! to rounding.
@@ -31,7 +33,6 @@ use crate::fem::mesh::{NO_ANGLE, length};
 use crate::fem::{Degree, EdgeRule, Piece};
 use crate::kernel::DoubleDouble;
 use crate::kernel::edge_integral::radius;
-use crate::kernel::positive_part;
 
 /// The quantities of one part of Gamma_C, in the units of the case.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,9 +41,12 @@ use crate::kernel::positive_part;
 pub struct ContactBoundary {
     /// Its name.
     pub boundary: String,
+    /// The name of the boundary of the other body, if there is one.
+    #[cfg_attr(feature = "files", serde(skip_serializing_if = "Option::is_none"))]
+    pub partner: Option<String>,
     /// int -lambda^h
     pub force: f64,
-    /// The force of the obstacle on the body.
+    /// The force of the obstacle, or of the other body, on the body.
     pub resultant: [f64; 2],
     /// The moment of that force about the origin, counter-clockwise.
     pub moment: f64,
@@ -62,6 +66,9 @@ pub struct ContactBoundary {
     /// Where that is, in the undeformed body; NaN in a result that does not say so.
     #[cfg_attr(feature = "files", serde(default = "unknown_place"))]
     pub penetration_at: [f64; 2],
+    /// The largest g - u_n between two bodies; negative where they overlap everywhere.
+    #[cfg_attr(feature = "files", serde(skip_serializing_if = "Option::is_none"))]
+    pub opening: Option<f64>,
 }
 
 #[cfg(feature = "files")]
@@ -186,18 +193,19 @@ impl Hats {
     }
 }
 
-/// int_0^1 \[P\]+ phi_a by the rule of the method, with the weight of the piece.
+/// int_0^1 \[P\]+ phi_a of the first component by the rule of the method, with the weight of the piece.
 fn hat_integrals(piece: &Piece, fine: &[DoubleDouble], rule: &EdgeRule, hats: Hats) -> [f64; 3] {
-    let (degree, radii) = (piece.degree, piece.radii);
     let mut sums = [0.0; 3];
+    let (degree, fine) = (piece.degree, &fine[..piece.degree.nodes_per_edge()]);
+    let response = piece.geometry.law.responses()[0];
     let p: Vec<f64> = fine.iter().map(|p| p.head()).collect();
     let mut add = |s: f64, weight: f64| {
         let value = match rule {
             EdgeRule::Exact => degree.value_at(&p, s),
             EdgeRule::Gauss(_) => degree.value_at(fine, s.into()).head(),
         };
-        let value = positive_part(value);
-        let weight = radii.map_or(weight, |radii| weight * radius(radii, s));
+        let value = response.q(value);
+        let weight = piece.radii.map_or(weight, |radii| weight * radius(radii, s));
         let hats = hats.at(s);
         (0..3).for_each(|a| sums[a] += weight * value * hats[a]);
     };
@@ -211,7 +219,7 @@ fn hat_integrals(piece: &Piece, fine: &[DoubleDouble], rule: &EdgeRule, hats: Ha
                 let [low, high] = [pair[0], pair[1]];
                 // Exact for the cubic that is left on each piece, with the weight r for one degree more.
                 let (middle, half) = ((low + high) / 2.0, (high - low) / 2.0);
-                if radii.is_some() {
+                if piece.radii.is_some() {
                     let offset = 0.6_f64.sqrt() * half;
                     add(middle - offset, half * (5.0 / 9.0));
                     add(middle, half * (8.0 / 9.0));
@@ -230,13 +238,15 @@ fn hat_integrals(piece: &Piece, fine: &[DoubleDouble], rule: &EdgeRule, hats: Ha
 /// The numbers of the values at the nodes of each edge: neighbours on one boundary share that of their common node unless
 /// the direction of contact jumps there.
 fn groups(d: &Discretization) -> Vec<Vec<usize>> {
-    let mut of_end: BTreeMap<(usize, &str), Vec<Group>> = BTreeMap::new();
+    let mut of_end: BTreeMap<Place, Vec<Group>> = BTreeMap::new();
     let mut count = 0;
     let mut groups = Vec::with_capacity(d.contact.len());
     for edge in &d.contact {
-        let nodes = d.space.edge_nodes(edge.edge());
+        let nodes = edge.geometry.nodes.len();
         let group = |a: usize| {
-            let known = of_end.entry((nodes[a], &**edge.boundary())).or_default();
+            let place = edge.geometry.first().place(d.space.mesh(), a).map(f64::to_bits);
+            let names = (&**edge.boundary(), edge.partner().map(|name| &**name));
+            let known = of_end.entry((place, names)).or_default();
             let direction = edge.geometry.nodes[a].direction;
             match known.iter().find(|(other, _)| same(*other, direction)) {
                 Some(&(_, group)) => group,
@@ -247,10 +257,13 @@ fn groups(d: &Discretization) -> Vec<Vec<usize>> {
                 }
             }
         };
-        groups.push((0..nodes.len()).map(group).collect());
+        groups.push((0..nodes).map(group).collect());
     }
     groups
 }
+
+/// The place of a node, the name of its boundary and that of the other body's.
+type Place<'a> = ([u64; 2], (&'a str, Option<&'a str>));
 
 /// A direction of contact at a node, and the number of the value there.
 type Group = (Vector2<f64>, usize);
@@ -270,9 +283,12 @@ pub(crate) fn contact_boundaries(
     let mut all: Vec<ContactBoundary> = Vec::new();
     let mut end_of_last = None;
     for ((edge, p), recovered) in d.contact.iter().zip(p).zip(recovered) {
-        if all.last().is_none_or(|last| last.boundary != **edge.boundary()) {
+        let partner = edge.partner().map(|name| name.to_string());
+        let is_same =
+            |of: &ContactBoundary| of.boundary == **edge.boundary() && of.partner == partner;
+        if !all.last().is_some_and(is_same) {
             end_of_last = None;
-            all.push(ContactBoundary::empty(edge.boundary()));
+            all.push(ContactBoundary::empty(edge.boundary(), partner));
         }
         if let Some(boundary) = all.last_mut() {
             boundary.add(d, u, edge, p, recovered, &mut end_of_last);
@@ -282,9 +298,11 @@ pub(crate) fn contact_boundaries(
 }
 
 impl ContactBoundary {
-    fn empty(boundary: &str) -> Self {
+    fn empty(boundary: &str, partner: Option<String>) -> Self {
         ContactBoundary {
             boundary: boundary.to_owned(),
+            opening: partner.is_some().then_some(f64::NEG_INFINITY),
+            partner,
             force: 0.0,
             resultant: [0.0; 2],
             moment: 0.0,
@@ -297,7 +315,7 @@ impl ContactBoundary {
         }
     }
 
-    /// Adds an edge; `open` is the vertex up to which a stretch of contact has come.
+    /// Adds a piece; `open` is the place up to which a stretch of contact has come.
     fn add(
         &mut self,
         d: &Discretization,
@@ -305,45 +323,48 @@ impl ContactBoundary {
         edge: &Piece,
         p: &[DoubleDouble],
         recovered: &[f64],
-        open: &mut Option<usize>,
+        open: &mut Option<[f64; 2]>,
     ) {
-        let nodes = d.space.edge_nodes(edge.edge());
-        let places: Vec<[f64; 2]> = nodes.iter().map(|&node| d.space.nodes()[node]).collect();
+        let nodes = &edge.geometry.nodes;
+        let place = |a: usize| edge.geometry.first().place(d.space.mesh(), a);
+        let places: Vec<[f64; 2]> = (0..nodes.len()).map(place).collect();
         let contact = edge.contribution(&d.rule, p);
-        let mut openings = vec![0.0; p.len()];
-        for a in 0..p.len() {
-            let (size, [x, y], n) = (contact.force[a], places[a], edge.geometry.nodes[a].direction);
-            let force = n.map(|c| -size * c);
-            self.force += size;
+        for (i, size) in contact.force.iter().enumerate() {
+            let [x, y] = places[i % nodes.len()];
+            let force = edge.direction_of(i).map(|c| -size * c);
+            self.force += if i < nodes.len() { *size } else { 0.0 };
             self.resultant = [self.resultant[0] + force[0], self.resultant[1] + force[1]];
             self.moment += x * force[1] - y * force[0];
-            let v = u[nodes[a]];
-            openings[a] = v[0] * n[0] + v[1] * n[1] - edge.geometry.nodes[a].gap;
-            if recovered[a] > self.peak_pressure {
-                (self.peak_pressure, self.peak_at) = (recovered[a], places[a]);
+        }
+        let jumps = edge.jumps(u).into_iter().zip(nodes);
+        let overlaps: Vec<f64> = jumps.map(|(jump, node)| jump - node.gap).collect();
+        for (&recovered, &place) in recovered.iter().zip(&places) {
+            if recovered > self.peak_pressure {
+                (self.peak_pressure, self.peak_at) = (recovered, place);
             }
         }
         self.length += contact.active;
-        let place = |s: f64| {
+        let place_at = |s: f64| {
             let [a, b] = [places[0], places[1]];
             [0, 1].map(|c| (1.0 - s) * a[c] + s * b[c])
         };
         for s in [0.0, 0.25, 0.5, 0.75, 1.0] {
-            let depth = edge.degree.value_at(&openings, s);
+            let depth = edge.degree.value_at(&overlaps, s);
+            self.opening = self.opening.map(|opening| opening.max(-depth));
             if depth > self.penetration {
-                (self.penetration, self.penetration_at) = (depth, place(s));
+                (self.penetration, self.penetration_at) = (depth, place_at(s));
             }
         }
-        let p: Vec<f64> = p.iter().map(|p| p.head()).collect();
+        let p: Vec<f64> = p[..nodes.len()].iter().map(|p| p.head()).collect();
         let mut cuts = edge.degree.roots(&p);
         cuts.extend([0.0, 1.0]);
         cuts.sort_unstable_by(f64::total_cmp);
-        let [start, end] = [nodes[0], nodes[1]];
+        let [start, end] = [places[0], places[1]];
         for pair in cuts.windows(2) {
             if !(edge.degree.value_at(&p, (pair[0] + pair[1]) / 2.0) > 0.0) {
                 continue;
             }
-            let [from, to] = [place(pair[0]), place(pair[1])];
+            let [from, to] = [place_at(pair[0]), place_at(pair[1])];
             match self.stretches.last_mut() {
                 Some(last) if pair[0] == 0.0 && *open == Some(start) => last[1] = to,
                 _ => self.stretches.push([from, to]),

@@ -197,7 +197,9 @@ impl Body for Full<'_, '_, '_, '_, '_> {
             self.advance(1.0, &step);
             return Ok(None);
         }
-        let none = derivatives(edges, &vec![-1.0; self.at.p.len()]);
+        let open = derivatives(edges, &vec![-1.0; self.at.p.len()]);
+        // What cannot let go acts all the same.
+        let none = open.pulling(&self.at.p);
         if self.route.system.d.slides.is_none() {
             match self.step(&none) {
                 Ok(step) => {

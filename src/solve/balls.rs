@@ -1,9 +1,8 @@
 //! The ingredients of (8) in balls: the pieces of Gamma_C, kappa, the components of fields and functionals in the frames of their
 //! nodes, their products.
 
-use std::collections::BTreeMap;
-
 use super::system::System;
+use crate::fem::contact_line::{Share, by_triangle};
 use crate::fem::piece::{Side, Stretch};
 use crate::fem::residual;
 use crate::fem::{Discretization, Piece};
@@ -25,12 +24,16 @@ pub fn pieces(d: &Discretization) -> Vec<Piece<PreciseBall>> {
 /// kappa of Theorem 2.3, rounded up. The directions of contact are doubles, unit vectors to a rounding error only.
 pub(super) fn kappa(d: &Discretization, pieces: &[Piece<PreciseBall>]) -> f64 {
     let degree = d.space.degree();
-    let mut kappas: BTreeMap<usize, PreciseBall> = BTreeMap::new();
+    let largest = |a: PreciseBall, b: PreciseBall| if a.upper() < b.upper() { b } else { a };
+    let mut shares = Vec::new();
     for piece in pieces {
         let geometry = &piece.geometry;
         let along: Vec<[PreciseBall; 2]> =
             geometry.directions().map(|n| n.map(PreciseBall::from).into()).collect();
-        for (side, stretch) in piece.sides.iter().zip(&geometry.stretches) {
+        let both = geometry.law.components() > 1;
+        let lengths: Vec<PreciseBall> = piece.sides.iter().map(|side| side.length).collect();
+        let chords = geometry.chords(&lengths);
+        for (i, (side, stretch)) in piece.sides.iter().zip(&geometry.stretches).enumerate() {
             let t = stretch.edge.triangle;
             let direction = if geometry.along_normal {
                 Some(side.normal)
@@ -38,27 +41,34 @@ pub(super) fn kappa(d: &Discretization, pieces: &[Piece<PreciseBall>]) -> f64 {
                 (!geometry.turns()).then_some(along[0].into())
             };
             let (one, doubles) = (PreciseBall::from(1), d.space.mesh().triangle(t));
-            let radii = d.problem.material.of(t).radii(&doubles);
-            let radii = radii.map(|radii| stretch.edge.from_its_ends(radii).map(PreciseBall::from));
-            let counted = |cosine| degree.counted_length(one, cosine, radii, PreciseBall::sqrt);
+            let radii = geometry.radii(i, |edge| {
+                let (t, exact) = (edge.triangle, PreciseBall::from);
+                let triangle = d.space.mesh().triangle(t);
+                d.problem.material.of(t).radii(&triangle).map(|radii| radii.map(exact))
+            });
+            let of_edge = radii.map(|radii| (radii.of_piece, radii.of_triangle));
+            let counted = |turning| degree.counted_length(one, turning, of_edge, PreciseBall::sqrt);
             let factor = if geometry.along_normal {
                 counted(None)
             } else {
                 let off = along.iter().map(|&n| (dot(n, n) - PreciseBall::from(1)).magnitude());
                 let off = PreciseBall::from(8.0 * off.fold(0.0, larger));
-                let turning = counted(Some(dot(along[0], along[1])));
+                let cosine = dot(along[0], along[1]);
+                let turning = counted(Some((cosine, both && geometry.turns())));
                 turning * (PreciseBall::from(1) + off) + off
             };
+            let factor = chords.map_or(factor, |chords| factor * chords.share(i, radii, largest));
             let material = d.problem.material.of(t).map(PreciseBall::from);
+            let direction = direction.filter(|_| !both);
             let stiffness =
                 traction_stiffness(&material, side.normal, direction, PreciseBall::sqrt);
             let area = residual::exactly::<PreciseBall>(doubles).double_area();
             let (length, area) = (factor * side.length, area / PreciseBall::from(2));
-            *kappas.entry(t).or_insert(PreciseBall::from(0)) +=
-                degree.coercivity_constant(stiffness, side.gamma, length, area);
+            let value = degree.coercivity_constant(stiffness, side.gamma, length, area);
+            shares.push(Share::new(geometry, i, value));
         }
     }
-    kappas.values().map(|kappa| kappa.upper()).fold(0.0, larger)
+    by_triangle(shares, largest).values().map(|kappa| kappa.upper()).fold(0.0, larger)
 }
 
 /// The components of a functional at the free unknowns, in the frames of their nodes.

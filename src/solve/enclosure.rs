@@ -369,8 +369,7 @@ fn stays_off(
 ) -> bool {
     let stopping = d.slides.as_ref().map_or(&[][..], |slides| &slides.stopping);
     stopping.iter().map(|&e| &lines[e]).all(|line| {
-        let on_edge = d.space.edge_nodes(line.edge());
-        let far = on_edge.into_iter().map(|node| nodes[node]).fold(0.0, f64::max);
+        let far = line.farthest(|node| nodes[node]);
         pressed::greatest(line.degree, &line.p(u)) + pressed::change(line, far, radius) <= 0.0
     })
 }

@@ -1,7 +1,6 @@
 //! (8) at a displacement, in balls, and the intervals of what is reported of its solution near there.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
@@ -10,8 +9,8 @@ use super::balls::{field, length, product, root, strain_energy};
 use super::system::System;
 use crate::fem::{Discretization, Piece};
 use crate::fem::{residual, rounded_stress};
-use crate::kernel::DoubleDouble;
 use crate::kernel::ball::{PreciseBall, up};
+use crate::kernel::{DoubleDouble, Response};
 
 /// An interval `[low, high]`.
 pub type Range = [f64; 2];
@@ -48,9 +47,12 @@ impl Intervals {
 pub struct ContactIntervals {
     /// Its name.
     pub boundary: String,
+    /// The name of the boundary of the other body, if there is one.
+    #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub partner: Option<String>,
     /// -int lambda^h
     pub force: Range,
-    /// int lambda^h n~
+    /// int lambda^h n~: the force on the body
     pub resultant: [Range; 2],
 }
 
@@ -198,31 +200,39 @@ impl EnclosedResidual {
             max_displacement = [max_displacement[0].max(low), max_displacement[1].max(high)];
         }
 
-        let mut contact: Vec<(Arc<str>, [PreciseBall; 3], PreciseBall)> = Vec::new();
+        let mut contact: Vec<(&Piece<PreciseBall>, [PreciseBall; 3], PreciseBall)> = Vec::new();
         for (line, pressure) in lines.iter().zip(&self.pressures) {
             let zero = PreciseBall::from(0);
-            let of = pressure.iter().enumerate().fold([zero; 3], |sum, (a, &p)| {
-                let n = line.direction(a);
-                [sum[0] + p, sum[1] - p * n[0], sum[2] - p * n[1]]
+            let along = line.degree.nodes_per_edge();
+            let of = pressure.iter().enumerate().fold([zero; 3], |sum, (i, &p)| {
+                let n = line.direction_of(i);
+                let force = if i < along { sum[0] + p } else { sum[0] };
+                [force, sum[1] - p * n[0], sum[2] - p * n[1]]
             });
             let weight = line.whole_weight();
-            match contact.iter_mut().find(|(name, ..)| name == line.boundary()) {
+            match contact.iter_mut().find(|(first, ..)| first.is_of_same_boundary(line)) {
                 Some((_, sum, weights)) => {
                     *sum = [0, 1, 2].map(|i| sum[i] + of[i]);
                     *weights += weight;
                 }
-                None => contact.push((Arc::clone(line.boundary()), of, weight)),
+                None => contact.push((line, of, weight)),
             }
         }
         let contact = contact
             .into_iter()
-            .map(|(boundary, sums, weight)| {
+            .map(|(piece, sums, weight)| {
                 // |int mu n~_c| <= (int 1/gamma)^{1/2} |gamma^{1/2} mu|
                 let off = up(root(weight) * pressure);
                 let [force, x, y] = sums.map(|sum| range(sum.widened(off)));
-                // lambda^h <= 0
-                let force = [force[0].max(0.0), force[1]];
-                ContactIntervals { boundary: boundary.to_string(), force, resultant: [x, y] }
+                // Without tension lambda^h <= 0.
+                let pushes = piece.responses().all(|(r, _)| r == Response::Unilateral);
+                let force = if pushes { [force[0].max(0.0), force[1]] } else { force };
+                ContactIntervals {
+                    boundary: piece.boundary().to_string(),
+                    partner: piece.partner().map(|name| name.to_string()),
+                    force,
+                    resultant: [x, y],
+                }
             })
             .collect();
         let reactions = self.reactions(d, lines, [rho, pressure]);

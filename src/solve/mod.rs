@@ -228,6 +228,8 @@ pub fn discretize<'a>(
     let gamma = |c: &Coercivity| {
         limit = c.limit();
         match method.gamma0 {
+            // The springs between a stiff body and a soft one are those of the soft one.
+            Gamma0::Auto if !problem.pairs.is_empty() => Gamma::Local(0.5),
             Gamma0::Auto => Gamma::Uniform(limit / 2.0),
             Gamma0::Value(gamma0) => Gamma::Uniform(gamma0),
             Gamma0::Local(kappa) => Gamma::Local(kappa),

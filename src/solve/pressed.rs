@@ -7,10 +7,14 @@
 //!
 //! The exact integral has the stretches of an edge between the roots of P for pieces, a Gauss rule its points.
 
+use std::ops::Range;
+
 use nalgebra::DMatrix;
 
-use crate::fem::korn::Hold;
+use crate::fem::korn::{Hold, Term};
+use crate::fem::piece::Stretch;
 use crate::fem::{Degree, Discretization, EdgeRule, Piece};
+use crate::kernel::Response;
 use crate::kernel::ball::{PreciseBall, up};
 use crate::kernel::edge_integral;
 
@@ -60,13 +64,17 @@ struct EdgePiece {
     mass: Vec<Row>,
 }
 
-/// The pressed pieces of an edge.
-struct PressedEdge {
-    /// Where they start and end.
+/// What is pressed of one component on a piece of Gamma_C.
+struct PressedPart {
+    /// The piece.
+    edge: usize,
+    /// The numbers of the component's values among those of the piece.
+    values: Range<usize>,
+    /// Where the stretches start and end.
     pieces: Vec<[f64; 2]>,
-    /// For each piece the least that P is on it at the displacement, and the most that P0(v) is beside |v|_S.
+    /// For each stretch the least that P is on it at the displacement, and the most that P0(v) is beside |v|_S.
     bounds: Vec<[f64; 2]>,
-    /// The shape functions of the edge at the ends of the pieces, and the most that P0(v) is there, beside |v|_S.
+    /// The shape functions of the piece at the ends of the stretches, and the most that P0(v) is there, beside |v|_S.
     places: Vec<(Row, f64)>,
     /// The integrals of N_a N_b over them.
     mass: Vec<Row>,
@@ -74,8 +82,10 @@ struct PressedEdge {
 
 /// S
 pub struct Pressed {
-    /// For each contact edge what of it is in S.
-    edges: Vec<Option<PressedEdge>>,
+    /// The number of pieces of Gamma_C.
+    count: usize,
+    /// What is in S.
+    parts: Vec<PressedPart>,
 }
 
 impl EdgePiece {
@@ -152,105 +162,126 @@ impl EdgePiece {
     }
 }
 
-impl PressedEdge {
-    /// The part of the edge `line` in these pieces, where P has the values `p`. `None` where there are none.
-    fn new(line: &Piece<PreciseBall>, p: &Row, pieces: &[&EdgePiece]) -> Option<Self> {
-        let mut mass = vec![vec![PreciseBall::from(0); p.len()]; p.len()];
-        pieces.iter().for_each(|piece| add(&mut mass, &piece.mass));
+impl PressedPart {
+    /// The part of the piece `line`, of number `edge`, in these stretches, each with the least that P is there. `None` where there
+    /// are none.
+    fn new(
+        (edge, line): (usize, &Piece<PreciseBall>),
+        values: Range<usize>,
+        stretches: &[&(f64, EdgePiece)],
+    ) -> Option<Self> {
+        let mut mass = vec![vec![PreciseBall::from(0); values.len()]; values.len()];
+        stretches.iter().for_each(|(_, piece)| add(&mut mass, &piece.mass));
         let most = |piece: &EdgePiece| SAFETY * root_of(line) * piece.square.upper().sqrt();
-        let bounds = pieces.iter().map(|piece| [piece.least(p), most(piece)]).collect();
+        let bounds = stretches.iter().map(|(least, piece)| [*least, most(piece)]).collect();
         // In the plane the most of the square of P0 is above that of the stress, which is affine.
         let of_stress = SAFETY * root_of(line) * line.radii.map_or(0.0, |_| stress_factor(line));
-        let at_ends = |piece: &&EdgePiece| {
-            let ends = piece.coefficients.iter().take(2);
-            let most = most(piece).max(of_stress);
+        let at_ends = |(_, piece): &&(f64, EdgePiece)| {
+            let (ends, most) = (piece.coefficients.iter().take(2), most(piece).max(of_stress));
             ends.map(|shapes| (shapes.clone(), most)).collect::<Vec<_>>()
         };
-        let places = pieces.iter().flat_map(at_ends).collect();
-        let pieces: Vec<[f64; 2]> = pieces.iter().map(|piece| piece.ends).collect();
-        (!pieces.is_empty()).then_some(PressedEdge { pieces, bounds, places, mass })
+        let places = stretches.iter().flat_map(at_ends).collect();
+        let pieces: Vec<[f64; 2]> = stretches.iter().map(|(_, piece)| piece.ends).collect();
+        let part = PressedPart { edge, values, pieces, bounds, places, mass };
+        (!part.pieces.is_empty()).then_some(part)
     }
 }
 
 impl Pressed {
     /// Nothing: |v|_S = |v|_A.
     pub fn nowhere(count: usize) -> Self {
-        Pressed { edges: (0..count).map(|_| None).collect() }
+        Pressed { count, parts: Vec::new() }
     }
 
-    /// Finds the pieces that are surely pressed at the displacement `u`, those that have their `share` of the pressure.
+    /// Finds the stretches that are surely pressed at the displacement `u`, those that have their `share` of the pressure; what pulls
+    /// as well as it pushes is pressed whatever P is.
     pub fn at(
         d: &Discretization,
         lines: &[Piece<PreciseBall>],
         u: &[[PreciseBall; 2]],
         share: f64,
     ) -> Self {
-        let edges = lines.iter().map(|line| {
+        let degree = d.space.degree();
+        let mut all: Vec<(usize, Range<usize>, Vec<(f64, EdgePiece)>)> = Vec::new();
+        for (edge, line) in lines.iter().enumerate() {
             let p = line.p(u);
-            let least = |piece: EdgePiece| (piece.least(&p), piece);
-            let pieces = EdgePiece::pressed(d.space.degree(), &d.rule, line.radii, &p);
-            let pieces: Vec<(f64, EdgePiece)> = pieces.into_iter().map(least).collect();
-            (p, pieces)
-        });
-        let edges: Vec<(Row, Vec<(f64, EdgePiece)>)> = edges.collect();
-        let all = edges.iter().flat_map(|(_, pieces)| pieces);
-        let enough = share * all.fold(0.0, |most: f64, (least, _)| most.max(*least));
-        let part = |(line, (p, pieces)): (&Piece<PreciseBall>, &(Row, Vec<_>))| {
+            for (response, values) in line.responses() {
+                let own = p[values.clone()].to_vec();
+                let pieces = match response {
+                    Response::Bilateral => {
+                        vec![(f64::INFINITY, EdgePiece::between(degree, line.radii, [0.0, 1.0]))]
+                    }
+                    Response::Unilateral => {
+                        let pieces =
+                            EdgePiece::pressed(degree, &d.rule, line.radii, &own).into_iter();
+                        pieces.map(|piece| (piece.least(&own), piece)).collect()
+                    }
+                };
+                all.push((edge, values, pieces));
+            }
+        }
+        let leasts = all.iter().flat_map(|(.., pieces)| pieces).map(|(least, _)| *least);
+        let enough = share * leasts.filter(|least| least.is_finite()).fold(0.0, f64::max);
+        let part = |(edge, values, pieces): &(usize, Range<usize>, Vec<(f64, EdgePiece)>)| {
             let taken = pieces.iter().filter(|(least, _)| *least >= enough);
-            PressedEdge::new(line, p, &taken.map(|(_, piece)| piece).collect::<Vec<_>>())
+            PressedPart::new((*edge, &lines[*edge]), values.clone(), &taken.collect::<Vec<_>>())
         };
-        Pressed { edges: lines.iter().zip(&edges).map(part).collect() }
+        Pressed { count: lines.len(), parts: all.iter().filter_map(part).collect() }
     }
 
-    /// For each contact edge whether something of it is in S.
+    /// For each piece of Gamma_C whether something of it is in S.
     pub fn edges(&self) -> impl Iterator<Item = bool> {
-        self.edges.iter().map(Option::is_some)
+        (0..self.count).map(|e| self.parts.iter().any(|part| part.edge == e))
     }
 
-    /// The pieces of contact edge `e` that are in S, where they start and end on \[0, 1\].
+    /// The stretches of piece `e` that are in S, where they start and end on \[0, 1\].
     pub fn pieces(&self, e: usize) -> &[[f64; 2]] {
-        self.edges[e].as_ref().map_or(&[], |part| &part.pieces)
+        self.parts.iter().find(|part| part.edge == e).map_or(&[], |part| &part.pieces)
     }
 
     /// Returns whether all of S stays pressed on a ball of radius `rho` and a little more.
     pub fn stay(&self, rho: f64) -> bool {
-        let mut all = self.edges.iter().flatten().flat_map(|part| &part.bounds);
+        let mut all = self.parts.iter().flat_map(|part| &part.bounds);
         all.all(|[least, most]| *least > SAFETY * most * rho)
     }
 
-    /// The holds of S: sums of n~ . v at the nodes of its edges, each times its shape function at a place of the edge:
-    /// n~ . v = P0(v) + gamma s(v), for |v|_S (1 - kappa)^{-1/2} <= 1: at most what P0(v) is beside |v|_S.
+    /// The holds of S: sums of n~ . v at the places of its nodes, less those on the other side, each times its shape function at a
+    /// place of the piece: the jump is P0(v) + gamma s(v), for |v|_S (1 - kappa)^{-1/2} <= 1 at most what P0(v) is beside |v|_S.
     pub fn holds(&self, d: &Discretization, lines: &[Piece<PreciseBall>]) -> Vec<Hold> {
-        let mesh = d.space.mesh();
         let mut holds = Vec::new();
-        for (line, part) in lines.iter().zip(&self.edges) {
-            let Some(part) = part else { continue };
-            let [start, end] =
-                mesh.ends(line.edge()).map(|v| mesh.vertices()[v].map(PreciseBall::from));
-            let middle = [0, 1].map(|c| (start[c] + end[c]) * PreciseBall::from(0.5));
+        for part in &self.parts {
+            let line = &lines[part.edge];
             for (shapes, most) in &part.places {
-                let nodes = [start, end, middle].into_iter().zip(shapes).enumerate();
-                let terms = nodes.map(|(a, (at, &shape))| {
-                    let direction: [PreciseBall; 2] = line.direction(a).into();
-                    (at.map(PreciseBall::rounded), direction.map(|n| (shape * n).rounded()))
-                });
-                let (triangle, terms) = (line.edge().triangle, terms.collect());
-                holds.push(Hold { triangle, terms, most: *most });
+                let mut terms = Vec::new();
+                for (side, stretch) in line.geometry.stretches.iter().enumerate() {
+                    for (i, &shape) in part.values.clone().zip(shapes) {
+                        let at = place_in_balls(d, stretch, i % line.degree.nodes_per_edge());
+                        let direction: [PreciseBall; 2] = line.direction_of(i).into();
+                        let along = direction.map(|n| (shape * n).rounded());
+                        let along = if side == 0 { along } else { along.map(|n| -n) };
+                        let triangle = stretch.edge.triangle;
+                        terms.push(Term { triangle, at: at.map(PreciseBall::rounded), along });
+                    }
+                }
+                holds.push(Hold { terms, most: *most });
             }
         }
         holds
     }
 
-    /// For each contact edge the matrix of its springs, in doubles.
+    /// For each piece of Gamma_C the matrix of its springs, in doubles.
     pub fn springs(&self, lines: &[Piece<PreciseBall>]) -> Vec<DMatrix<f64>> {
-        let of = |(line, part): (&Piece<PreciseBall>, &Option<PressedEdge>)| {
-            let weight = line.weight().head();
-            let nodes = line.p0.len();
-            let mass =
-                |a: usize, b: usize| part.as_ref().map_or(0.0, |part| part.mass[a][b].head());
-            DMatrix::from_fn(nodes, nodes, |a, b| weight * mass(a, b))
-        };
-        lines.iter().zip(&self.edges).map(of).collect()
+        let nothing = |line: &Piece<PreciseBall>| DMatrix::zeros(line.p0.len(), line.p0.len());
+        let mut springs: Vec<DMatrix<f64>> = lines.iter().map(nothing).collect();
+        for part in &self.parts {
+            let weight = lines[part.edge].weight().head();
+            for (i, row) in part.values.clone().zip(&part.mass) {
+                for (j, mass) in part.values.clone().zip(row) {
+                    springs[part.edge][(i, j)] = weight * mass.head();
+                }
+            }
+        }
+        springs
     }
 
     /// Adds what the springs of S do against v, the integral over S of P0(v) P0(w) / gamma for every basis function w.
@@ -260,13 +291,27 @@ impl Pressed {
         v: &[[PreciseBall; 2]],
         forces: &mut [[PreciseBall; 2]],
     ) {
-        for (line, part) in lines.iter().zip(&self.edges) {
-            let Some(part) = part else { continue };
-            let weight = line.weight();
-            let p0 = line.p0(v);
+        for part in &self.parts {
+            let line = &lines[part.edge];
+            let (weight, p0) = (line.weight(), line.p0(v)[part.values.clone()].to_vec());
             let springs: Row = part.mass.iter().map(|row| weight * dot(row, &p0)).collect();
-            line.add_contact(&springs, forces);
+            line.each_force(&line.p0[part.values.clone()], &springs, |node, f| {
+                forces[node] = [forces[node][0] + f[0], forces[node][1] + f[1]];
+            });
         }
+    }
+}
+
+/// The place of a node of a piece on an edge: vertices are exact.
+fn place_in_balls(d: &Discretization, stretch: &Stretch, a: usize) -> [PreciseBall; 2] {
+    let mesh = d.space.mesh();
+    let [start, end] = mesh.ends(stretch.edge).map(|v| mesh.vertices()[v].map(PreciseBall::from));
+    let s = stretch.positions[a];
+    match s {
+        0.0 => start,
+        1.0 => end,
+        0.5 => [0, 1].map(|c| (start[c] + end[c]) * PreciseBall::from(0.5)),
+        _ => [0, 1].map(|c| start[c] + (end[c] - start[c]) * PreciseBall::from(s)),
     }
 }
 
@@ -295,10 +340,12 @@ pub fn greatest(degree: Degree, p: &[PreciseBall]) -> f64 {
     degree.bernstein(p).iter().map(|p| p.upper()).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// How much P0(v) is along an edge at most where |v| is at most `far` at its nodes and `radius` in the energy norm a: n~ . v
-/// is at most 5/4 of the largest nodal value, gamma |s(v)| at most 2 (gamma / |E|)^{1/2} |v|_a in the plane.
+/// How much P0(v) is along a piece at most where |v| is at most `far` at the nodes of its edges, added up over its sides, and
+/// `radius` in the energy norm a: gamma |s(v)| is at most 2 (gamma / |E|)^{1/2} |v|_a in the plane, and n~ . v at most 5/4 of the largest nodal
+/// value; where the nodes of the piece are not those of the edge, that twice.
 pub fn change(line: &Piece<PreciseBall>, far: f64, radius: f64) -> f64 {
-    up(SAFETY * (1.25 * far + stress_factor(line) * root_of(line) * radius))
+    let spread = if line.sides.len() == 1 { 1.25 } else { 1.25 * 1.25 };
+    up(SAFETY * (spread * far + stress_factor(line) * root_of(line) * radius))
 }
 
 /// The most that an affine function is on an edge whose square has the integral 1 over \[0, 1\], with the weight.

@@ -39,8 +39,10 @@ pub struct Solution {
     pub stress: Vec<(Stress<f64>, f64)>,
     /// The von Mises stress of the mean stress on each triangle.
     pub von_mises: Vec<f64>,
-    /// The edges of Gamma_C, chained along the boundary.
+    /// The edges of Gamma_C that face obstacles, chained along the boundary.
     pub contact: Vec<ContactEdgeValues>,
+    /// The pieces of Gamma_C between two bodies, along the boundaries of the first ones.
+    pub between: Vec<PieceValues>,
     /// The pieces of Gamma_C with what method (8) has on them.
     pub pieces: Vec<Piece>,
     /// gamma0, kappa and where the limit comes from.
@@ -115,6 +117,38 @@ pub struct ContactValues {
     pub pressure: f64,
 }
 
+/// A piece of Gamma_C between two bodies.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct PieceValues {
+    /// The names of the two boundaries.
+    pub boundaries: [Arc<str>; 2],
+    /// The nodes in order along the first one (for P2 with the middle in the middle).
+    pub points: Vec<PieceNodeValues>,
+}
+
+/// The values at a node of a piece between two bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct PieceNodeValues {
+    /// The places on the edges of the two bodies, undeformed.
+    pub at: [[f64; 2]; 2],
+    /// n~, the direction of contact, from the first body to the second.
+    pub direction: [f64; 2],
+    /// Arc length along the pieces of the pair from the start of the first one.
+    pub arc: f64,
+    /// The jump of u . n~
+    pub u_n: f64,
+    /// g
+    pub gap: f64,
+    /// The mean of n~ . sigma(u^h) n on the two sides that (8) has.
+    pub sigma_n: f64,
+    /// lambda^h
+    pub lambda: f64,
+    /// The recovered pressure ([`super::answers`]), the one to report.
+    pub pressure: f64,
+}
+
 /// Scalars of a solution, in the units of the case.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
@@ -126,7 +160,7 @@ pub struct Quantities {
     pub work: f64,
     /// The largest Euclidean norm of u over the nodes.
     pub max_displacement: f64,
-    /// -int lambda^h over all of Gamma_C: a sum of magnitudes, whatever their directions
+    /// -int lambda^h over all of Gamma_C, pairs of bodies included: a sum of magnitudes, whatever their directions
     pub contact_force: f64,
     /// int lambda^h n~: the force of all obstacles on the body
     pub contact_resultant: [f64; 2],
@@ -157,6 +191,7 @@ impl Solution {
             von_mises: stress.iter().map(|(s, zz)| s.von_mises_squared(*zz).sqrt()).collect(),
             stress,
             contact: contact_values(d, &u, &p, &recovered),
+            between: piece_values(d, &u, &p, &recovered),
             boundaries: answers::contact_boundaries(d, &u, &p, &recovered),
             largest_strain: answers::largest_strain(d, &u),
             balance: answers::energy_balance(d, &u, &p, &residual, quantities.energy),
@@ -221,6 +256,9 @@ fn contact_values(
     let mut start = 0.0;
     let mut line = Vec::with_capacity(d.contact.len());
     for ((edge, p), recovered) in d.contact.iter().zip(p).zip(recovered) {
+        if edge.partner().is_some() {
+            continue;
+        }
         if line.last().is_none_or(|last: &ContactEdgeValues| last.boundary != *edge.boundary()) {
             start = 0.0;
         }
@@ -252,6 +290,44 @@ fn contact_values(
     line
 }
 
+fn piece_values(
+    d: &Discretization,
+    u: &[[f64; 2]],
+    p: &[Vec<DoubleDouble>],
+    recovered: &[Vec<f64>],
+) -> Vec<PieceValues> {
+    let mut start = 0.0;
+    let mut all: Vec<PieceValues> = Vec::new();
+    for ((piece, p), recovered) in d.contact.iter().zip(p).zip(recovered) {
+        let [first, second] = &piece.geometry.stretches[..] else { continue };
+        let boundaries = [first, second].map(|stretch| Arc::clone(&stretch.boundary));
+        if all.last().is_none_or(|last| last.boundaries != boundaries) {
+            start = 0.0;
+        }
+        let (sigma_n, jumps) = (piece.sigma_n(u), piece.jumps(u));
+        let response = piece.geometry.law.responses()[0];
+        let value = |(a, s): (usize, f64)| {
+            let PieceNode { direction, gap, .. } = piece.geometry.nodes[a];
+            PieceNodeValues {
+                at: [first, second].map(|stretch| stretch.place(d.space.mesh(), a)),
+                direction: direction.into(),
+                arc: start + s * piece.length,
+                u_n: jumps[a],
+                gap,
+                sigma_n: (1.0 - s) * sigma_n[0] + s * sigma_n[1],
+                lambda: -(response.q(p[a].head()) / piece.gamma) + 0.0,
+                pressure: recovered[a],
+            }
+        };
+        let mut points: Vec<PieceNodeValues> =
+            d.space.degree().edge_positions().into_iter().enumerate().map(value).collect();
+        points.sort_by(|a, b| a.arc.total_cmp(&b.arc));
+        all.push(PieceValues { boundaries, points });
+        start += piece.length;
+    }
+    all
+}
+
 fn quantities(d: &Discretization, Evaluated { u, p, residual }: &Evaluated) -> Quantities {
     let mut q = Quantities {
         energy: d.strain_energy(u),
@@ -267,13 +343,15 @@ fn quantities(d: &Discretization, Evaluated { u, p, residual }: &Evaluated) -> Q
     for (edge, p) in d.contact.iter().zip(p) {
         let contact = edge.contribution(&d.rule, p);
         q.contact_force += contact.resultant;
-        for (force, n) in contact.force.iter().zip(edge.geometry.directions()) {
+        for (i, force) in contact.force.iter().enumerate().filter(|_| edge.partner().is_none()) {
+            let n = edge.geometry.nodes[i].direction;
             for c in 0..2 {
                 q.contact_resultant[c] -= force * n[c];
             }
         }
         q.contact_length += contact.active;
-        let heads: Vec<f64> = p.iter().map(|p| p.head()).collect();
+        let along = &p[..edge.degree.nodes_per_edge()];
+        let heads: Vec<f64> = along.iter().map(|p| p.head()).collect();
         let peak = -pressure(edge.degree.maximum(&heads), edge.gamma);
         q.peak_pressure = q.peak_pressure.max(peak);
     }

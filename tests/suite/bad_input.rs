@@ -253,7 +253,7 @@ fn seams_that_do_not_quite_match_and_what_merges_them() {
         let text = edited(&gmsh, ["\"bad.msh\"\n", &format!("\"bad.msh\"\n{merge}\n")]);
         message_of("seams", &text, torn.as_bytes())
     };
-    let near = "bad.toml:3: [mesh] gmsh: bad.msh: vertices 3 at (1, 1) and 5 at (1.000001, 1) are 1e-6 apart with no triangle between them, beside edges of length 1: the body would be torn there; expected one vertex, or a gap of more than 0.001 times the edge (mesh.merge = 1e-6 makes them one) (the numbers are tags of the file)";
+    let near = "bad.toml:3: [mesh] gmsh: bad.msh: vertices 3 at (1, 1) and 5 at (1.000001, 1) are 1e-6 apart with no triangle between them, beside edges of length 1: the body would be torn there; expected one vertex, or a gap of more than 0.001 times the edge (mesh.merge = 1e-6 makes them one; two bodies that touch each other are a [[pair]]) (the numbers are tags of the file)";
     let share = "expected a share of the body's size, above 0 and at most 0.01";
     compare([
         (message_with(""), near.to_owned()),

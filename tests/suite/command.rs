@@ -268,7 +268,7 @@ fn wrong_cases_end_with_exit_code_2_and_write_nothing() {
         (
             "no-contact",
             &[["contact = { gap = \"0\" }", "traction = [\"0\", \"0\"]"]],
-            "case.toml:9: [boundary]: found no contact; expected one boundary with contact, such as [boundary.bottom] contact = { gap = \"0\" }",
+            "case.toml:9: [boundary]: found no contact; expected one boundary with contact, such as [boundary.bottom] contact = { gap = \"0\" }, or a [[pair]] of boundaries",
         ),
     ];
     let mut wrong = Vec::new();

@@ -122,7 +122,7 @@ fn known_to(file: &str, text: &str, settings: &[&str], table: &str) -> BTreeSet<
 }
 
 /// The tables of a case, each with a case that has it and with its name on the page.
-const TABLES: [(&str, &[&str], &str, &str); 21] = [
+const TABLES: [(&str, &[&str], &str, &str); 22] = [
     ("cases/block.toml", &[], "", ""),
     ("cases/block.toml", &["body.thickness=2"], "body", "body"),
     ("cases/block.toml", &[], "mesh", "mesh"),
@@ -142,6 +142,7 @@ const TABLES: [(&str, &[&str], &str, &str); 21] = [
     ("cases/pin.toml", &[], "obstacle.pin", "obstacle.NAME"),
     ("cases/pin.toml", &[], "obstacle.pin.circle", "obstacle.NAME.circle"),
     ("cases/disk.toml", &[], "obstacle.floor.plane", "obstacle.NAME.plane"),
+    ("cases/block.toml", &["pair=[{boundaries=[\"left\", \"right\"]}]"], "pair.0", "pair"),
     ("cases/block.toml", &["point.p.displacement=[0,0]"], "point.p", "point.NAME"),
     ("cases/block.toml", &["output.probes=[]"], "output", "output"),
 ];
@@ -153,7 +154,7 @@ fn documented_keys(page: &str) -> BTreeSet<String> {
     for line in page.lines() {
         if let Some(name) = line.strip_prefix("## ") {
             let inner = name.strip_prefix("`[").and_then(|name| name.strip_suffix("]`"));
-            section = inner.unwrap_or_default().to_owned();
+            section = inner.unwrap_or_default().trim_matches(['[', ']']).to_owned();
         }
         let Some(row) = line.strip_prefix("| `").filter(|_| section != "exact") else { continue };
         let cell = row.split(" | ").next().unwrap();

@@ -193,7 +193,7 @@ fn meshes() {
     let seeds = files("tests/meshes", "msh");
     let small: Vec<Vec<u8>> = seeds.into_iter().filter(|seed| seed.len() < 1 << 15).collect();
     fuzz("meshes", 4000, &small, &in_lists(&[NUMBERS, MESH]), |input| {
-        match gmsh::from_bytes(input, Path::new("fuzzed.msh"), None) {
+        match gmsh::from_bytes(input, Path::new("fuzzed.msh"), None, &[]) {
             Ok(mesh) => {
                 assert!((0..mesh.triangles().len()).all(|t| mesh.triangle(t).double_area() > 0.0));
                 let mut starts: Vec<usize> =

@@ -28,7 +28,7 @@ fn mesh(geometry: &str, output: &str, more: &[&str]) -> PathBuf {
 }
 
 fn read(file: &Path) -> Mesh {
-    gmsh::read(file, None).unwrap_or_else(|e| panic!("{e}"))
+    gmsh::read(file, None, &[]).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn area(mesh: &Mesh) -> f64 {
@@ -105,7 +105,8 @@ fn older_files_and_straight_elements_of_second_order_give_the_same_mesh() {
         }
     }
     let curved = mesh("cases/disk.geo", "curved.msh", &["-order", "2"]);
-    let message = gmsh::read(&curved, None).err().map_or("no error".to_owned(), |e| e.to_string());
+    let message =
+        gmsh::read(&curved, None, &[]).err().map_or("no error".to_owned(), |e| e.to_string());
     assert!(message.contains("is curved: the middle node"), "{message}");
 }
 

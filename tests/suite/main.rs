@@ -26,6 +26,7 @@ mod fuzz;
 mod gmsh_live;
 mod held;
 mod method;
+mod pair_cases;
 mod parts;
 mod patch;
 mod peaks;

@@ -198,7 +198,7 @@ fn every_variant_of_the_bracket_gives_the_same_result() {
         "tests/meshes/bracket-22-binary.msh",
     ] {
         let file = root.join(name);
-        let mesh = gmsh::read(&file, None).unwrap();
+        let mesh = gmsh::read(&file, None, &[]).unwrap();
         assert_eq!(mesh.surfaces().keys().collect::<Vec<_>>(), ["rubber", "steel"], "{name}");
         let text = std::fs::read_to_string(root.join("cases/bracket.toml")).unwrap();
         let text = text.replace("gmsh = \"bracket.msh\"", &format!("gmsh = \"{name}\""));

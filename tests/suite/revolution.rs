@@ -3,6 +3,7 @@
 
 mod answers;
 mod half_space;
+mod pairs;
 mod random;
 mod refused;
 

@@ -61,7 +61,7 @@ fn a_mistake_in_a_setting_is_reported_with_the_setting_and_exit_code_2() {
     for (setting, message) in [
         (
             "metod.gamma0=1",
-            "unknown key 'metod'; expected title, mesh, material, load, exact, boundary, obstacle, point, method, solver, adapt, certify, output, units or body",
+            "unknown key 'metod'; expected title, mesh, material, load, exact, boundary, obstacle, pair, point, method, solver, adapt, certify, output, units or body",
         ),
         (
             "method.gama0=1",
@@ -88,6 +88,10 @@ fn a_mistake_in_a_setting_is_reported_with_the_setting_and_exit_code_2() {
         (
             "load.body.1=2",
             "'load.body' is a list, whose entries have no keys; expected all of it: load.body=[...]",
+        ),
+        (
+            "pair=[{boundaries=[\"left\",\"right\"],reach=0}]",
+            "[[pair]] reach = 0; expected a positive number",
         ),
         ("# a=1", "found no key with a value; expected KEY=VALUE, such as method.gamma0=1e-3"),
     ] {

@@ -186,7 +186,8 @@ impl Mesh {
             });
             (name.clone(), halved.collect())
         });
-        let mut mesh = Mesh::new(vertices, triangles, named)?;
+        // Parts of triangles lie where these did.
+        let mut mesh = Mesh::of_edges(vertices, triangles, named, |_, _| true)?;
         Arc::make_mut(&mut mesh.topology).inner.clone_from(&self.topology.inner);
         let mesh = mesh.with_names(surfaces, self.topology.points.clone());
         Ok(Refinement { mesh, parents, origin })

@@ -26,15 +26,36 @@ pub enum MeshError {
     Clockwise { triangle: usize, vertices: [usize; 3], area: f64 },
     #[error("triangle {triangle} (vertices {}, {}, {}) is flat: its area {} is nothing beside its diameter {}", vertices[0], vertices[1], vertices[2], number(*area), number(*diameter))]
     Flat { triangle: usize, vertices: [usize; 3], area: f64, diameter: f64 },
-    #[error("vertices {} and {} are both at ({}, {}); expected one vertex there", vertices[0], vertices[1], number(*x), number(*y))]
+    #[error("vertices {} and {} are both at ({}, {}); expected one vertex there (mesh.merge makes them one), or two bodies that are a [[pair]]", vertices[0], vertices[1], number(*x), number(*y))]
     Duplicate { vertices: [usize; 2], x: f64, y: f64 },
+    #[error(
+        "two bodies {} at ({}, {}), which belongs to triangles {} and {}{}",
+        if *overlap { "overlap" } else { "touch" }, number(*x), number(*y), triangles[0], triangles[1], in_reach(pair.as_ref())
+    )]
+    Bodies {
+        triangles: [usize; 2],
+        x: f64,
+        y: f64,
+        overlap: bool,
+        pair: Option<([String; 2], f64)>,
+    },
+    #[error(
+        "the surfaces {} and {} have no edge in common; expected two that meet in a curve",
+        quoted(&surfaces[0], '\''), quoted(&surfaces[1], '\'')
+    )]
+    NoCommonEdge { surfaces: [String; 2] },
+    #[error(
+        "a boundary named {} is made between two surfaces, and the mesh has one already; expected another name for that",
+        quoted(name, '\'')
+    )]
+    NameOfSplit { name: String },
     #[error("vertex {vertex} at ({}, {}) belongs to no triangle", number(*x), number(*y))]
     Unused { vertex: usize, x: f64, y: f64 },
     #[error("triangles {} and {} overlap: both lie on the same side of the edge from vertex {} to vertex {}", triangles[0], triangles[1], vertices[0], vertices[1])]
     Overlap { triangles: [usize; 2], vertices: [usize; 2] },
     #[error("triangles {} and {} overlap at ({}, {}): expected triangles that cover no point twice", triangles[0], triangles[1], number(*x), number(*y))]
     Overlapping { triangles: [usize; 2], x: f64, y: f64 },
-    #[error("vertices {} at ({}, {}) and {} at ({}, {}) are {:e} apart with no triangle between them, beside edges of length {}: the body would be torn there; expected one vertex, or a gap of more than {} times the edge (mesh.merge = {merge:e} makes them one)", vertices[0], number(places[0][0]), number(places[0][1]), vertices[1], number(places[1][0]), number(places[1][1]), short(*distance), short(*local), TOUCHING)]
+    #[error("vertices {} at ({}, {}) and {} at ({}, {}) are {:e} apart with no triangle between them, beside edges of length {}: the body would be torn there; expected one vertex, or a gap of more than {} times the edge (mesh.merge = {merge:e} makes them one; two bodies that touch each other are a [[pair]])", vertices[0], number(places[0][0]), number(places[0][1]), vertices[1], number(places[1][0]), number(places[1][1]), short(*distance), short(*local), TOUCHING)]
     Near { vertices: [usize; 2], places: [[f64; 2]; 2], distance: f64, local: f64, merge: f64 },
     #[error("vertex {vertex} at ({}, {}) hangs inside the edge between vertices {} and {} of triangle {triangle}{}: neighbours must share whole edges", number(*x), number(*y), edge[0], edge[1], beside(*off))]
     Hanging { vertex: usize, x: f64, y: f64, edge: [usize; 2], triangle: usize, off: f64 },
@@ -60,6 +81,17 @@ pub enum MeshError {
     NoCells { name: &'static str, value: usize },
     #[error("nx = {nx} and ny = {ny} make more than {most} cells; expected fewer")]
     TooManyCells { nx: usize, ny: usize, most: usize },
+}
+
+/// What is expected where two bodies meet, by the pair that they make.
+fn in_reach(pair: Option<&([String; 2], f64)>) -> String {
+    match pair {
+        None => ": expected bodies that are apart, or a [[pair]] of the boundaries that touch each other".to_owned(),
+        Some(([first, second], reach)) => format!(
+            ", beyond the reach of {} of the pair of {} and {}: expected bodies that are apart there, or a larger reach",
+            number(short(*reach)), quoted(first, '\''), quoted(second, '\'')
+        ),
+    }
 }
 
 fn beside(off: f64) -> String {
@@ -98,7 +130,9 @@ impl MeshError {
                 *triangles = triangles.map(&of_triangle);
                 two(vertices);
             }
-            Overlapping { triangles, .. } => *triangles = triangles.map(&of_triangle),
+            Overlapping { triangles, .. } | Bodies { triangles, .. } => {
+                *triangles = triangles.map(&of_triangle)
+            }
             Near { vertices, .. } => two(vertices),
             Hanging { vertex, edge, triangle, .. } => {
                 *vertex = of_vertex(*vertex);
@@ -108,6 +142,8 @@ impl MeshError {
             Empty
             | InnerEdge { .. }
             | NoSuchBoundary { .. }
+            | NoCommonEdge { .. }
+            | NameOfSplit { .. }
             | NoSuchSurface { .. }
             | NoSuchPoint { .. }
             | Size { .. }

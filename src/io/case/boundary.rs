@@ -6,9 +6,11 @@ use std::sync::Arc;
 use super::body::constant;
 use super::exact::read_kind;
 use super::table::{Spot, Table, Value};
-use crate::fem::{BoundaryEdge, Condition, Mesh, Obstacle, PointSupport, SharedFunction, Side};
+use crate::fem::{
+    BoundaryEdge, Condition, Hand, Mesh, Obstacle, Path, PointSupport, SharedFunction, Side,
+};
 use crate::io::input::FileError;
-use crate::quote::names;
+use crate::quote::{listed, names};
 use crate::study::Exact;
 use crate::study::exact::Kind;
 
@@ -35,19 +37,26 @@ fn area_of_revolution(mesh: &Mesh, edges: &[BoundaryEdge]) -> f64 {
     edges.iter().map(of).sum()
 }
 
-/// Reads the conditions on the boundaries. A whole force acts on the area of its boundary.
+/// Reads the conditions on the boundaries. A whole force acts on the area of its boundary. `has_pairs`: contact
+/// is between boundaries of the mesh, and need not be with an obstacle.
 pub(super) fn read_boundaries(
     root: &Table,
     solution: Option<&Exact>,
     mesh: &Mesh,
     depth: Depth,
+    has_pairs: bool,
 ) -> Result<Boundaries, FileError> {
     let expected = match solution {
-        None => "one boundary with contact, such as [boundary.bottom] contact = { gap = \"0\" }",
+        None => {
+            "one boundary with contact, such as [boundary.bottom] contact = { gap = \"0\" }, or a [[pair]] of boundaries"
+        }
         Some(_) => "one boundary with contact, such as bottom = \"contact\"",
     };
-    let all = root.required_section("boundary", expected)?;
     let obstacles = read_obstacles(root)?;
+    let all = match root.section("boundary")? {
+        None if has_pairs && obstacles.is_empty() => return Ok(Boundaries::default()),
+        _ => root.required_section("boundary", expected)?,
+    };
     let (mut conditions, mut kinds) = (BTreeMap::new(), BTreeMap::new());
     for key in all.keys() {
         let at = all.under_header(key);
@@ -74,7 +83,7 @@ pub(super) fn read_boundaries(
         };
         conditions.insert(key.to_owned(), condition);
     }
-    if !conditions.values().any(Condition::is_contact) {
+    if !has_pairs && !conditions.values().any(Condition::is_contact) {
         return Err(all.at.found("no contact", expected));
     }
     let is_used = |name: &str| {
@@ -194,7 +203,18 @@ fn read_obstacles<'s>(root: &Table<'s>) -> Result<Obstacles<'s>, FileError> {
 }
 
 fn read_obstacle(table: &Table) -> Result<Obstacle, FileError> {
-    let shape = table.exactly_one(&["plane", "circle", "distance"])?;
+    const SHAPES: [&str; 4] = ["plane", "circle", "points", "distance"];
+    table.only(&["plane", "circle", "points", "radius", "side", "distance"])?;
+    let &[shape] = table.given(&SHAPES).as_slice() else {
+        return Err(table.combination(&SHAPES, &format!("either {}", listed(&SHAPES, "or"))));
+    };
+    if shape == "points" {
+        return read_path(table);
+    }
+    if let [beside, ..] = table.given(&["radius", "side"])[..] {
+        return Err(table.combination(&[shape, beside], &format!("{beside} beside points only")));
+    }
+    let shape = table.require(shape, "a shape")?;
     if table.get("distance").is_some() {
         return Ok(Obstacle::Distance(Arc::new(shape.expression()?)));
     }
@@ -217,6 +237,27 @@ fn read_obstacle(table: &Table) -> Result<Obstacle, FileError> {
     } else {
         Err(normal.wrong_as(&format!("{:?}", [x, y]), "a vector that is not zero"))
     }
+}
+
+/// A line through points, its corners rounded.
+fn read_path(table: &Table) -> Result<Obstacle, FileError> {
+    let value = table.require("points", "a list of points")?;
+    let points = value.items()?.iter().map(Value::vector).collect::<Result<Vec<_>, _>>()?;
+    let not_negative = |radius: &Value| radius.number_that(|r| r >= 0.0, "a radius, or 0");
+    let radii = table.optional("radius", |radius| match radius.items() {
+        Ok(each) => each.iter().map(not_negative).collect(),
+        Err(_) => Ok(vec![not_negative(radius)?]),
+    })?;
+    let path = Path::new(&points, &radii.unwrap_or_default());
+    let path = path.map_err(|error| value.at.wrong(format!("{}: {error}", value.at.name)))?;
+    Ok(Obstacle::Path { path: Arc::new(path), body: read_side(table)? })
+}
+
+/// Where the body is beside a line.
+fn read_side(table: &Table) -> Result<Hand, FileError> {
+    let side = table
+        .require("side", "\"left\" or \"right\": where the body is, walking along the line")?;
+    side.one_of(&[("left", Hand::Left), ("right", Hand::Right)])
 }
 
 /// `[point.NAME] displacement = [..]` on the mesh.

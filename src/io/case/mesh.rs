@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::exact::angle;
 use super::table::{Table, Value};
 use crate::fem::structured::MOST_CELLS;
-use crate::fem::{Diagonal, Mesh, Perturbation, Rectangle, Structured, Trapezoid};
+use crate::fem::{Diagonal, Mesh, Pair, Perturbation, Rectangle, Structured, Trapezoid};
 use crate::io::gmsh;
 use crate::io::input::FileError;
 
@@ -23,11 +23,13 @@ impl From<Mesh> for Meshed {
     }
 }
 
-/// The mesh that is `given`, or else that of the table; `directory` is the one of the case file.
+/// The mesh that is `given`, or else that of the table; `directory` is the one of the case file. Boundaries
+/// of `pairs` may touch each other.
 pub(super) fn read_mesh(
     root: &Table,
     given: Option<Mesh>,
     directory: &Path,
+    pairs: &[Pair],
 ) -> Result<Meshed, FileError> {
     match (given, root.section("mesh")?) {
         (Some(_), Some(table)) => {
@@ -36,12 +38,12 @@ pub(super) fn read_mesh(
         (Some(mesh), None) => Ok(mesh.into()),
         (None, _) => {
             let expected = "rectangle = { .. } or gmsh = \"..\" in it";
-            make_mesh(&root.required_section("mesh", expected)?, directory)
+            make_mesh(&root.required_section("mesh", expected)?, directory, pairs)
         }
     }
 }
 
-fn make_mesh(table: &Table, directory: &Path) -> Result<Meshed, FileError> {
+fn make_mesh(table: &Table, directory: &Path, pairs: &[Pair]) -> Result<Meshed, FileError> {
     const SHAPES: [&str; 3] = ["rectangle", "trapezoid", "gmsh"];
     table.only(&["rectangle", "trapezoid", "gmsh", "perturb", "merge"])?;
     let perturbation = table.optional("perturb", read_perturbation)?;
@@ -65,7 +67,7 @@ fn make_mesh(table: &Table, directory: &Path) -> Result<Meshed, FileError> {
             return Err(value.wrong("the name of a mesh file"));
         }
         let file = directory.join(name);
-        let mesh = gmsh::read(&file, merge).map_err(|error| {
+        let mesh = gmsh::read(&file, merge, pairs).map_err(|error| {
             value.at.wrong(error.error.clone().map(|_| format!("[mesh] gmsh: {error}")))
         })?;
         return Ok(Meshed { file: Some(file), ..mesh.into() });

@@ -9,7 +9,7 @@
 use std::path::Path;
 
 use toml::Spanned;
-use toml::de::{DeString, DeTable, DeValue};
+use toml::de::{DeArray, DeString, DeTable, DeValue};
 
 use crate::io::expression::Expression;
 use crate::io::input::{Failure, FileError, Position};
@@ -103,6 +103,22 @@ fn merge<'s>(below: &mut DeTable<'s>, above: DeTable<'s>, path: &str) -> Result<
             (Some(DeValue::Table(old)), DeValue::Table(new)) => {
                 merge(old, std::mem::take(new), &path)?;
             }
+            (Some(DeValue::Array(old)), DeValue::Table(new)) if has_tables(old, new) => {
+                let most = old.len() - 1;
+                for (number, mut entry) in std::mem::take(new) {
+                    let (number, list) = (number.get_ref(), cut(&path));
+                    let index: Option<usize> = number.parse().ok();
+                    let old = index.and_then(|index| old.get_mut(index)).map(Spanned::get_mut);
+                    let (Some(DeValue::Table(old)), DeValue::Table(new)) = (old, entry.get_mut())
+                    else {
+                        return Err(format!(
+                            "found {list}.{}; expected a key of one of the tables {list}.0 to {list}.{most}",
+                            cut(number)
+                        ));
+                    };
+                    merge(old, std::mem::take(new), &format!("{path}.{number}"))?;
+                }
+            }
             (Some(DeValue::Array(_)), DeValue::Table(new)) if new.keys().all(is_number) => {
                 let (list, path) = (quoted(&path, '\''), cut(&path));
                 return Err(format!(
@@ -117,6 +133,12 @@ fn merge<'s>(below: &mut DeTable<'s>, above: DeTable<'s>, path: &str) -> Result<
         }
     }
     Ok(())
+}
+
+/// The list is one of tables, which the keys of the other table number.
+fn has_tables(list: &DeArray, numbered: &DeTable) -> bool {
+    let is_table = |entry: &Spanned<DeValue>| matches!(entry.get_ref(), DeValue::Table(_));
+    !list.is_empty() && list.iter().all(is_table) && numbered.keys().all(is_number)
 }
 
 fn is_number(key: &Spanned<DeString>) -> bool {

@@ -170,16 +170,6 @@ impl<'s> Table<'s> {
         Err(self.at.source.wrong(Some(key.span().start), said.into()))
     }
 
-    /// The one of `keys` that is there.
-    pub fn exactly_one(&self, keys: &[&str]) -> Result<Value<'s>, FileError> {
-        self.only(keys)?;
-        let expected = format!("either {}", listed(keys, "or"));
-        match self.given(keys)[..] {
-            [key] => self.require(key, &expected),
-            _ => Err(self.combination(keys, &expected)),
-        }
-    }
-
     /// The complaint about which of `keys` are there.
     pub fn combination(&self, keys: &[&str], expected: &str) -> FileError {
         let found = self.given(keys);

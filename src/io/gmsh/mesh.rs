@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use super::{ByDimension, Content, Elements, GmshElement, Groups, Middle, Node};
 use crate::fem::merge::merge;
 use crate::fem::mesh::length;
-use crate::fem::{Mesh, MeshError};
+use crate::fem::{Mesh, MeshError, Pair};
 use crate::io::input::Failure;
 use crate::memory::{self, bytes_of};
 use crate::quote;
@@ -24,13 +24,24 @@ const NO_TRIANGLE: &str =
     "mesh with gmsh -2, and where curves have a physical group, give the surface one too";
 
 /// Gives the elements on nodes that lie together the first of these nodes, and leaves out what loses an edge by it. Nodes that
-/// no triangle uses, and elements on nodes that are not there, stay as they are.
-pub(super) fn merge_nodes(content: &mut Content, share: f64) {
+/// no triangle uses, and elements on nodes that are not there, stay as they are. The two boundaries of a pair stay apart.
+pub(super) fn merge_nodes(content: &mut Content, share: f64, pairs: &[Pair]) {
+    let on_sides: Vec<[HashSet<usize>; 2]> = pairs
+        .iter()
+        .map(|pair| pair.boundaries.each_ref().map(|name| nodes_on(content, name)))
+        .collect();
     let by_dimension = &mut content.elements.by_dimension;
     let used: HashSet<usize> = by_dimension[2].iter().flat_map(|t| t.nodes).collect();
     let kept: Vec<&Node> = content.nodes.iter().filter(|node| used.contains(&node.tag)).collect();
     let places: Vec<[f64; 2]> = kept.iter().map(|node| node.place).collect();
-    let merged = merge(&places, &[], share);
+    let are_apart = |v: usize, w: usize| {
+        let [v, w] = [kept[v].tag, kept[w].tag];
+        on_sides.iter().any(|[first, second]| {
+            (first.contains(&v) && second.contains(&w))
+                || (first.contains(&w) && second.contains(&v))
+        })
+    };
+    let merged = merge(&places, &[], share, are_apart);
     let first: HashMap<usize, usize> = kept
         .iter()
         .zip(&merged.vertex)
@@ -43,8 +54,17 @@ pub(super) fn merge_nodes(content: &mut Content, share: f64) {
     triangles.retain(|&GmshElement { nodes: [a, b, c], .. }| a != b && b != c && c != a);
 }
 
+/// The nodes on the physical curve of this name.
+fn nodes_on(content: &Content, name: &str) -> HashSet<usize> {
+    let is_named = |physical: &i32| content.names[1].get(physical).is_some_and(|of| of == name);
+    let lines = content.elements.by_dimension[1].iter().filter(|line| {
+        content.groups[1].get(&line.entity).is_some_and(|groups| groups.iter().any(is_named))
+    });
+    lines.flat_map(|line| [line.nodes[0], line.nodes[1]]).collect()
+}
+
 /// The mesh of the corners of triangles, in the order of the file.
-pub(super) fn make_mesh(content: Content) -> Result<Mesh> {
+pub(super) fn make_mesh(content: Content, pairs: &[Pair]) -> Result<Mesh> {
     let Content { names, groups, nodes, elements: Elements { by_dimension, middles } } = content;
     let [points, lines, triangles] = by_dimension;
     // Two maps from tags, which are at most half empty and twice as large for a moment while they grow; the lists.
@@ -107,7 +127,8 @@ pub(super) fn make_mesh(content: Content) -> Result<Mesh> {
     }
 
     let corners = triangles.iter().map(|t| t.nodes.map(|node| vertex_of[&node])).collect();
-    let mesh = Mesh::new(kept.iter().map(|node| node.place).collect(), corners, parts);
+    let places = kept.iter().map(|node| node.place).collect();
+    let mesh = Mesh::with_pairs(places, corners, parts, pairs);
     match mesh {
         Ok(mesh) => Ok(mesh.with_names(surfaces, named_points)),
         Err(error) => {

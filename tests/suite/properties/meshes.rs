@@ -71,7 +71,7 @@ fn merged(share: f64, told: f64) -> Outcome {
             coordinates().fold(0.0, f64::max) - coordinates().fold(1.0, f64::min)
         };
         let distance = share * extent(0).max(extent(1));
-        let groups = merge(&vertices, &[], told).vertex;
+        let groups = merge(&vertices, &[], told, |_, _| false).vertex;
         // By spreading the smallest number along steps.
         let mut first: Vec<usize> = (0..vertices.len()).collect();
         for _ in 0..vertices.len() {
