@@ -260,7 +260,8 @@ def read_case(path):
     root = _Table("", content, path)
     if root.has("pair"):
         root.refuse("pair", "a pair of boundaries", "contact with rigid obstacles only: this engine has no contact between bodies")
-    materials = _materials(root.table("material"))
+    body = root.table("body", needed=False)
+    materials = _materials(root.table("material"), _plane(body, "strain"))
     if root.has("exact") and None not in materials:
         root.fail("material", ", ".join(materials), "one material for the whole body beside [exact]")
     if root.has("exact") and isinstance(materials[None], Tensor):
@@ -273,7 +274,6 @@ def read_case(path):
     solver = root.table("solver", needed=False)
     output = root.table("output", needed=False)
     units = root.table("units", needed=False)
-    body = root.table("body", needed=False)
     output.get("stretch")  # of the picture, which is not drawn here
     for key in ("length", "force"):
         units.text(key, "")
@@ -327,12 +327,19 @@ def _mesh(table, path):
     return shape
 
 
-def _materials(table):
+def _plane(table, default):
+    plane = table.choice("plane", ("strain", "stress", "axisymmetric"), default)
+    if plane == "axisymmetric":
+        table.refuse("plane", plane, "a plane body: the reference has no bodies of revolution")
+    return plane
+
+
+def _materials(table, plane):
     """{surface: Material}, or {None: Material} for the whole body."""
     named = [key for key, value in table.content.items() if isinstance(value, dict) and key != "orthotropic"]
     if not named:
-        return {None: _material(table, "strain")}
-    plane = table.choice("plane", ("strain", "stress"), "strain")
+        return {None: _material(table, plane)}
+    plane = _plane(table, plane)
     materials = {name: _material(table.table(name), plane) for name in named}
     if len({material.plane for material in materials.values()}) > 1:
         table.refuse("", "plane strain beside plane stress", "the same for the whole body")
@@ -341,7 +348,7 @@ def _materials(table):
 
 
 def _material(table, plane):
-    plane = table.choice("plane", ("strain", "stress"), plane)
+    plane = _plane(table, plane)
     given = [any([table.has(key) for key in keys]) for keys in (MODULI[:2], MODULI[2:4], MODULI[4:5], MODULI[5:])]
     if sum(given) != 1:
         table.refuse("", ", ".join(key for key in MODULI if key in table.content),

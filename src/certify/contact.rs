@@ -100,7 +100,7 @@ impl Contact {
     pub fn new(problem: &Problem, edge: &Piece, u: &[[f64; 2]]) -> Contact {
         let (geometry, degree, p) = (&edge.geometry, edge.degree, edge.p(u));
         // int \[P\]+ N_a; a hat function is N_a and half of that of the middle.
-        let nodal = |p: &[f64]| EdgeRule::Exact.integrals(degree, p).gradient;
+        let nodal = |p: &[f64]| EdgeRule::Exact.integrals(degree, None, p).gradient;
         let with_hats = |p: &[f64]| {
             let nodal = nodal(p);
             let middle = nodal.get(2).copied();

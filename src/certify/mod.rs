@@ -171,6 +171,11 @@ fn certify_near(
     (start, field): (&[[f64; 2]], &[[f64; 2]]),
     asked: &Asked,
 ) -> Result<Continuous, CertifyError> {
+    if problem.material.are_of_revolution() {
+        return Err(CertifyError::Unsupported(
+            "the body is one of revolution, and certificates are about plane bodies".to_owned(),
+        ));
+    }
     if let Some(pair) = problem.pairs.first() {
         let [first, second] = pair.boundaries.each_ref().map(|name| quoted(name, '\''));
         return Err(CertifyError::Unsupported(format!(

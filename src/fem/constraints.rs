@@ -16,6 +16,7 @@ use super::data::{DataError, finite};
 use super::function::SharedFunction;
 use super::mesh::{BoundaryEdge, NO_ANGLE, ROUNDED};
 use super::problem::{Condition, Problem};
+use super::revolution::AXIS;
 use super::rigid::{self, FreeMotion, Parts, pins};
 use super::space::Space;
 use crate::kernel::Scalar;
@@ -31,6 +32,8 @@ pub struct Constraints {
     pins: Vec<(usize, usize)>,
     /// The amount by which the directions of supports may be off.
     rounding: f64,
+    /// The hoop strain holds the body, too.
+    of_revolution: bool,
 }
 
 /// A direction in which a node is held.
@@ -77,6 +80,7 @@ impl Constraints {
             holders: BTreeMap::new(),
             pins: Vec::new(),
             rounding: rounding_of_supports(problem)?,
+            of_revolution: problem.material.are_of_revolution(),
         };
         for (&node, at_node) in &mut demands {
             // Coordinate directions first: a value that is given for a component is taken as it is.
@@ -92,7 +96,7 @@ impl Constraints {
     pub fn free_motions(&self, space: &Space) -> (Parts, Vec<FreeMotion>) {
         let parts = Parts::new(space.mesh());
         let held = |node| self.directions(node);
-        let motions = rigid::free_motions(&parts, space, held, self.rounding);
+        let motions = rigid::free_motions(&parts, space, held, self.rounding, self.of_revolution);
         (parts, motions)
     }
 
@@ -121,6 +125,9 @@ impl Constraints {
     /// Prescribes one or two independent demands at a node.
     fn prescribe(&mut self, node: usize, demands: &[&Demand]) {
         let mut holder = |demand: &Demand, dual| {
+            if demand.name == AXIS {
+                return;
+            }
             let held = Held { node, direction: demand.direction, dual };
             self.holders.entry(demand.name.to_owned()).or_default().push(held);
         };
@@ -331,6 +338,14 @@ fn demands<'a>(problem: &'a Problem, space: &Space) -> Result<Demands<'a>, DataE
             let Some(function) = function else { continue };
             let key = || format!("[point.{}] displacement[{c}]", point.name);
             ask(point.vertex, &point.name, AXES[c], function, &key)?;
+        }
+    }
+    if problem.material.are_of_revolution() {
+        for (node, [x, _]) in space.nodes().iter().enumerate() {
+            if *x == 0.0 {
+                let demand = Demand { name: AXIS, direction: AXES[0], value: 0.0 };
+                demands.entry(node).or_default().push(demand);
+            }
         }
     }
     Ok(demands)

@@ -182,16 +182,19 @@ impl ContactLine {
             let chords = piece.chords(&lengths.collect::<Vec<f64>>());
             for (i, &Stretch { edge, .. }) in piece.stretches.iter().enumerate() {
                 let (length, normal) = mesh.length_and_normal(edge);
-                let ratio = chords.map_or(length, |chords| chords.ratios[i] * length);
                 let (both, cosine) = (piece.law.components() > 1, start.dot(&end));
-                let counted = match (start == end, both) {
-                    (true, _) => ratio,
-                    (false, false) => self.degree.turning_factor(cosine) * ratio,
-                    (false, true) => self.degree.turning_factor_of_both(cosine, f64::sqrt) * ratio,
-                };
                 let t = edge.triangle;
-                let (area, material) =
-                    (mesh.triangle(t).double_area() / 2.0, problem.material.of(t));
+                let (triangle, material) = (mesh.triangle(t), problem.material.of(t));
+                let area = triangle.double_area() / 2.0;
+                let radii = piece.radii(i, |edge| {
+                    let triangle = edge.triangle;
+                    problem.material.of(triangle).radii(&mesh.triangle(triangle))
+                });
+                let share = chords.map(|chords| chords.share(i, radii, f64::max));
+                let ratio = share.map_or(length, |share| share * length);
+                let turning = (start != end).then_some((cosine, both));
+                let radii = radii.map(|radii| (radii.of_piece, radii.of_triangle));
+                let counted = self.degree.counted_length(ratio, turning, radii, f64::sqrt);
                 let direction = (start == end && !both).then_some(start);
                 let stiffness = traction_stiffness(material, normal, direction, f64::sqrt);
                 let value =
@@ -217,7 +220,8 @@ impl ContactLine {
             let (length, normal) = mesh.length_and_normal(stretch.edge);
             let gamma = gamma0(t) * mesh.diameter(t);
             let (triangle, material) = (mesh.triangle(t), *problem.material.of(t));
-            SideData { triangle, material, length, normal, gamma }
+            let radii = material.radii(&triangle);
+            SideData { triangle, material, length, normal, gamma, radii }
         };
         let mut start = 0;
         let piece = |geometry: &Arc<PieceGeometry>| {

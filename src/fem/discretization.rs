@@ -13,10 +13,11 @@ use super::loads::{self, LoadVector};
 use super::material;
 use super::piece::Piece;
 use super::problem::Problem;
+use super::revolution;
 use super::rigid::FreeMotion;
 use super::solvability::{self, NotHeld, Slides};
 use super::space::Space;
-use super::stress_points::{StressPoint, each_stress};
+use super::stress_points::{Nodal, StressPoint, each_stress};
 use crate::kernel::PreciseBall;
 
 /// Method (8) with everything that it needs.
@@ -59,10 +60,6 @@ pub struct Functional {
     pub energy: f64,
 }
 
-fn in_doubles(u: &[[f64; 2]]) -> impl Fn(usize, usize) -> Vector2<f64> {
-    |node, from| Vector2::from(u[node]) - Vector2::from(u[from])
-}
-
 impl Functional {
     fn zero(nodes: usize) -> Self {
         let zero = || vec![[0.0; 2]; nodes];
@@ -95,6 +92,7 @@ impl<'a> Discretization<'a> {
             material::stable(material)?;
         }
         problem.mesh.check_apart(problem.conditions.keys().map(String::as_str))?;
+        revolution::check(problem)?;
         let space = Space::new(&problem.mesh, degree);
         let line = ContactLine::new(problem, &space)?;
         let coercivity = line.coercivity(problem)?;
@@ -180,19 +178,14 @@ impl<'a> Discretization<'a> {
 
     /// A(u, v) - L(v) for every basis function v.
     pub fn linear_residual(&self, u: &[[f64; 2]]) -> Functional {
-        self.linear_residual_by(in_doubles(u))
+        self.linear_residual_by(u)
     }
 
-    /// [`Discretization::linear_residual`] of a displacement that is known to more than double precision, by its differences
-    /// between nodes: the first node's value less the second one's.
-    pub(crate) fn linear_residual_by(
-        &self,
-        difference: impl Fn(usize, usize) -> Vector2<f64>,
-    ) -> Functional {
-        let mut r = self.internal_forces_by(&difference);
+    /// [`Discretization::linear_residual`] of a displacement that is known to more than double precision.
+    pub(crate) fn linear_residual_by(&self, u: &(impl Nodal<f64> + ?Sized)) -> Functional {
+        let mut r = self.internal_forces_by(u);
         for piece in &self.contact {
-            let stress = piece.stress(|node, from| difference(node, from).into());
-            let factors = piece.stress_factors(&stress);
+            let factors = piece.stress_factors(&piece.stress(u));
             piece.each_force(&piece.sigma_n, &factors, |node, f| r.add(node, f, norm_1(f)));
         }
         for (node, load) in self.load.iter().enumerate() {
@@ -203,19 +196,23 @@ impl<'a> Discretization<'a> {
 
     /// a(u, v) = int sigma(u):eps(v) for every basis function v.
     pub fn internal_forces(&self, u: &[[f64; 2]]) -> Functional {
-        self.internal_forces_by(in_doubles(u))
+        self.internal_forces_by(u)
     }
 
-    fn internal_forces_by(&self, difference: impl Fn(usize, usize) -> Vector2<f64>) -> Functional {
+    fn internal_forces_by(&self, u: &(impl Nodal<f64> + ?Sized)) -> Functional {
         let mut forces = Functional::zero(self.space.nodes().len());
         let itself = |triangle| triangle;
-        each_stress(&self.space, &self.problem.material, itself, difference, |point| {
+        each_stress(&self.space, &self.problem.material, itself, u, |point| {
             let &StressPoint { nodal, slopes, gradient, weight, .. } = point;
             let [xx, yy, xy] = point.stress.components();
             let shear = xy * (gradient.m12 + gradient.m21);
             forces.energy += weight * (xx * gradient.m11 + yy * gradient.m22 + shear);
             let strain: f64 = nodal.iter().zip(slopes).map(|(u, g)| norm_1(*u) * norm_1(*g)).sum();
-            let most = weight * material::largest_entry(point.material) * strain;
+            let mut most = weight * material::largest_entry(point.material) * strain;
+            if let Some(hoop) = &point.hoop {
+                forces.energy += hoop.work();
+                most = hoop.most * (most + weight * hoop.stress.abs());
+            }
             point.each_force(|node, force, slope| forces.add(node, force, most * norm_1(slope)));
         });
         forces

@@ -3,6 +3,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use crate::kernel::axial;
 use crate::kernel::contact_edge;
 use crate::kernel::edge_integral;
 use crate::kernel::element::displacement_gradient;
@@ -82,6 +83,18 @@ impl Degree {
         })
     }
 
+    /// The hoop strain on a triangle with these `radii`, at the points of the stiffness rule: [`axial::hoop_strain`].
+    pub fn hoop_strain<S: Scalar>(self, radii: [S; 3], radial: impl Fn(usize) -> S) -> [S; 3] {
+        with_element!(self, E => {
+            axial::hoop_strain::<E, _, _, _>(radii, &std::array::from_fn(radial))
+        })
+    }
+
+    /// The value at `l` of a function of degree p - 1 with these values at the points of the stiffness rule.
+    pub fn value_from_points<S: Scalar>(self, at_points: [S; 3], l: [S; 3]) -> S {
+        with_element!(self, E => axial::value_at::<E, _, _, _>(at_points, l))
+    }
+
     /// The share of an edge in kappa_T / gamma0 of its triangle: [`contact_edge::coercivity_constant`].
     pub fn coercivity_constant<S: Scalar>(
         self,
@@ -101,7 +114,36 @@ impl Degree {
         with_element!(self, E => contact_edge::turning_factor::<E, _, _, _>(cosine))
     }
 
-    /// The same where the component across acts as well: [`contact_edge::turning_factor_of_both`].
+    /// The length by which an edge counts in kappa, along which the direction of contact turns by an angle with this cosine, if it does,
+    /// of one component or of both; in a body of revolution with r at the two ends of the piece, and at the start and the end of the
+    /// edge and opposite.
+    pub fn counted_length<S: Scalar>(
+        self,
+        length: S,
+        turning: Option<(S, bool)>,
+        radii: Option<([S; 2], [S; 3])>,
+        root: impl Fn(S) -> S,
+    ) -> S {
+        let Some((piece, [start, end, opposite])) = radii else {
+            return match turning {
+                None => length,
+                Some((cosine, false)) => self.turning_factor(cosine) * length,
+                Some((cosine, true)) => self.turning_factor_of_both(cosine, root) * length,
+            };
+        };
+        let (turning, sharp, plane) = with_element!(self, E => (
+            turning.map(|(cosine, both)| match both {
+                false => axial::turning_factor::<E, _, _, _>(piece, cosine, &root),
+                true => axial::turning_factor_of_both::<E, _, _, _>(piece, &root),
+            }),
+            axial::trace_constant::<E, _, _, _>([start, end], opposite, &root),
+            E::TRACE_CONSTANT,
+        ));
+        let length = turning.map_or(length, |turning| turning * length);
+        length * sharp / S::from(plane)
+    }
+
+    /// The same as [`Degree::turning_factor`] where the component across acts as well: [`contact_edge::turning_factor_of_both`].
     pub fn turning_factor_of_both<S: Scalar>(self, cosine: S, root: impl Fn(S) -> S) -> S {
         with_element!(self, E => contact_edge::turning_factor_of_both::<E, _, _, _>(cosine, root))
     }

@@ -8,6 +8,8 @@
 //! prescribed components hold its motion. What couples two parts, as contact between them does, holds the motions of both: their
 //! roots have six unknowns together.
 //!
+//! In a body of revolution the hoop strain holds the mean of v_r on each triangle, and c_T has the weight (docs/theory.md, 11.5).
+//!
 //! Everything but the areas and the matrix of those equations, which are balls, is a sum or product of positive
 //! doubles of some million terms at most: rounding changes it by far less than the factor `SAFETY`.
 
@@ -86,8 +88,8 @@ impl Korn {
         };
         // The parts in the order in which they are held, each by the triangle where its paths begin.
         let mut roots: Vec<usize> = Vec::new();
-        let all: Vec<Hold> =
-            supports(space, constraints).into_iter().chain(holds.iter().cloned()).collect();
+        let all = supports(space, constraints).into_iter().chain(holds.iter().cloned());
+        let all: Vec<Hold> = all.chain(hoops(mesh, materials)).collect();
         for Term { triangle, .. } in all.iter().flat_map(|hold| &hold.terms) {
             if paths.part[*triangle] == NONE {
                 paths.explore(*triangle, roots.len());
@@ -219,6 +221,27 @@ fn supports(space: &Space, constraints: &Constraints) -> Vec<Hold> {
     holds
 }
 
+/// The mean of the weight on triangle `t`: 1 in the plane, r in a body of revolution.
+fn mean_weight(materials: &Materials, t: usize, triangle: &Triangle<f64>) -> f64 {
+    materials.of(t).radii(triangle).map_or(1.0, |[a, b, c]| (a + b + c) / 3.0)
+}
+
+/// What the hoop strain of a body of revolution holds on each triangle: the mean of v_r.
+fn hoops(mesh: &Mesh, materials: &Materials) -> Vec<Hold> {
+    let hold = |triangle: usize| {
+        let at = mesh.triangle(triangle);
+        let stiffness = least_eigenvalue(materials.of(triangle));
+        let weight = mean_weight(materials, triangle, &at);
+        let most = SAFETY * (weight * 2.0 / (stiffness * at.double_area())).sqrt();
+        let exact = at.vertices.map(|x| x.map(Ball::point));
+        let middle = (exact[0] + exact[1] + exact[2]) / Ball::from(3);
+        let along = [Ball::from(1), Ball::from(0)];
+        Hold { terms: vec![Term { triangle, at: middle.into(), along }], most }
+    };
+    let count = if materials.are_of_revolution() { mesh.triangles().len() } else { 0 };
+    (0..count).map(hold).collect()
+}
+
 /// c_T^2
 fn squared_remainder(mesh: &Mesh, degree: Degree, materials: &Materials, t: usize) -> Option<f64> {
     let doubles = mesh.triangle(t);
@@ -232,12 +255,13 @@ fn squared_remainder(mesh: &Mesh, degree: Degree, materials: &Materials, t: usiz
     if !(area > SMALLEST && stiffness > 0.0) {
         return None;
     }
-    let affine = square / (2.0 * stiffness * area);
+    let affine = square / (2.0 * stiffness * area * mean_weight(materials, t, &doubles));
     Some(if degree == Degree::One {
         affine
     } else {
         let turning = 1.0 + 3.0 * square / area;
-        12.0 * affine * turning * turning
+        let factor = if materials.are_of_revolution() { 20.0 } else { 12.0 };
+        factor * affine * turning * turning
     })
 }
 

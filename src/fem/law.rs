@@ -35,16 +35,18 @@ impl Law {
         self.responses().len()
     }
 
-    /// The integrals of (8) and J_h over a piece for P with the nodal values `p`, component after component.
+    /// The integrals of (8) and J_h over a piece for P with the nodal values `p`, component after component; with the weight r where it
+    /// has these `radii` at its ends.
     pub fn integrals<T: Copy + Into<DoubleDouble>>(
         self,
         rule: &EdgeRule,
         degree: Degree,
+        radii: Option<[f64; 2]>,
         p: &[T],
     ) -> Integrals {
         let of = |(response, p): (&Response, &[T])| match response {
-            Response::Unilateral => rule.integrals(degree, p),
-            Response::Bilateral => bilateral(degree, p),
+            Response::Unilateral => rule.integrals(degree, radii, p),
+            Response::Bilateral => bilateral(degree, radii, p),
         };
         let mut each = self.responses().iter().zip(p.chunks(degree.nodes_per_edge())).map(of);
         // Every law has a component.
@@ -57,16 +59,17 @@ impl Law {
         self,
         rule: &EdgeRule,
         degree: Degree,
+        radii: Option<[f64; 2]>,
         p: &[T],
         q: &[T],
     ) -> f64 {
         let nodes = degree.nodes_per_edge();
         let of = |((response, p), q): ((&Response, &[T]), &[T])| match response {
-            Response::Unilateral => rule.bregman(degree, p, q),
+            Response::Unilateral => rule.bregman(degree, radii, p, q),
             Response::Bilateral => {
                 let difference = |(&p, &q): (&T, &T)| q.into() - p.into();
                 let step: Vec<DoubleDouble> = p.iter().zip(q).map(difference).collect();
-                bilateral(degree, &step).energy
+                bilateral(degree, radii, &step).energy
             }
         };
         self.responses().iter().zip(p.chunks(nodes)).zip(q.chunks(nodes)).map(of).sum()
@@ -74,10 +77,17 @@ impl Law {
 }
 
 /// The integrals where P itself is integrated, exactly whatever the rule.
-fn bilateral<T: Copy + Into<DoubleDouble>>(degree: Degree, p: &[T]) -> Integrals {
+fn bilateral<T: Copy + Into<DoubleDouble>>(
+    degree: Degree,
+    radii: Option<[f64; 2]>,
+    p: &[T],
+) -> Integrals {
     with_element!(degree, E => {
         let p = std::array::from_fn(|a| p[a].into().head());
-        edge_integral::bilateral::<E, f64, _, _>(p).into()
+        match radii {
+            None => edge_integral::bilateral::<E, f64, _, _>(p).into(),
+            Some(radii) => edge_integral::bilateral_in_revolution::<E, f64, _, _>(p, radii).into(),
+        }
     })
 }
 
@@ -137,23 +147,39 @@ impl EdgeRule {
 
     /// The integrals of (8) and J_h over a piece, for P of this degree with the nodal values `p`. At the points of a Gauss rule P
     /// is evaluated in double-doubles: where gamma is small it is far smaller there than at the nodes.
-    pub fn integrals<T: Copy + Into<DoubleDouble>>(&self, degree: Degree, p: &[T]) -> Integrals {
+    pub fn integrals<T: Copy + Into<DoubleDouble>>(
+        &self,
+        degree: Degree,
+        radii: Option<[f64; 2]>,
+        p: &[T],
+    ) -> Integrals {
         with_element!(degree, E => {
-            self.integrals_of::<E, _, _>(std::array::from_fn(|a| p[a].into())).into()
+            self.integrals_of::<E, _, _>(radii, std::array::from_fn(|a| p[a].into())).into()
         })
     }
 
     fn integrals_of<E, const N: usize, const M: usize>(
         &self,
+        radii: Option<[f64; 2]>,
         p: [DoubleDouble; M],
     ) -> EdgeIntegrals<f64, M>
     where
         E: ExactEdge<f64, N, M>,
     {
-        match self {
-            EdgeRule::Exact => E::exact(p.map(DoubleDouble::head)),
-            EdgeRule::Gauss(rule) => {
-                let fine = edge_integral::gauss::<E, _, _, _>(p, in_double_doubles(rule));
+        match (self, radii) {
+            (EdgeRule::Exact, None) => E::exact(p.map(DoubleDouble::head)),
+            (EdgeRule::Exact, Some(radii)) => {
+                E::exact_in_revolution(p.map(DoubleDouble::head), radii)
+            }
+            (EdgeRule::Gauss(rule), radii) => {
+                let points = in_double_doubles(rule);
+                let fine = match radii {
+                    None => edge_integral::gauss::<E, _, _, _>(p, points),
+                    Some(radii) => {
+                        let radii = radii.map(DoubleDouble::from);
+                        edge_integral::gauss_in_revolution::<E, _, _, _>(p, radii, points)
+                    }
+                };
                 EdgeIntegrals {
                     energy: fine.energy.head(),
                     gradient: fine.gradient.map(DoubleDouble::head),
@@ -165,8 +191,15 @@ impl EdgeRule {
     }
 
     /// The integral of the Bregman distance of 1/2 \[.\]+^2 from P to Q, of this degree, given by their nodal values.
-    pub fn bregman<T: Copy + Into<DoubleDouble>>(&self, degree: Degree, p: &[T], q: &[T]) -> f64 {
+    pub fn bregman<T: Copy + Into<DoubleDouble>>(
+        &self,
+        degree: Degree,
+        radii: Option<[f64; 2]>,
+        p: &[T],
+        q: &[T],
+    ) -> f64 {
         with_element!(degree, E => self.bregman_of::<E, _, _>(
+            radii,
             std::array::from_fn(|a| p[a].into()),
             std::array::from_fn(|a| q[a].into()),
         ))
@@ -174,6 +207,7 @@ impl EdgeRule {
 
     fn bregman_of<E, const N: usize, const M: usize>(
         &self,
+        radii: Option<[f64; 2]>,
         p: [DoubleDouble; M],
         q: [DoubleDouble; M],
     ) -> f64
@@ -183,10 +217,21 @@ impl EdgeRule {
         match self {
             EdgeRule::Exact => {
                 let [p, q] = [p, q].map(|values| values.map(DoubleDouble::head));
-                edge_integral::exact_bregman::<E, _, _>(p, q)
+                match radii {
+                    None => edge_integral::exact_bregman::<E, _, _>(p, q),
+                    Some(radii) => {
+                        edge_integral::exact_bregman_in_revolution::<E, _, _>(p, q, radii)
+                    }
+                }
             }
             EdgeRule::Gauss(rule) => {
-                edge_integral::gauss_bregman::<E, _, _, _>(p, q, in_double_doubles(rule)).head()
+                let points = in_double_doubles(rule).map(|(s, weight)| match radii {
+                    None => (s, weight),
+                    Some(radii) => {
+                        (s, weight * edge_integral::radius(radii.map(DoubleDouble::from), s))
+                    }
+                });
+                edge_integral::gauss_bregman::<E, _, _, _>(p, q, points).head()
             }
         }
     }
@@ -213,7 +258,7 @@ mod tests {
     #[test]
     fn the_force_is_the_slope_of_the_energy_and_the_tangent_that_of_the_force() {
         for (law, degree) in LAWS.into_iter().flat_map(|law| DEGREES.map(|degree| (law, degree))) {
-            let at = |p: &[f64]| law.integrals(&EdgeRule::Exact, degree, p);
+            let at = |p: &[f64]| law.integrals(&EdgeRule::Exact, degree, None, p);
             let p = values(law, degree, 0.4);
             let step = 1e-5;
             for i in 0..p.len() {
@@ -237,16 +282,16 @@ mod tests {
     #[test]
     fn the_bregman_distance_is_the_nonlinear_part_of_the_change_of_energy() {
         for (law, degree) in LAWS.into_iter().flat_map(|law| DEGREES.map(|degree| (law, degree))) {
-            let at = |p: &[f64]| law.integrals(&EdgeRule::Exact, degree, p);
+            let at = |p: &[f64]| law.integrals(&EdgeRule::Exact, degree, None, p);
             let (p, q) = (values(law, degree, 0.4), values(law, degree, 2.9));
             let gradient = at(&p).gradient;
             let slope: f64 = (0..p.len()).map(|i| gradient[i] * (q[i] - p[i])).sum();
             let expected = at(&q).energy - at(&p).energy - slope;
-            let found = law.bregman(&EdgeRule::Exact, degree, &p, &q);
+            let found = law.bregman(&EdgeRule::Exact, degree, None, &p, &q);
             // Numbers of size 1.
             assert!((found - expected).abs() < 1e-14, "{law:?} {degree:?}: {found} {expected}");
             let other = LAWS[usize::from(law == Law::Contact)];
-            assert!((other.bregman(&EdgeRule::Exact, degree, &p, &q) - found).abs() > 1e-3);
+            assert!((other.bregman(&EdgeRule::Exact, degree, None, &p, &q) - found).abs() > 1e-3);
         }
     }
 }

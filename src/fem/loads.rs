@@ -1,4 +1,4 @@
-//! L(v) = int_Omega f . v + int_{Gamma_N} t . v for every basis function v.
+//! L(v) = int_Omega f . v + int_{Gamma_N} t . v for every basis function v; in a body of revolution with the weight r, for a radian.
 
 use std::collections::BTreeMap;
 
@@ -40,7 +40,12 @@ fn vanishes(load: &dyn Function) -> bool {
 /// # Errors
 /// [`DataError::NotFinite`] where a load has no value, and unknown boundary names.
 pub fn assemble(problem: &Problem, space: &Space) -> Result<Vec<[f64; 2]>, DataError> {
-    assemble_with(problem, space, |load| points(load, space.degree().number()))
+    assemble_with(problem, space, |load| points(load, tested(problem, space)))
+}
+
+/// The degree of what a load is tested with: a shape function, in a body of revolution times r.
+fn tested(problem: &Problem, space: &Space) -> usize {
+    space.degree().number() + usize::from(problem.material.are_of_revolution())
 }
 
 /// [`assemble`] with as many points along each direction as `points` says for a load.
@@ -76,7 +81,7 @@ pub(crate) fn assemble_twice(problem: &Problem, space: &Space) -> Result<LoadVec
     each_force(
         problem,
         space,
-        |load| points(load, space.degree().number()),
+        |load| points(load, tested(problem, space)),
         |force| {
             force.add_to(space.degree(), &mut in_doubles);
             force.add_to(space.degree(), &mut in_balls);
@@ -132,6 +137,14 @@ pub struct Resultants {
 }
 
 impl Resultants {
+    /// The axial forces of a whole revolution, and the radial ones of a radian, where these are those of a radian.
+    #[must_use]
+    pub fn of_the_revolution(mut self) -> Self {
+        let forces = self.boundaries.values_mut().chain([&mut self.body]);
+        forces.for_each(|f| f[1] *= std::f64::consts::TAU);
+        self
+    }
+
     /// The resultants on a body of this thickness.
     #[must_use]
     pub fn times(mut self, thickness: f64) -> Self {
@@ -152,7 +165,7 @@ pub fn resultants(problem: &Problem, space: &Space) -> Result<Resultants, DataEr
     for (name, condition) in &problem.conditions {
         let mut sum = [0.0; 2];
         let add = |force: Force| sum[force.c] += force.value;
-        each_force_of(name, condition, space, &points, add)?;
+        each_force_of(problem, (name, condition), space, &points, add)?;
         if condition.has_load() {
             all.boundaries.insert(name.clone(), sum);
         }
@@ -169,7 +182,7 @@ fn each_force(
 ) -> Result<(), DataError> {
     each_force_on_body(problem, space, &points, &mut add)?;
     for (name, condition) in &problem.conditions {
-        each_force_of(name, condition, space, &points, &mut add)?;
+        each_force_of(problem, (name, condition), space, &points, &mut add)?;
     }
     Ok(())
 }
@@ -179,12 +192,22 @@ fn rule(load: &dyn Function, points: impl Fn(&dyn Function) -> usize) -> Rule {
     Rule::new(Features { kink: load.kink(), singular: None }, points(load))
 }
 
+/// Takes a force at its place: with the weight r in a body of revolution.
+fn weighted(problem: &Problem, mut add: impl FnMut(Force)) -> impl FnMut(Force, [f64; 2]) {
+    let of_revolution = problem.material.are_of_revolution();
+    move |force: Force, [r, _]: [f64; 2]| {
+        let radius = if of_revolution { r } else { 1.0 };
+        add(Force { value: force.value * radius, ..force });
+    }
+}
+
 fn each_force_on_body(
     problem: &Problem,
     space: &Space,
     points: impl Fn(&dyn Function) -> usize,
-    mut add: impl FnMut(Force),
+    add: impl FnMut(Force),
 ) -> Result<(), DataError> {
+    let mut add = weighted(problem, add);
     let rule = |load: &dyn Function| rule(load, &points);
     for (c, f) in acting(&problem.body_force) {
         let what = || format!("[load] body[{c}]");
@@ -202,12 +225,13 @@ fn each_force_on_body(
 
 /// Calls `add` with each force on a boundary with this name and condition.
 fn each_force_of(
-    name: &str,
-    condition: &Condition,
+    problem: &Problem,
+    (name, condition): (&str, &Condition),
     space: &Space,
     points: impl Fn(&dyn Function) -> usize,
-    mut add: impl FnMut(Force),
+    add: impl FnMut(Force),
 ) -> Result<(), DataError> {
+    let mut add = weighted(problem, add);
     let rule = |load: &dyn Function| rule(load, &points);
     match condition {
         Condition::Traction(traction) | Condition::Mixed { traction, .. } => {
@@ -245,14 +269,17 @@ fn each_body_force(
     space: &Space,
     triangles: impl Iterator<Item = usize>,
     what: impl Fn() -> String,
-    mut add: impl FnMut(Force),
+    mut add: impl FnMut(Force, [f64; 2]),
 ) -> Result<(), DataError> {
     let mut wrong = None;
     for t in triangles {
         let nodes = space.nodes_of(t);
         rule.on_triangle(&space.mesh().triangle(t), |l, x, weight| {
             match checked(f.at(x), x, &what) {
-                Ok(f) => add(Force { c, value: weight * f, nodes, place: ElementPoint::Inside(l) }),
+                Ok(f) => {
+                    let place = ElementPoint::Inside(l);
+                    add(Force { c, value: weight * f, nodes, place }, x);
+                }
                 Err(error) => wrong = wrong.take().or(Some(error)),
             }
         });
@@ -267,7 +294,7 @@ fn each_force_on_boundary(
     value: impl Fn([f64; 2], [f64; 2]) -> Result<f64, DataError>,
     rule: &Rule,
     space: &Space,
-    mut add: impl FnMut(Force),
+    mut add: impl FnMut(Force, [f64; 2]),
 ) -> Result<(), DataError> {
     let mut wrong = None;
     for &edge in space.mesh().edges_of(name)? {
@@ -277,7 +304,7 @@ fn each_force_on_boundary(
         rule.on_edge(ends, [], |point| match value(point.x, normal.into()) {
             Ok(t) => {
                 let value = point.weight * length * t;
-                add(Force { c, value, nodes, place: ElementPoint::OnEdge(point.s) });
+                add(Force { c, value, nodes, place: ElementPoint::OnEdge(point.s) }, point.x);
             }
             Err(error) => wrong = wrong.take().or(Some(error)),
         });

@@ -6,7 +6,7 @@
 //!
 //! The eigenvalues of A are those of its matrix in Mandel's form, with the root of 2 times 2 eps_xy and sigma_xy.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix2, Vector3};
 use thiserror::Error;
 
 use super::rigid::NEGLIGIBLE;
@@ -96,6 +96,11 @@ impl Materials {
     /// Each material once, whether a triangle is made of it or not.
     pub(crate) fn distinct(&self) -> &[Material<f64>] {
         &self.distinct
+    }
+
+    /// Returns whether the body is one of revolution, of which the mesh is the meridian.
+    pub fn are_of_revolution(&self) -> bool {
+        self.distinct.first().is_some_and(|material| material.plane() == Plane::Axisymmetric)
     }
 
     /// The one material, if the whole body is made of it.
@@ -225,15 +230,20 @@ pub fn stable(material: Material<f64>) -> Result<Material<f64>, MaterialError> {
         }
         let across = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let zz = across.map(|stress| material.stress_zz(Stress::new(stress)));
-        return if zz.iter().all(|zz| zz.is_finite()) {
-            Ok(material)
-        } else {
-            Err(MaterialError::Across)
+        if !zz.iter().all(|zz| zz.is_finite()) {
+            return Err(MaterialError::Across);
+        }
+        return match material.hoop_modulus() {
+            Some(value) if !(value > 0.0 && value.is_finite()) => {
+                let (name, expected) = ("Young's modulus along the hoops", "a positive number");
+                Err(MaterialError::Modulus { name, value, expected })
+            }
+            _ => Ok(material),
         };
     }
     let (lambda, mu) = (material.lambda(), material.mu());
     let bulk = match material.plane() {
-        Plane::Strain => 3.0 * lambda + 2.0 * mu,
+        Plane::Strain | Plane::Axisymmetric => 3.0 * lambda + 2.0 * mu,
         // lambda* = 2 lambda mu / (lambda + 2 mu) grows with lambda, and is -mu where 3 lambda = -2 mu.
         Plane::Stress => lambda + mu,
     };
@@ -288,8 +298,29 @@ pub fn eigenvalues(material: &Material<f64>) -> [f64; 2] {
     if diagonal.iter().all(|x| x.is_finite()) { [least, most] } else { [f64::NAN; 2] }
 }
 
-/// A number that A - it is elliptic with, as near to its smallest eigenvalue as rounding allows; 0 or less if there is none.
+/// A number that A - it is elliptic with, as near to its smallest eigenvalue as rounding allows; 0 or less if there is none. In a body of
+/// revolution it is that of the law in three dimensions.
 pub fn least_eigenvalue(material: &Material<f64>) -> f64 {
+    let in_plane = least_in_plane(material);
+    if material.plane() != Plane::Axisymmetric {
+        return in_plane;
+    }
+    if material.is_isotropic() {
+        let (lambda, mu) = (Ball::point(material.lambda()), Ball::point(material.mu()));
+        return (Ball::from(2) * mu)
+            .lower()
+            .min((Ball::from(3) * lambda + Ball::from(2) * mu).lower());
+    }
+    // sigma:eps = A(eps + a h):(eps + a h) + e h^2, at least c (|eps| - |a| |h|)^2 + e h^2: a form of two numbers, whose smaller
+    // eigenvalue is above its determinant over its trace.
+    let young = material.hoop_modulus().unwrap_or_default();
+    let [a, b, c] = material.across().map(|factor| factor * factor);
+    let trace = in_plane * (1.0 + a + b + c / 2.0) + young;
+    (in_plane * young / trace) * (1.0 - 16.0 * f64::EPSILON)
+}
+
+/// [`least_eigenvalue`] of the law in the plane.
+fn least_in_plane(material: &Material<f64>) -> f64 {
     if material.is_isotropic() {
         let mu = Ball::point(material.mu());
         return 2.0 * mu.lower().min((mu + Ball::point(material.lambda())).lower());
@@ -315,7 +346,11 @@ pub(crate) fn largest_entry(material: &Material<f64>) -> f64 {
     if material.is_isotropic() {
         return material.lambda().abs() + 2.0 * material.mu();
     }
-    material.stiffness().into_iter().fold(0.0, |most: f64, c| most.max(c.abs()))
+    let in_plane = material.stiffness().into_iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+    let Some(young) = material.hoop_modulus() else { return in_plane };
+    let (stress, hoop) = material.stress_of_revolution(Matrix2::zeros(), 1.0);
+    let of_hoop = stress.components().into_iter().chain([hoop, young]);
+    of_hoop.fold(in_plane, |most: f64, c| most.max(c.abs()))
 }
 
 #[cfg(test)]
@@ -330,6 +365,21 @@ mod tests {
         assert_eq!(materials.only(), None);
         assert_eq!(Materials::from(a).only(), Some(&a));
         assert_eq!(Materials::from(a).of(17), &a);
+    }
+
+    #[test]
+    fn the_least_eigenvalue_of_a_body_of_revolution_is_that_of_the_law_in_three_dimensions() {
+        let of = |lambda, plane| least_eigenvalue(&Material::lame(lambda, 1.0, plane));
+        // min(2 mu, 3 lambda + 2 mu), in plane strain min(2 mu, 2 (lambda + mu)).
+        assert_eq!([of(-0.5, Plane::Axisymmetric), of(-0.5, Plane::Strain)], [0.5, 1.0]);
+        assert_eq!(of(3.0, Plane::Axisymmetric), 2.0);
+        // As a tensor, from below and within a factor of 2.
+        let (lambda, mu) = (1.0, 1.0);
+        let (nu, young) = (0.25, 2.5);
+        let c = [lambda + 2.0 * mu, lambda, 0.0, lambda + 2.0 * mu, 0.0, mu];
+        let tensor = Material::tensor(c, Some([nu, nu, 0.0])).of_revolution(young);
+        let least = least_eigenvalue(&tensor);
+        assert!(1.0 <= least && least <= 2.0, "{least}");
     }
 
     #[test]

@@ -16,6 +16,7 @@ use super::element::with_element;
 use super::material::Materials;
 use super::piece::Piece;
 use super::space::Space;
+use crate::kernel::axial;
 use crate::kernel::element::stiffness;
 use crate::kernel::{Element, Scalar};
 
@@ -286,7 +287,11 @@ fn add_stiffness<E: Element<N, M>, const N: usize, const M: usize>(
     numbering: &Numbering,
 ) -> Result<(), OutsidePattern> {
     for (t, (triangle, nodes)) in space.triangles::<N>().enumerate() {
-        let k = stiffness::<E, _, _, _>(&triangle, materials.of(t));
+        let material = materials.of(t);
+        let k = match material.radii(&triangle) {
+            None => stiffness::<E, _, _, _>(&triangle, material),
+            Some(radii) => axial::stiffness::<E, _, _, _>(&triangle, radii, material),
+        };
         matrix.add(numbering, nodes, |i, j| k[i][j])?;
     }
     Ok(())

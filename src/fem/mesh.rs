@@ -64,6 +64,13 @@ pub struct BoundaryEdge {
     pub local: usize,
 }
 
+impl BoundaryEdge {
+    /// Values at the corners of its triangle as those at its start, at its end and opposite.
+    pub(crate) fn from_its_ends<T: Copy>(self, corners: [T; 3]) -> [T; 3] {
+        [1, 2, 0].map(|k| corners[(self.local + k) % 3])
+    }
+}
+
 impl Mesh {
     /// The mesh of [`Mesh::new`], of which is checked all but how its triangles lie in the plane; `may_meet` says which vertices may
     /// be in one place.
@@ -208,6 +215,18 @@ impl Mesh {
     /// The names of points, in alphabetical order.
     pub fn point_names(&self) -> impl Iterator<Item = &str> {
         self.topology.points.keys().map(String::as_str)
+    }
+
+    /// Moves the vertices for which `to` says so, and returns how many there were.
+    pub(super) fn move_vertices(&mut self, to: impl Fn([f64; 2]) -> Option<[f64; 2]>) -> usize {
+        let mut moved = 0;
+        for vertex in &mut self.vertices {
+            if let Some(place) = to(*vertex) {
+                (*vertex, moved) = (place, moved + 1);
+            }
+        }
+        self.boxes = OnceLock::new();
+        moved
     }
 
     /// The vertices.

@@ -43,6 +43,7 @@ pub mod problem;
 pub mod quadrature;
 #[doc(hidden)]
 pub mod residual;
+mod revolution;
 #[doc(hidden)]
 pub mod rigid;
 #[doc(hidden)]
@@ -50,7 +51,7 @@ pub mod rounded_stress;
 #[doc(hidden)]
 pub mod solvability;
 pub mod space;
-mod stress_points;
+pub(crate) mod stress_points;
 #[doc(hidden)]
 pub mod structured;
 #[doc(hidden)]

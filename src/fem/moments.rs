@@ -9,7 +9,9 @@ use super::element::{Degree, with_element};
 use super::law::EdgeRule;
 use super::piece::Piece;
 use crate::kernel::ball::{PreciseBall, larger};
-use crate::kernel::edge_integral::{bilateral, gauss, roots, value_at};
+use crate::kernel::edge_integral::{
+    bilateral, bilateral_in_revolution, gauss, gauss_in_revolution, radius, roots, value_at,
+};
 use crate::kernel::{Element, Response};
 
 impl Piece<PreciseBall> {
@@ -17,9 +19,13 @@ impl Piece<PreciseBall> {
     pub fn force(&self, rule: &EdgeRule, p: &[PreciseBall]) -> Vec<PreciseBall> {
         let weight = self.weight();
         let of = |(response, p): (&Response, &[PreciseBall])| match response {
-            Response::Unilateral => moments(rule, self.degree, p),
+            Response::Unilateral => moments(rule, self.degree, self.radii, p),
             Response::Bilateral => with_element!(self.degree, E => {
-                bilateral::<E, _, _, _>(std::array::from_fn(|a| p[a])).gradient.into()
+                let p = std::array::from_fn(|a| p[a]);
+                match self.radii {
+                    None => bilateral::<E, _, _, _>(p).gradient.into(),
+                    Some(radii) => bilateral_in_revolution::<E, _, _, _>(p, radii).gradient.into(),
+                }
             }),
         };
         let responses = self.geometry.law.responses().iter();
@@ -28,22 +34,35 @@ impl Piece<PreciseBall> {
     }
 }
 
-/// int \[P\]+ N_a for P of this degree with the nodal values `p`, by the rule of the method.
-pub fn moments(rule: &EdgeRule, degree: Degree, p: &[PreciseBall]) -> Vec<PreciseBall> {
+/// int \[P\]+ N_a for P of this degree with the nodal values `p`, by the rule of the method; with the weight r where it has these
+/// `radii` at the ends.
+pub fn moments(
+    rule: &EdgeRule,
+    degree: Degree,
+    radii: Radii,
+    p: &[PreciseBall],
+) -> Vec<PreciseBall> {
     with_element!(degree, E => {
-        moments_of::<E, _, _>(degree, rule, std::array::from_fn(|a| p[a])).into()
+        moments_of::<E, _, _>(degree, rule, radii, std::array::from_fn(|a| p[a])).into()
     })
 }
+
+/// r at the ends of an edge, in a body of revolution.
+type Radii = Option<[PreciseBall; 2]>;
 
 fn moments_of<E: Element<N, M>, const N: usize, const M: usize>(
     degree: Degree,
     rule: &EdgeRule,
+    radii: Radii,
     p: [PreciseBall; M],
 ) -> [PreciseBall; M] {
     match rule {
         EdgeRule::Gauss(points) => {
             let points = points.iter().map(|&(s, w)| (PreciseBall::from(s), PreciseBall::from(w)));
-            gauss::<E, _, _, _>(p, points).gradient
+            match radii {
+                None => gauss::<E, _, _, _>(p, points).gradient,
+                Some(radii) => gauss_in_revolution::<E, _, _, _>(p, radii, points).gradient,
+            }
         }
         // Bernstein's coefficients bound P.
         EdgeRule::Exact if degree.bernstein(&p).iter().all(|c| c.upper() <= 0.0) => {
@@ -51,11 +70,16 @@ fn moments_of<E: Element<N, M>, const N: usize, const M: usize>(
         }
         EdgeRule::Exact => {
             // |N_a| <= 1, and so |int ([P]+ - [Q]+) N_a| <= max |P - Q| <= the sum of the radii.
-            let spread = p.iter().map(|p| p.radius()).sum::<f64>();
-            by_pieces::<E, _, _>(degree, p.map(|p| PreciseBall::point(p.centre())))
+            let spread = largest(radii) * p.iter().map(|p| p.radius()).sum::<f64>();
+            by_pieces::<E, _, _>(degree, radii, p.map(|p| PreciseBall::point(p.centre())))
                 .map(|moment| moment.widened(2.0 * spread))
         }
     }
+}
+
+/// The largest weight along an edge.
+fn largest(radii: Radii) -> f64 {
+    radii.map_or(1.0, |[start, end]| larger(start.upper(), end.upper()))
 }
 
 /// P = c_0 + c_1 s + c_2 s^2
@@ -118,6 +142,7 @@ impl Parabola {
 
 fn by_pieces<E: Element<N, M>, const N: usize, const M: usize>(
     degree: Degree,
+    radii: Radii,
     p: [PreciseBall; M],
 ) -> [PreciseBall; M] {
     let parabola = Parabola::new(degree, &p);
@@ -141,13 +166,15 @@ fn by_pieces<E: Element<N, M>, const N: usize, const M: usize>(
             for (s, weight, _) in points {
                 let value = value_at::<E, _, _, _>(p, s);
                 let shapes: [PreciseBall; M] = E::edge_values(s);
+                let weight = radii.map_or(weight, |radii| weight * radius(radii, s));
                 for (sum, shape) in sum.iter_mut().zip(shapes) {
                     *sum += length * weight * value * shape;
                 }
             }
         }
         let other = parabola.largest(if positive { -1 } else { 1 }, a, b);
-        wrong += larger(other, 0.0) * length.magnitude() * (1.0 + 8.0 * f64::EPSILON);
+        let other = larger(other, 0.0) * largest(radii);
+        wrong += other * length.magnitude() * (1.0 + 8.0 * f64::EPSILON);
     }
     sum.map(|moment| moment.widened(wrong))
 }
@@ -187,7 +214,7 @@ mod tests {
         for p in values() {
             let p: [f64; M] = std::array::from_fn(|a| p[a]);
             let exact = E::exact(p).gradient;
-            let enclosed = moments(&EdgeRule::Exact, degree, &p.map(PreciseBall::from));
+            let enclosed = moments(&EdgeRule::Exact, degree, None, &p.map(PreciseBall::from));
             let size = p.iter().fold(0.0, |m: f64, p| m.max(p.abs()));
             for (exact, ball) in exact.into_iter().zip(enclosed) {
                 let off = (ball - PreciseBall::from(exact)).magnitude();
@@ -198,6 +225,23 @@ mod tests {
                 let width = if double_root { 1e-15 } else { 1e-26 };
                 assert!(ball.radius() <= width * size + 1e-260, "{p:?}: {ball:?}");
             }
+        }
+    }
+
+    #[test]
+    fn with_the_weight_of_revolution_too_and_without_it_the_kernel_is_outside() {
+        let radii = [0.0, 1.5];
+        for p in values().into_iter().skip(9) {
+            let exact = P2::exact_in_revolution(p, radii).gradient;
+            let [with, without] = [Some(radii.map(PreciseBall::from)), None].map(|radii| {
+                moments(&EdgeRule::Exact, Degree::Two, radii, &p.map(PreciseBall::from))
+            });
+            for (exact, ball) in exact.into_iter().zip(with) {
+                assert!((ball - PreciseBall::from(exact)).magnitude() <= 1e-14);
+                assert!(ball.radius() <= 1e-26);
+            }
+            let off = (without[0] - PreciseBall::from(exact[0])).magnitude();
+            assert!(off > 1e-6 || exact == [0.0; 3], "{p:?}");
         }
     }
 

@@ -15,7 +15,10 @@ use super::element::{Degree, with_element};
 use super::law::{EdgeRule, Integrals, Law};
 use super::mesh::{BoundaryEdge, Mesh};
 use super::space::Space;
+use super::stress_points::Nodal;
+use crate::kernel::axial::{HoopStress, edge_mass};
 use crate::kernel::contact_edge::integral_of_product;
+use crate::kernel::edge_integral::{self, weighted_product};
 use crate::kernel::{ContactEdge, DoubleDouble, Element, Material, Response, Scalar, Triangle};
 
 /// A node of a piece.
@@ -89,6 +92,31 @@ impl PieceGeometry {
         Some(Chords { length, ratios: [first / length, second / length] })
     }
 
+    /// The radii of side `i`, given those at the corners of the triangle that has an edge; `None` in the plane.
+    pub(crate) fn radii<S: Scalar + From<f64>>(
+        &self,
+        i: usize,
+        corners: impl Fn(BoundaryEdge) -> Option<[S; 3]>,
+    ) -> Option<PieceRadii<S>> {
+        let at_ends = |stretch: &Stretch| {
+            let [start, end, _] = stretch.edge.from_its_ends(corners(stretch.edge)?);
+            let at = |a: usize| {
+                let place = <S as From<f64>>::from(stretch.positions[a]);
+                edge_integral::radius([start, end], place)
+            };
+            // The whole edge: no product with 1, which is not exact in balls.
+            Some(if self.stretches.len() == 1 { [start, end] } else { [at(0), at(1)] })
+        };
+        let each: Option<Vec<[S; 2]>> = self.stretches.iter().map(at_ends).collect();
+        let (each, edge) = (each?, self.stretches[i].edge);
+        let half = |a: usize| (each[0][a] + each[1][a]) / <S as From<i32>>::from(2);
+        Some(PieceRadii {
+            of_piece: if each.len() == 1 { each[0] } else { [half(0), half(1)] },
+            of_side: each[i],
+            of_triangle: edge.from_its_ends(corners(edge)?),
+        })
+    }
+
     /// g at the nodes.
     pub fn gaps(&self) -> impl Iterator<Item = f64> + '_ {
         self.nodes.iter().map(|node| node.gap)
@@ -109,6 +137,48 @@ pub(crate) struct Chords<S> {
     pub ratios: [S; 2],
 }
 
+/// r along a side of a piece of a body of revolution.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PieceRadii<S> {
+    /// At the two ends of the piece, the means over its sides: the weight of its integrals.
+    pub of_piece: [S; 2],
+    /// There on the side itself.
+    pub of_side: [S; 2],
+    /// At the start and the end of the side's edge, and at the corner opposite.
+    pub of_triangle: [S; 3],
+}
+
+impl<S: Scalar> Chords<S> {
+    /// The length of side `i` over that of the piece; in a body of revolution the area over that.
+    pub(crate) fn ratio(&self, i: usize, radii: Option<PieceRadii<S>>) -> S {
+        let ratio = self.ratios[i];
+        radii.map_or(ratio, |PieceRadii { of_piece: [a, b], of_side: [c, d], .. }| {
+            ratio * (c + d) / (a + b)
+        })
+    }
+
+    /// What the constant of side `i` in kappa is multiplied by: the square of its ratio times the length of the piece over its own, in a
+    /// body of revolution times the largest quotient of the weight of the piece and its own r, which are affine.
+    pub(crate) fn share(
+        &self,
+        i: usize,
+        radii: Option<PieceRadii<S>>,
+        largest: impl Fn(S, S) -> S,
+    ) -> S {
+        let Some(PieceRadii { of_piece, of_side, .. }) = radii else { return self.ratios[i] };
+        let ratio = self.ratio(i, radii);
+        // At an end on the axis both are 0, and the quotient is that of the other end.
+        let on_axis = |a: usize| of_side[a] == S::from(0) && of_piece[a] == S::from(0);
+        let quotient = |a: usize| of_piece[a] / of_side[a];
+        let most = match [on_axis(0), on_axis(1)] {
+            [true, _] => quotient(1),
+            [_, true] => quotient(0),
+            _ => largest(quotient(0), quotient(1)),
+        };
+        ratio * ratio / self.ratios[i] * most
+    }
+}
+
 /// What a side of a piece is made from, in any numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct SideData<S> {
@@ -122,6 +192,8 @@ pub struct SideData<S> {
     pub normal: Vector2<S>,
     /// gamma of the triangle: gamma0 h_T of (7).
     pub gamma: S,
+    /// r at the corners of the triangle, in a body of revolution.
+    pub radii: Option<[S; 3]>,
 }
 
 /// A side of a piece.
@@ -137,6 +209,8 @@ pub struct Side<S = f64> {
     pub entries: Range<usize>,
     /// For each node of the piece the entry of the edge's node that is next to it.
     pub nearest: Vec<usize>,
+    /// The functionals P0 and those of the stress of the displacement e_r, in a body of revolution, where it is no rigid motion.
+    pub rings: Option<[Vec<S>; 2]>,
 }
 
 /// A piece of Gamma_C.
@@ -154,6 +228,8 @@ pub struct Piece<S = f64> {
     pub length: S,
     /// gamma, the sum over its sides.
     pub gamma: S,
+    /// r at its start and its end, in a body of revolution: the weight of its integrals, elsewhere 1.
+    pub radii: Option<[S; 2]>,
     /// The nodes of its triangles, the first side's and then the second's.
     pub nodes: Vec<usize>,
     /// P0 of each component at each node of the piece: a vector for each of `nodes`.
@@ -205,6 +281,50 @@ fn rows<E: Element<N, M>, const N: usize, const M: usize, S: Scalar>(
     [edge.p0.map(|row| row.to_vec()).to_vec(), edge.sigma_n.map(|row| row.to_vec()).to_vec()]
 }
 
+/// The hoop strain in the stress of a side, at the start and at the end of the piece.
+struct HoopRows<S> {
+    /// For each end what each node's radial displacement adds.
+    at_ends: [Vec<S>; 2],
+    /// The sums of these.
+    ring: [S; 2],
+}
+
+fn hoop<E: Element<N, M>, const N: usize, const M: usize, S: Scalar>(
+    side: &SideData<S>,
+    (local, positions): (usize, &[S]),
+    directions: [Vector2<S>; 2],
+) -> HoopRows<S> {
+    let ends = [positions[0], positions[1]];
+    let radii = side.radii.unwrap_or([S::from(1); 3]);
+    let of: HoopStress<S, N> =
+        HoopStress::new::<E, M>(radii, (local, ends), side.normal, directions, &side.material);
+    HoopRows { at_ends: of.at_ends.map(|row| row.to_vec()), ring: of.ring }
+}
+
+impl<S: Scalar> HoopRows<S> {
+    /// Adds it to the functionals P0 at the places `at` of the piece, with gamma, and to those of the stress; gives the functionals of
+    /// e_r, those of the stress times the share of the side in it, if there are two.
+    fn add_to(
+        self,
+        [p0, stress]: [&mut Vec<Vec<Vector2<S>>>; 2],
+        at: &[S],
+        (gamma, share): (S, Option<S>),
+    ) -> [Vec<S>; 2] {
+        let between =
+            |[start, end]: [S; 2], s: S| -(edge_integral::radius([start, end], s) * gamma);
+        for (row, &s) in p0.iter_mut().zip(at) {
+            for (j, entry) in row.iter_mut().enumerate() {
+                entry[0] += between([self.at_ends[0][j], self.at_ends[1][j]], s);
+            }
+        }
+        for (row, hoop) in stress.iter_mut().zip(&self.at_ends) {
+            row.iter_mut().zip(hoop).for_each(|(entry, &hoop)| entry[0] += hoop);
+        }
+        let of_p0 = at.iter().map(|&s| between(self.ring, s)).collect();
+        [of_p0, self.ring.map(|ring| share.map_or(ring, |share| ring * share)).to_vec()]
+    }
+}
+
 /// A vector turned left by a right angle.
 fn across<S: Scalar>(d: Vector2<S>) -> Vector2<S> {
     Vector2::new(-d[1], d[0])
@@ -227,6 +347,19 @@ impl<S: Scalar + From<f64>> Piece<S> {
             length = chords.length;
             gamma += data[1].gamma;
         }
+        let radii: Option<Vec<PieceRadii<S>>> = (0..data.len())
+            .map(|i| {
+                let of = |edge: BoundaryEdge| {
+                    geometry
+                        .stretches
+                        .iter()
+                        .position(|s| s.edge == edge)
+                        .and_then(|k| data[k].radii)
+                };
+                geometry.radii(i, of)
+            })
+            .collect();
+        let radii_of = |i: usize| radii.as_ref().map(|radii| radii[i]);
         let mut piece = Piece {
             geometry: Arc::clone(geometry),
             degree,
@@ -234,18 +367,20 @@ impl<S: Scalar + From<f64>> Piece<S> {
             sides: Vec::with_capacity(data.len()),
             length,
             gamma,
+            radii: radii_of(0).map(|radii| radii.of_piece),
             nodes: Vec::new(),
             p0: vec![Vec::new(); geometry.law.components() * degree.nodes_per_edge()],
             sigma_n: vec![Vec::new(); 2 * geometry.law.components()],
         };
         for (i, (stretch, data)) in geometry.stretches.iter().zip(data).enumerate() {
             // The stress of the only side is that of the piece: no product with 1, which is not exact in balls.
-            let shares = chords.map(|chords| (data.gamma / gamma, chords.ratios[i]));
+            let shares = chords.map(|chords| (data.gamma / gamma, chords.ratio(i, radii_of(i))));
             let own_gamma = shares.map_or(data.gamma, |(_, ratio)| data.gamma * ratio);
             let first = piece.nodes.len();
             piece.nodes.extend(space.nodes_of(stretch.edge.triangle));
             let positions: Vec<S> = stretch.positions.iter().map(|&s| exact(s)).collect();
             let place = (stretch.edge.local, shares.is_some().then_some(&positions[..]));
+            let mut rings = data.radii.map(|_| [Vec::new(), Vec::new()]);
             for k in 0..geometry.law.components() {
                 let toward = |node: &PieceNode| {
                     let d = node.direction.map(exact);
@@ -254,9 +389,21 @@ impl<S: Scalar + From<f64>> Piece<S> {
                 };
                 let along: Vec<Vector2<S>> = geometry.nodes.iter().map(toward).collect();
                 let along = (k > 0 || !geometry.along_normal).then_some(&along[..]);
-                let [p0, sigma_n] = with_element!(degree, E => {
+                let [mut p0, mut sigma_n] = with_element!(degree, E => {
                     rows::<E, _, _, _>(data, place, along, own_gamma)
                 });
+                if let Some(rings) = &mut rings {
+                    let ends = [0, 1].map(|a| along.map_or(data.normal, |along| along[a]));
+                    let of = with_element!(degree, E => {
+                        hoop::<E, _, _, _>(data, (stretch.edge.local, &positions), ends)
+                    });
+                    let at: Vec<S> = degree.edge_positions().into_iter().map(exact).collect();
+                    let share = shares.map(|(weight, ratio)| weight * ratio);
+                    let [own_p0, own_stress] =
+                        of.add_to([&mut p0, &mut sigma_n], &at, (own_gamma, share));
+                    rings[0].extend(own_p0);
+                    rings[1].extend(own_stress);
+                }
                 let count = degree.nodes_per_edge();
                 for (all, own) in piece.p0[k * count..].iter_mut().zip(p0) {
                     all.extend(own);
@@ -275,6 +422,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
                 gamma: data.gamma,
                 entries: first..piece.nodes.len(),
                 nearest: nearest(degree, stretch).into_iter().map(|k| first + k).collect(),
+                rings,
             });
         }
         piece
@@ -357,6 +505,12 @@ impl<S: Scalar + From<f64>> Piece<S> {
         self.length / self.gamma
     }
 
+    /// int 1 / gamma, in a body of revolution int r / gamma.
+    pub fn whole_weight(&self) -> S {
+        let weight = self.weight();
+        self.radii.map_or(weight, |[start, end]| weight * (start + end) / <S as From<i32>>::from(2))
+    }
+
     /// The value of a functional at the differences of nodal values from those at the node `from` of a side, of its entries: a body
     /// that moves far and strains little loses no digits.
     fn apply(
@@ -390,7 +544,8 @@ impl<S: Scalar + From<f64>> Piece<S> {
             self.sides.iter().fold(n[0] * jump[0] + n[1] * jump[1], |sum, side| {
                 let from = near(side);
                 let difference = |node: usize| [0, 1].map(|c| u[node][c] - from[c]);
-                sum + self.apply(side, row, difference)
+                let sum = sum + self.apply(side, row, difference);
+                side.rings.as_ref().map_or(sum, |[p0, _]| sum + p0[i] * from[0])
             })
         };
         self.p0.iter().enumerate().map(value).collect()
@@ -407,30 +562,38 @@ impl<S: Scalar + From<f64>> Piece<S> {
         self.p0(u).into_iter().enumerate().map(less).collect()
     }
 
-    /// The stress of each component at the start and at the end, of a displacement given by its differences between two nodes: the
-    /// first one's value less the second one's.
-    pub fn stress(&self, difference: impl Fn(usize, usize) -> [S; 2]) -> Vec<S> {
-        let value = |row: &Vec<Vector2<S>>| {
+    /// The stress of each component at the start and at the end.
+    pub(crate) fn stress(&self, u: &(impl Nodal<S> + ?Sized)) -> Vec<S> {
+        let value = |(i, row): (usize, &Vec<Vector2<S>>)| {
             let of = |side: &Side<S>| {
                 let from = self.nodes[side.entries.start];
-                self.apply(side, row, |node| difference(node, from))
+                let sum = self.apply(side, row, |node| u.difference(node, from).into());
+                side.rings.as_ref().map_or(sum, |[_, of]| sum + of[i] * u.radial(from))
             };
             let first = of(&self.sides[0]);
             self.sides[1..].iter().fold(first, |sum, side| sum + of(side))
         };
-        self.sigma_n.iter().map(value).collect()
+        self.sigma_n.iter().enumerate().map(value).collect()
     }
 
     /// sigma_n(u) at the start and at the end.
     pub fn sigma_n(&self, u: &[[S; 2]]) -> [S; 2] {
-        let stress = self.stress(|node, from| [0, 1].map(|c| u[node][c] - u[from][c]));
+        let stress = self.stress(u);
         [stress[0], stress[1]]
+    }
+
+    /// The integral of the product of two affine functions over the piece, beside its length.
+    fn product(&self, f: [S; 2], g: [S; 2]) -> S {
+        match self.radii {
+            None => integral_of_product(f, g),
+            Some(radii) => weighted_product(radii, f, g),
+        }
     }
 
     /// int gamma sigma_n(u)^2, summed over the components.
     pub fn squared_stress(&self, u: &[[S; 2]]) -> S {
-        let stress = self.stress(|node, from| [0, 1].map(|c| u[node][c] - u[from][c]));
-        let square = |ends: &[S]| integral_of_product([ends[0], ends[1]], [ends[0], ends[1]]);
+        let stress = self.stress(u);
+        let square = |ends: &[S]| self.product([ends[0], ends[1]], [ends[0], ends[1]]);
         let rest = stress[2..].chunks_exact(2).map(square);
         self.gamma * self.length * rest.fold(square(&stress[..2]), |sum, more| sum + more)
     }
@@ -441,14 +604,17 @@ impl<S: Scalar + From<f64>> Piece<S> {
         let mass = -(self.gamma * self.length) / six;
         let of = |ends: &[S]| {
             let (start, end) = (ends[0], ends[1]);
-            [mass * (two * start + end), mass * (start + two * end)]
+            let Some(radii) = self.radii else {
+                return [mass * (two * start + end), mass * (start + two * end)];
+            };
+            edge_mass(radii).map(|[a, b]| six * mass * (a * start + b * end))
         };
         stress.chunks_exact(2).flat_map(of).collect()
     }
 
     /// Adds -int gamma sigma_n(u) sigma_n(v) for every basis function v.
     pub fn add_stresses(&self, u: &[[S; 2]], forces: &mut [[S; 2]]) {
-        let stress = self.stress(|node, from| [0, 1].map(|c| u[node][c] - u[from][c]));
+        let stress = self.stress(u);
         self.each_force(&self.sigma_n, &self.stress_factors(&stress), |node, f| {
             forces[node] = [forces[node][0] + f[0], forces[node][1] + f[1]];
         });
@@ -481,7 +647,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
         let of = |rows: &[Vec<Vector2<S>>]| {
             let (start, end) = (&rows[0], &rows[1]);
             Matrix2::from_fn(|c, d| {
-                weight * integral_of_product([start[i][c], end[i][c]], [start[j][d], end[j][d]])
+                weight * self.product([start[i][c], end[i][c]], [start[j][d], end[j][d]])
             })
         };
         let first = of(&self.sigma_n[..2]);
@@ -543,7 +709,7 @@ impl Piece {
         p: &[T],
     ) -> Contribution {
         let Integrals { energy, gradient, hessian, active } =
-            self.geometry.law.integrals(rule, self.degree, p);
+            self.geometry.law.integrals(rule, self.degree, self.radii, p);
         let weight = self.weight();
         let along = &gradient[..self.degree.nodes_per_edge()];
         Contribution {
@@ -558,7 +724,7 @@ impl Piece {
 
     /// The Bregman distance of its energy from P to Q, given by their values at the nodes.
     pub fn bregman<T: Copy + Into<DoubleDouble>>(&self, rule: &EdgeRule, p: &[T], q: &[T]) -> f64 {
-        self.weight() * self.geometry.law.bregman(rule, self.degree, p, q)
+        self.weight() * self.geometry.law.bregman(rule, self.degree, self.radii, p, q)
     }
 
     /// The sums of the magnitudes of the products that P0(u) is added up from at the nodes.
@@ -572,7 +738,8 @@ impl Piece {
                 let entries = side.entries.clone();
                 let others = row[entries.clone()].iter().zip(&self.nodes[entries]);
                 let differences = others.map(|(&f, &k)| size(f, u[k][0] - x, u[k][1] - y));
-                size(n, x, y) + differences.sum::<f64>()
+                let ring = side.rings.as_ref().map_or(0.0, |[p0, _]| (p0[i] * x).abs());
+                size(n, x, y) + differences.sum::<f64>() + ring
             };
             self.sides.iter().map(of).sum()
         };

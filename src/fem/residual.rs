@@ -24,8 +24,7 @@ pub fn add_internal_forces<S: Scalar + From<f64>>(
     u: &[[S; 2]],
     forces: &mut [[S; 2]],
 ) {
-    let difference = |node: usize, from: usize| Vector2::from(u[node]) - Vector2::from(u[from]);
-    each_stress(space, materials, exactly, difference, |point| {
+    each_stress(space, materials, exactly, u, |point| {
         point.each_force(|node, force, _| {
             forces[node][0] += force[0];
             forces[node][1] += force[1];
@@ -74,8 +73,10 @@ pub fn piece_with<S: Scalar + From<f64>>(
     let data = |(side, stretch): (&Side, &Stretch)| {
         let (length, normal, gamma) = numbers(side, stretch);
         let t = stretch.edge.triangle;
-        let material = d.problem.material.of(t).map(<S as From<f64>>::from);
-        SideData { triangle: exactly(d.space.mesh().triangle(t)), material, length, normal, gamma }
+        let (doubles, material) = (d.space.mesh().triangle(t), d.problem.material.of(t));
+        let radii = material.radii(&doubles).map(|radii| radii.map(<S as From<f64>>::from));
+        let material = material.map(<S as From<f64>>::from);
+        SideData { triangle: exactly(doubles), material, length, normal, gamma, radii }
     };
     let sides: Vec<SideData<S>> =
         piece.sides.iter().zip(&piece.geometry.stretches).map(data).collect();

@@ -9,6 +9,9 @@
 //! A prescribed component of a node is one equation for the part that has the node. The motions that satisfy all these
 //! equations with zero data are free: with them a(., .) is not definite.
 //!
+//! In a body of revolution the hoop strain of a motion of the meridian is zero only if v_r is zero on the mean of each triangle (P2:
+//! everywhere): a translation along the axis is left, and a rotation of a single row of triangles.
+//!
 //! The system is scaled to be independent of units and place: c is the middle of the part's own box, w is measured by the
 //! displacement that it makes at the distance of the box's half side. Coordinates enter as differences within one part
 //! only. The rank of a part's equations is that of their singular values.
@@ -17,6 +20,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use super::dense::singular_vectors;
+use super::element::Degree;
 use super::groups::groups;
 use super::mesh::Mesh;
 use super::space::Space;
@@ -245,12 +249,13 @@ impl Parts {
 }
 
 /// All rigid motions that are free when each node is held in the directions `held` of it, which may be off by `rounding`: a
-/// basis, part by part, empty if the body is held.
+/// basis, part by part, empty if the body is held. `of_revolution`: by its hoop strain, too.
 pub fn free_motions<I>(
     parts: &Parts,
     space: &Space,
     held: impl Fn(usize) -> I,
     rounding: f64,
+    of_revolution: bool,
 ) -> Vec<FreeMotion>
 where
     I: Iterator<Item = [f64; 2]>,
@@ -266,6 +271,15 @@ where
                 let [a, b] = [0, 1].map(|c| parts.row(part, space.nodes()[node], c));
                 rows[part].push((0..3).map(|k| d[0] * a[k] + d[1] * b[k]).collect());
             }
+        }
+    }
+    if of_revolution {
+        for (t, &part) in parts.of_triangle.iter().enumerate() {
+            let middle = space.mesh().triangle(t).point([1.0 / 3.0; 3]).into();
+            rows[part].push(parts.row(part, middle, 0).to_vec());
+        }
+        if space.degree() == Degree::Two {
+            rows.iter_mut().for_each(|rows| rows.push(vec![0.0, 0.0, 1.0]));
         }
     }
     let mut motions = Vec::new();
@@ -404,7 +418,6 @@ mod tests {
     use approx::abs_diff_eq;
 
     use super::*;
-    use crate::fem::Degree;
 
     /// The remainder of a motion of size 1 where it is stopped: components below [`NEGLIGIBLE`] are set to zero, and slender
     /// parts have coordinates of up to 10 times their half box.
@@ -444,7 +457,7 @@ mod tests {
             axes.filter(|(held, _)| *held).map(|(_, axis)| axis)
         };
         let parts = Parts::new(mesh);
-        let motions = free_motions(&parts, &space, directions, 0.0);
+        let motions = free_motions(&parts, &space, directions, 0.0, false);
         for motion in &motions {
             let field = motion.field(&parts, &space);
             for (x, u) in space.nodes().iter().zip(&field) {

@@ -1,11 +1,13 @@
 //! Forces of a displacement from stresses in doubles, off by no more than a proved norm: docs/theory.md, 7.5. They take a
 //! fraction of the time of [`add_internal_forces`](super::residual::add_internal_forces) in balls.
 
-use nalgebra::{Vector2, Vector3};
+use nalgebra::{Matrix2, Vector2, Vector3};
 
 use super::discretization::Discretization;
 use super::element::with_element;
 use super::material::{Materials, largest_entry, least_eigenvalue};
+use super::residual::exactly;
+use crate::kernel::axial;
 use crate::kernel::ball::up;
 use crate::kernel::double_double::{DoubleDouble, Multiplier};
 use crate::kernel::element::displacement_gradient;
@@ -18,7 +20,14 @@ pub fn add_forces(
     u: &[[PreciseBall; 2]],
     forces: &mut [[PreciseBall; 2]],
 ) -> f64 {
-    each_force(d, u, |node, stress, normal| {
+    each_force(d, u, |node, part| {
+        let (stress, normal) = match part {
+            Part::Meridian { stress, normal } => (stress, normal),
+            Part::Hoop { stress, area } => {
+                forces[node][0] += PreciseBall::from(stress) * area;
+                return;
+            }
+        };
         let [xx, yy, xy] = stress.map(|s| Multiplier::from(DoubleDouble::from(s)));
         let [x, y] = normal.map(Multiplier::from);
         for (force, products) in
@@ -37,10 +46,14 @@ pub fn add_small_forces(
     forces: &mut [[PreciseBall; 2]],
 ) -> f64 {
     let mut sums = vec![[RoundedSum::default(); 2]; forces.len()];
-    let bound = each_force(d, u, |node, [xx, yy, xy], normal| {
-        let [x, y] = normal.map(DoubleDouble::head);
-        sums[node][0].add([xx * x, xy * y]);
-        sums[node][1].add([xy * x, yy * y]);
+    let bound = each_force(d, u, |node, part| match part {
+        Part::Meridian { stress: [xx, yy, xy], normal } => {
+            let [x, y] = normal.map(DoubleDouble::head);
+            sums[node][0].add([xx * x, xy * y]);
+            sums[node][1].add([xy * x, yy * y]);
+        }
+        // The radius of an area is far below a unit of it.
+        Part::Hoop { stress, area } => sums[node][0].add([stress * area.head(), 0.0]),
     });
     for (force, sum) in forces.iter_mut().zip(&sums) {
         *force = [0, 1].map(|c| force[c] + sum[c].enclosed());
@@ -72,38 +85,68 @@ impl RoundedSum {
 /// Half of the distance from 1 to the next double.
 const UNIT: f64 = f64::EPSILON / 2.0;
 
-/// Calls `add` with the parts of the forces of the stress s that doubles give for `u`: a node, the components xx, yy, xy of a
-/// combination of the stresses on a triangle, exactly, and half of a normal of it, on which they act. Returns the bound of
-/// [`add_forces`].
-fn each_force(
-    d: &Discretization,
-    u: &[[PreciseBall; 2]],
-    add: impl FnMut(usize, [f64; 3], [DoubleDouble; 2]),
-) -> f64 {
+/// A part of the force on a node.
+enum Part {
+    /// The components xx, yy, xy of a combination of the stresses on a triangle, exactly, and half of a normal of it, on which they
+    /// act.
+    Meridian { stress: [f64; 3], normal: [DoubleDouble; 2] },
+    /// A combination of hoop stresses, exactly, and the share of the triangle's area on which it acts, along r.
+    Hoop { stress: f64, area: PreciseBall },
+}
+
+/// Calls `add` with the parts of the forces of the stress s that doubles give for `u`. Returns the bound of [`add_forces`].
+fn each_force(d: &Discretization, u: &[[PreciseBall; 2]], add: impl FnMut(usize, Part)) -> f64 {
     with_element!(d.space.degree(), E => each_force_of::<E, _, _>(d, u, add))
 }
 
 fn each_force_of<E: Element<N, M>, const N: usize, const M: usize>(
     d: &Discretization,
     u: &[[PreciseBall; 2]],
-    mut add: impl FnMut(usize, [f64; 3], [DoubleDouble; 2]),
+    mut add: impl FnMut(usize, Part),
 ) -> f64 {
     let mut points = Vec::new();
     E::at_stiffness_points(|l: [f64; 3], weight: f64| points.push((l, weight)));
     let terms = Term::all::<E, M>(&points);
     let moduli = Moduli::of_each(&d.problem.material);
+    let hoop_terms = HoopTerm::all::<E, N, M>();
     let mut stresses = [[0.0; 3]; N];
     let mut square = 0.0;
     for (t, (triangle, nodes)) in d.space.triangles::<N>().enumerate() {
-        if moves_as_a_whole(nodes, u) {
+        let material = d.problem.material.of(t);
+        let radii = material.radii(&triangle);
+        let is_still = |node: &usize| u[*node][0].magnitude() == 0.0;
+        if moves_as_a_whole(nodes, u) && (radii.is_none() || nodes.iter().all(is_still)) {
             continue;
         }
-        let material = d.problem.material.of(t);
         let nodal = nodes.map(|node| u[node]);
         let rounded = RoundedStrain::new::<E, M>(Gradients::new(&triangle), nodal);
-        square += rounded.stress_error_squared(&moduli[d.problem.material.place_of(t)]);
-        for (&(l, weight), at) in points.iter().zip(&mut stresses) {
-            *at = rounded.stress::<E, M>(material, l).components().map(|s| weight * s);
+        let moduli = &moduli[d.problem.material.place_of(t)];
+        if let Some(radii) = radii {
+            let hoop = RoundedHoop::new::<E, N, M>(radii, nodal);
+            square += rounded.error_squared_of_revolution(&hoop, moduli);
+            let mut states = [(Stress::new([0.0; 3]), 0.0); 3];
+            for (a, &(l, _)) in points.iter().enumerate() {
+                let gradient = rounded.gradient::<E, M>(l);
+                states[a] = material.stress_of_revolution(gradient, hoop.strains[a]);
+            }
+            for (b, at) in stresses.iter_mut().enumerate().take(points.len()) {
+                *at = axial::weighted(&hoop.mass, &states, b, points.len()).components();
+            }
+            let mut hoops = [states.map(|(_, hoop)| hoop)];
+            if points.len() > 1 {
+                make_sums_exact(&mut hoops);
+            }
+            let double_area = exactly::<PreciseBall>(triangle).double_area();
+            for HoopTerm { node, share, coefficients } in &hoop_terms {
+                let pairs = coefficients.iter().zip(hoops[0]);
+                let stress = pairs.fold(0.0, |sum, (share, stress)| sum + share * stress);
+                add(nodes[*node], Part::Hoop { stress, area: double_area * *share });
+            }
+        } else {
+            square += rounded.stress_error_squared(moduli);
+            for (&(l, weight), at) in points.iter().zip(&mut stresses) {
+                *at = rounded.stress::<E, M>(material, l).components().map(|s| weight * s);
+            }
         }
         if points.len() > 1 {
             make_sums_exact(&mut stresses);
@@ -120,7 +163,7 @@ fn each_force_of<E: Element<N, M>, const N: usize, const M: usize>(
                     *sum += coefficient * s;
                 }
             }
-            add(nodes[*node], sum, normals[*side]);
+            add(nodes[*node], Part::Meridian { stress: sum, normal: normals[*side] });
         }
     }
     SAFETY * square.sqrt()
@@ -153,6 +196,28 @@ impl<const N: usize> Term<N> {
     }
 }
 
+/// The part of the force at a node of a triangle that its hoop stresses make: these at the points of the rule, each times its
+/// coefficient, on a share of twice the area.
+struct HoopTerm {
+    node: usize,
+    share: PreciseBall,
+    coefficients: [f64; 3],
+}
+
+impl HoopTerm {
+    /// Those of all nodes. The [shares](axial::shares) of a node are small multiples of one of them.
+    fn all<E: Element<N, M>, const N: usize, const M: usize>() -> Vec<Self> {
+        let shares = axial::shares::<E, N, M>();
+        let term = |node: usize| {
+            let of = shares.map(|row| row[node]);
+            let unit = of.into_iter().filter(|share| *share != 0).map(i32::abs).min().unwrap_or(1);
+            let share = PreciseBall::from(unit) / PreciseBall::from(60);
+            HoopTerm { node, share, coefficients: of.map(|share| f64::from(share / unit)) }
+        };
+        (0..N).map(term).collect()
+    }
+}
+
 /// Rounds numbers to multiples of one power of two, by no more than 2^-50 of the largest: their sums are then exact, while these
 /// are less than eight times the largest.
 fn make_sums_exact<const N: usize>(numbers: &mut [[f64; 3]; N]) {
@@ -179,9 +244,14 @@ fn energy_norm_of<E: Element<N, M>, const N: usize, const M: usize>(
         let size: f64 = nodes.iter().flat_map(|&node| v[node]).map(PreciseBall::magnitude).sum();
         if size != 0.0 {
             let gradients = Gradients::new(&triangle);
-            let strain = E::DEGREE as f64 * gradients.slope * size;
+            let mut strain = E::DEGREE as f64 * gradients.slope * size;
+            let mut weight = gradients.area;
+            if let Some([a, b, c]) = d.problem.material.of(t).radii(&triangle) {
+                strain += 7.0 * size / (a + b + c);
+                weight *= a + b + c;
+            }
             let most = moduli[d.problem.material.place_of(t)].most;
-            square += most * strain * strain * gradients.area + f64::MIN_POSITIVE;
+            square += most * strain * strain * weight + f64::MIN_POSITIVE;
             square += if gradients.skew.is_finite() { 0.0 } else { f64::INFINITY };
         }
     }
@@ -251,11 +321,57 @@ impl Gradients {
     }
 }
 
+/// The hoop strain on a triangle in doubles, with what bounds its rounding.
+struct RoundedHoop {
+    /// At the points of the rule.
+    strains: [f64; 3],
+    /// The [mass](axial::mass) of its weight.
+    mass: [[f64; 3]; 3],
+    /// The sum of the radii, which bounds the weight.
+    radii: f64,
+    /// A bound of the error of the strain.
+    error: f64,
+}
+
+impl RoundedHoop {
+    fn new<E: Element<N, M>, const N: usize, const M: usize>(
+        radii: [f64; 3],
+        nodal: [[PreciseBall; 2]; N],
+    ) -> Self {
+        let radial = nodal.map(|u| u[0].head());
+        let mass = axial::mass::<E, _, _, _>(radii);
+        let means = axial::means::<E, _, _, _>(&radial);
+        let strains = axial::projected(&mass, means, E::POINTS);
+        let points = strains.iter().take(E::POINTS);
+        let left = (0..E::POINTS).map(|a| {
+            let product = (0..E::POINTS).fold(-means[a], |sum, b| sum + mass[a][b] * strains[b]);
+            product.abs()
+        });
+        let (left, largest): (f64, f64) =
+            (left.sum(), points.fold(0.0, |m, s| f64::max(m, s.abs())));
+        let radii = radii.iter().sum::<f64>();
+        let sizes: f64 = radial.iter().map(|u| u.abs()).sum();
+        let off: f64 = nodal.iter().map(|u| u[0].radius() + u[0].centre().tail().abs()).sum();
+        let rounding = 8.0 * f64::EPSILON * (radii * largest + sizes);
+        // The least eigenvalue of the mass.
+        let least = if E::POINTS == 1 { radii / 3.0 } else { radii / 20.0 };
+        let error = (left + rounding + off + f64::MIN_POSITIVE) / least;
+        RoundedHoop { strains, mass, radii, error: error + f64::EPSILON * largest }
+    }
+
+    /// The largest magnitude of the strain.
+    fn largest(&self) -> f64 {
+        self.strains.iter().fold(0.0, |most: f64, strain| most.max(strain.abs()))
+    }
+}
+
 /// The differences of nodal values on a triangle in doubles, with what bounds their rounding.
 struct RoundedStrain<const N: usize> {
     /// Nodal values less the first one.
     differences: [Vector2<f64>; N],
     gradients: Gradients,
+    /// A bound of the sum of the magnitudes of its entries.
+    size: f64,
     /// A bound of the error of the strain, the rounding of the stress beside it included; infinite for a flat triangle.
     error: f64,
 }
@@ -284,7 +400,7 @@ impl<const N: usize> RoundedStrain<N> {
         let roundings = (N + 7 * E::DEGREE - 3) as f64 + 4.0 * gradients.skew;
         let error = slope * (f64::EPSILON * roundings * sizes + off + f64::MIN_POSITIVE);
         let error = if gradients.skew.is_finite() { error } else { f64::INFINITY };
-        RoundedStrain { differences, gradients, error }
+        RoundedStrain { differences, gradients, size: slope * sizes, error }
     }
 
     /// An upper bound of the square of the stress error in the norm dual to |v|_a on the triangle: |sigma:eps| is at most
@@ -295,13 +411,26 @@ impl<const N: usize> RoundedStrain<N> {
         off * off * (self.gradients.area / moduli.least) + f64::MIN_POSITIVE
     }
 
-    /// The stress at the point with the barycentric coordinates `l`.
+    /// [`RoundedStrain::stress_error_squared`] in a body of revolution: the hoop strain, the weights and the roundings to multiples of
+    /// a power of two have their own errors, all of them relative to the largest stress (docs/theory.md, 11.5).
+    fn error_squared_of_revolution(&self, hoop: &RoundedHoop, moduli: &Moduli) -> f64 {
+        let rounding = 64.0 * f64::EPSILON * (self.size + hoop.largest());
+        let off = moduli.most * (self.error + hoop.error + rounding) + f64::MIN_POSITIVE;
+        off * off * (self.gradients.area * hoop.radii / moduli.least) + f64::MIN_POSITIVE
+    }
+
+    /// The displacement gradient at the point with the barycentric coordinates `l`.
+    fn gradient<E: Element<N, M>, const M: usize>(&self, l: [f64; 3]) -> Matrix2<f64> {
+        let gradients = E::gradients(l, self.gradients.barycentric);
+        displacement_gradient(&self.differences, &gradients)
+    }
+
+    /// The stress there.
     fn stress<E: Element<N, M>, const M: usize>(
         &self,
         material: &Material<f64>,
         l: [f64; 3],
     ) -> Stress<f64> {
-        let gradients = E::gradients(l, self.gradients.barycentric);
-        material.stress(displacement_gradient(&self.differences, &gradients))
+        material.stress(self.gradient::<E, M>(l))
     }
 }

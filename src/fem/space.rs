@@ -9,7 +9,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::element::Degree;
 use super::mesh::{BoundaryEdge, Mesh};
-use crate::kernel::Triangle;
+use crate::kernel::{Material, Triangle};
 
 /// V^h of a degree on a mesh, no condition imposed.
 #[derive(Clone, Debug)]
@@ -92,6 +92,19 @@ impl<'a> Space<'a> {
     pub fn triangles<const N: usize>(&self) -> impl Iterator<Item = (Triangle<f64>, &[usize; N])> {
         let (elements, _) = self.elements.as_chunks::<N>();
         elements.iter().enumerate().map(|(t, nodes)| (self.mesh.triangle(t), nodes))
+    }
+
+    /// The mean hoop strain of `field` on triangle `t`; 0 where the material is that of a plane body.
+    pub(crate) fn mean_hoop_strain(
+        &self,
+        t: usize,
+        material: &Material<f64>,
+        field: &[[f64; 2]],
+    ) -> f64 {
+        let Some(radii) = material.radii(&self.mesh.triangle(t)) else { return 0.0 };
+        let nodes = self.nodes_of(t);
+        let strains = self.degree.hoop_strain(radii, |j| field[nodes[j]][0]);
+        self.degree.value_from_points(strains, [1.0 / 3.0; 3])
     }
 
     /// The mean of the gradient of `field` on triangle `t`: its average over the points of the stiffness rule, which is exact for

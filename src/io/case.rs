@@ -22,8 +22,8 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 pub use self::body::MaterialEcho;
-use self::body::{only_isotropic, read_loads, read_materials};
-use self::boundary::{read_boundaries, read_points};
+use self::body::{PLANES, only_isotropic, read_loads, read_materials};
+use self::boundary::{Depth, read_boundaries, read_points};
 use self::exact::read_exact;
 use self::mesh::{Meshed, read_mesh};
 use self::method::{read_method, read_quantities, read_settings, read_target};
@@ -33,6 +33,7 @@ use super::input::{self, Failure, FileError, MOST_OF_A_CASE, Position};
 use super::remarks::Words;
 use crate::certify::{Asked, Target};
 use crate::fem::{Mesh, Pair, Perturbation, Problem, SharedFunction, Structured};
+use crate::kernel::Plane;
 use crate::memory;
 use crate::quote;
 use crate::solve::{Method, Settings};
@@ -63,8 +64,11 @@ pub struct Case {
     pub materials: Vec<MaterialEcho>,
     /// The units of the case, if it names them.
     pub units: Option<Units>,
-    /// The thickness of the body across the plane, if the case gives it.
+    /// The thickness of the body across the plane, if the case gives it; 1 for a body of revolution, whose results are those of the
+    /// whole of it.
     pub thickness: Option<f64>,
+    /// The number of vertices of a body of revolution that were next to its axis and have been moved onto it.
+    pub snapped: usize,
     /// The amount by which the picture magnifies displacement and gap, if the case says so.
     pub stretch: Option<f64>,
     /// The exact solution, if there is one.
@@ -246,14 +250,19 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
     let method = root.optional_section("method", read_method)?.unwrap_or_default();
     let settings = root.optional_section("solver", read_settings)?.unwrap_or_default();
     let units = root.optional_section("units", read_units)?;
-    let thickness = root.optional_section("body", read_thickness)?;
     let folder = file.parent().unwrap_or(Path::new(""));
     let declared = pairs::read_pairs(root)?;
     let Meshed { mesh, structured, perturbation, file: mesh_file, remarks } =
         read_mesh(root, given, folder, &pairs::of_boundaries(&declared))?;
-    let mesh = pairs::split(mesh, &declared)?;
+    let mut mesh = pairs::split(mesh, &declared)?;
     let table = root.required_section("material", &format!("{} in it", body::EXPECTED))?;
-    let (material, materials) = read_materials(&table, &mesh)?;
+    let body = root.section("body")?;
+    let plane = body.as_ref().map(read_plane_of_body).transpose()?.flatten();
+    let (material, materials) = read_materials(&table, &mesh, plane)?;
+    let of_revolution = material.are_of_revolution();
+    let thickness = body.as_ref().map(|body| read_thickness(body, of_revolution)).transpose()?;
+    let thickness = if of_revolution { Some(1.0) } else { thickness.flatten() };
+    let snapped = if of_revolution { mesh.snap_to_axis() } else { 0 };
     let solution = root
         .optional_section("exact", |exact| read_exact(exact, only_isotropic(&material, &table)?))?;
     let (body_force, surface_forces) = read_loads(root, solution.as_ref(), &mesh)?;
@@ -261,7 +270,8 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
         return Err(pair.at.found("a pair beside [exact]", "the contact of the exact solution"));
     }
     let pairs = pairs::on_mesh(root, declared, &mesh)?;
-    let (conditions, kinds) = read_boundaries(root, solution.as_ref(), &mesh, thickness, &pairs)?;
+    let depth = if of_revolution { Depth::Revolution } else { Depth::Of(thickness.unwrap_or(1.0)) };
+    let (conditions, kinds) = read_boundaries(root, solution.as_ref(), &mesh, depth, &pairs)?;
     let points = read_points(root, &mesh)?;
     let adapt = root.optional_section("adapt", |table| read_target(table, &conditions))?;
     let asked = root.optional_section("certify", |table| read_quantities(table, &conditions))?;
@@ -274,6 +284,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
         materials,
         units,
         thickness,
+        snapped,
         stretch,
         method,
         settings,
@@ -294,9 +305,24 @@ fn read_units(table: &Table) -> Result<Units, FileError> {
     Ok(Units { length: word("length", "such as \"mm\"")?, force: word("force", "such as \"N\"")? })
 }
 
-fn read_thickness(table: &Table) -> Result<f64, FileError> {
-    table.only(&["thickness"])?;
-    table.require("thickness", "a positive number")?.positive()
+/// The plane that the body is in, as its table says.
+fn read_plane_of_body(table: &Table) -> Result<Option<Plane>, FileError> {
+    table.only(&["thickness", "plane"])?;
+    if table.given(&["thickness", "plane"]).is_empty() {
+        return Err(table.at.found("nothing", "thickness or plane"));
+    }
+    table.optional("plane", |plane| plane.one_of(&PLANES))
+}
+
+/// The thickness of a plane body.
+fn read_thickness(table: &Table, of_revolution: bool) -> Result<Option<f64>, FileError> {
+    match table.get("thickness") {
+        Some(thickness) if of_revolution => Err(thickness.wrong(
+            "no thickness: the results of a body of revolution are those of the whole of it",
+        )),
+        Some(thickness) => Ok(Some(thickness.positive()?)),
+        None => Ok(None),
+    }
 }
 
 /// The probes, and the amount by which the picture magnifies.

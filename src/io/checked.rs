@@ -61,7 +61,10 @@ fn boundaries(case: &Case, lines: &mut Lines) {
     let space = Space::new(mesh, Degree::One);
     // What they cannot say is an error of the case, which is reported as such.
     let loads = loads::resultants(problem, &space).unwrap_or_default();
-    let loads = loads.times(case.thickness.unwrap_or(1.0));
+    let loads = match problem.material.are_of_revolution() {
+        true => loads.of_the_revolution(),
+        false => loads.times(case.thickness.unwrap_or(1.0)),
+    };
     let contact = ContactLine::new(problem, &space).ok();
     let largest = loads.boundaries.values().chain([&loads.body]).flatten();
     let no_force = 1e-10 * largest.fold(0.0, |most: f64, f| most.max(f.abs()));

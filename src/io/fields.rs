@@ -63,6 +63,11 @@ fn solution_vtu(
     if !problem.mesh.surfaces().is_empty() {
         cell_data.push(DataArray::scalars("surface", &surfaces));
     }
+    let of_revolution = problem.material.are_of_revolution();
+    let hoop: Vec<f64> = s.stress.iter().map(|(_, hoop)| *hoop).collect();
+    if of_revolution {
+        cell_data.push(DataArray::scalars("hoop_stress", &hoop));
+    }
     if let Some(indicators) = indicators {
         cell_data.push(DataArray::scalars("error_bound", indicators));
     }
@@ -70,17 +75,22 @@ fn solution_vtu(
     let von_mises: Vec<f64> = nodal.iter().map(|&stress| stresses::von_mises(stress)).collect();
     let (first, second): (Vec<f64>, Vec<f64>) =
         nodal.iter().map(|&stress| stresses::principal_in_plane(stress).into()).unzip();
+    let nodal_hoop: Vec<f64> = nodal.iter().map(|stress| stress[2]).collect();
+    let mut point_data = vec![
+        DataArray::vectors("displacement", &s.displacement),
+        DataArray::symmetric_tensors("nodal_stress", &nodal),
+        DataArray::scalars("nodal_von_mises", &von_mises),
+        DataArray::scalars("principal_1", &first),
+        DataArray::scalars("principal_2", &second),
+    ];
+    if of_revolution {
+        point_data.push(DataArray::scalars("nodal_hoop_stress", &nodal_hoop));
+    }
     vtu(&Grid {
         kind: CellKind::Triangle(s.degree),
         points: &s.nodes,
         connectivity: &s.elements,
-        point_data: &[
-            DataArray::vectors("displacement", &s.displacement),
-            DataArray::symmetric_tensors("nodal_stress", &nodal),
-            DataArray::scalars("nodal_von_mises", &von_mises),
-            DataArray::scalars("principal_1", &first),
-            DataArray::scalars("principal_2", &second),
-        ],
+        point_data: &point_data,
         cell_data: &cell_data,
     })
 }

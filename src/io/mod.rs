@@ -43,6 +43,8 @@ mod report;
 #[doc(hidden)]
 pub mod result;
 #[cfg(feature = "files")]
+mod revolution;
+#[cfg(feature = "files")]
 #[doc(hidden)]
 pub mod run;
 #[cfg(feature = "files")]

@@ -16,6 +16,7 @@ use super::result::{
     Adaptation, Certificates, Choices, ContinuousCertificate, DiscreteCertificate, GammaChoice,
     MeshSizes, NewtonHistory, Results, SCHEMA, Seconds, StressPeak, StressPeaks, result_json,
 };
+use super::revolution;
 use super::run::Solved;
 use super::vtu::{CellKind, DataArray, Grid, vtu};
 use crate::certify::Continuous;
@@ -191,6 +192,7 @@ pub fn results(
     let words = Words { known_force, ..case.words() };
     let mut remarks: Vec<String> = case.remarks.clone();
     remarks.extend(self::remarks(&case.problem, solution, &words));
+    remarks.extend(revolution::remark(case));
     let errors = errors.filter(Errors::is_finite);
     if case.exact.is_some() && errors.is_none() {
         remarks.push(NO_ERRORS.to_owned());
@@ -276,5 +278,7 @@ fn stress_peaks(case: &Case, solution: &Solution) -> Option<StressPeaks> {
         von_mises: peak(largest.von_mises),
         principal_max: peak(largest.principal_max),
         principal_min: peak(largest.principal_min),
+        hoop_max: largest.hoop.map(|[most, _]| peak(most)),
+        hoop_min: largest.hoop.map(|[_, least]| peak(least)),
     })
 }

@@ -52,6 +52,8 @@ fn picture(scene: &Scene) -> Result<String, NotFinite> {
     let lines = ContactLine::all(scene, factor);
     let drawn = scene.points.iter().chain(&deformed).copied();
     let around = lines.iter().flat_map(|line| line.tip.iter().chain(line.wall.iter().flatten()));
+    let halves: &[f64] = if scene.of_revolution { &[1.0, -1.0] } else { &[1.0] };
+    let drawn = drawn.flat_map(|[x, y]| halves.iter().map(move |side| [side * x, y]));
     let frame = PageMap::around(drawn.chain(around.copied()), [MARGIN, HEADER]);
     check_finite("page", [frame.page([0.0; 2]).as_slice(), &[frame.width, frame.height]])?;
     let deformed: Vec<Point> = deformed.into_iter().map(|p| frame.page(p)).collect();
@@ -62,6 +64,9 @@ fn picture(scene: &Scene) -> Result<String, NotFinite> {
     let width = frame.width + GAP + BAR;
     let mut entries: Vec<(Option<Group>, &str)> =
         vec![(Some(sample(GREY, 1.2).set("stroke-dasharray", "6 4")), "undeformed")];
+    if scene.of_revolution {
+        entries.push((Some(sample(DARK, 1.0).set("stroke-dasharray", "14 4 3 4")), "axis"));
+    }
     if !scene.interfaces.is_empty() {
         entries.push((Some(sample(DARK, 1.0)), "border of two materials"));
     }
@@ -101,7 +106,11 @@ fn picture(scene: &Scene) -> Result<String, NotFinite> {
     let unit = scene.units.as_ref().map(|[stress, _]| &**stress);
     let mut document = page(size.map(f64::round), &scene.title)
         .add(definitions(scene, &deformed))
-        .add(headline(scene, width))
+        .add(headline(scene, width));
+    if scene.of_revolution {
+        document.append(other_half(scene, &deformed, (&frame, &colours)));
+    }
+    let mut document = document
         .add(body(scene, &deformed, &colours))
         .add(outlines(scene, &deformed, &frame))
         .add(colour_bar(&colours, unit, [MARGIN + frame.width + GAP, HEADER], frame.height));
@@ -157,6 +166,20 @@ fn pointed(colour: &str) -> Group {
     let mut path = PathData::default();
     arrow(SAMPLE[0], SAMPLE[1], &mut path);
     Group::new().add(stroke(path, colour, 1.6))
+}
+
+/// The mirror image of a body of revolution, paler, and the axis between the two.
+fn other_half(scene: &Scene, deformed: &[Point], (frame, colours): (&PageMap, &Colours)) -> Group {
+    let [axis, _] = frame.page([0.0; 2]);
+    let mirrored = Group::new()
+        .set("transform", format!("translate({} 0) scale(-1 1)", draw::rounded(2.0 * axis)))
+        .set("opacity", 0.4)
+        .add(body(scene, deformed, colours))
+        .add(outlines(scene, deformed, frame));
+    let mut line = PathData::default();
+    line.line([[axis, HEADER - 6.0], [axis, HEADER + frame.height + 6.0]]);
+    let line = stroke(line, DARK, 1.0).set("stroke-dasharray", "14 4 3 4");
+    Group::new().add(mirrored).add(line)
 }
 
 /// The sample of a line.
@@ -222,6 +245,7 @@ mod tests {
             supports: Vec::new(),
             loads: Vec::new(),
             most_stressed: None,
+            of_revolution: false,
             displacement,
         }
     }
@@ -327,8 +351,9 @@ mod tests {
             "arc length along the boundary (mm)",
             "border of two materials",
         ];
-        let changes: [(Edit, &[&str], &[&str]); 9] = [
-            (|_| {}, whole, &["border of two materials"]),
+        let changes: [(Edit, &[&str], &[&str]); 10] = [
+            (|_| {}, whole, &["border of two materials", "axis"]),
+            (|s| s.of_revolution = true, &["axis", "floor: contact pressure"], &[]),
             (
                 |s| {
                     s.units = Some(["MPa", "mm"].map(str::to_owned));

@@ -141,6 +141,10 @@ pub struct StressPeaks {
     pub von_mises: StressPeak,
     pub principal_max: StressPeak,
     pub principal_min: StressPeak,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hoop_max: Option<StressPeak>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hoop_min: Option<StressPeak>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

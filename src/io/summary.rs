@@ -244,6 +244,9 @@ fn stress(r: &Results, shown: &QuantityFormat, lines: &mut Lines) {
     lines.line("stress", format!("von Mises up to {}", value(&stress.von_mises)));
     let [low, high] = [&stress.principal_min, &stress.principal_max].map(value);
     lines.line("", format!("principal from {low} to {high}"));
+    if let (Some(low), Some(high)) = (&stress.hoop_min, &stress.hoop_max) {
+        lines.line("", format!("hoop from {} to {}", value(low), value(high)));
+    }
 }
 
 fn reactions(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines) {

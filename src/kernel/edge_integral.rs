@@ -11,7 +11,12 @@
 //! **Exact**: the edge is cut at the roots of P, so there is no quadrature error at all: in closed form for P1, whose
 //! positive part lives on one interval; with three Gauss points on each of at most two intervals for P2 (degree 4).
 //! **Gauss**: the points of a rule on the whole edge, \[.\]+ at each.
+//!
+//! In a body of revolution the integrals but the measure have the weight r, affine along the edge: one degree more, for which the same
+//! cuts and points are exact.
 
+#[cfg(not(kani))]
+use super::axial::edge_mass;
 use super::contact_edge::integral_of_product;
 use super::{Element, P1, P2, Scalar, positive_part, positive_part_slope};
 
@@ -40,8 +45,20 @@ impl<S: Scalar, const M: usize> EdgeIntegrals<S, M> {
 
     /// Adds a point of a rule: weight, the value and slope of \[.\]+ there, and the shape functions.
     fn add(&mut self, weight: S, positive: S, slope: S, shapes: [S; M]) {
-        self.energy += weight * positive * positive / S::from(2);
         self.active += weight * slope;
+        self.add_weighted(weight, positive, slope, shapes);
+    }
+
+    /// Adds a point where r is `radius`.
+    #[cfg(not(kani))]
+    fn add_in_revolution(&mut self, weight: S, radius: S, positive: S, slope: S, shapes: [S; M]) {
+        self.active += weight * slope;
+        self.add_weighted(weight * radius, positive, slope, shapes);
+    }
+
+    /// Adds a point to the integrals with a weight.
+    fn add_weighted(&mut self, weight: S, positive: S, slope: S, shapes: [S; M]) {
+        self.energy += weight * positive * positive / S::from(2);
         for a in 0..M {
             self.gradient[a] += weight * positive * shapes[a];
             for b in 0..M {
@@ -66,6 +83,10 @@ where
 pub trait ExactEdge<S, const N: usize, const M: usize>: Element<N, M> {
     /// The integrals without quadrature error. A NaN in `p` makes them NaN.
     fn exact(p: [S; M]) -> EdgeIntegrals<S, M>;
+
+    /// The same with the weight r, which has the values `radii` at the two ends.
+    #[cfg(not(kani))]
+    fn exact_in_revolution(p: [S; M], radii: [S; 2]) -> EdgeIntegrals<S, M>;
 }
 
 /// The interval of \[0, 1\] on which the affine function with the values `p` at 0 and 1 is positive, as its two ends;
@@ -95,30 +116,94 @@ impl<S: Scalar> ExactEdge<S, 3, 2> for P1 {
             active: length,
         }
     }
+
+    #[cfg(not(kani))]
+    fn exact_in_revolution(p: [S; 2], radii: [S; 2]) -> EdgeIntegrals<S, 2> {
+        let [start, end] = positive_interval(p);
+        let length = end - start;
+        let positive = p.map(positive_part);
+        let at_start: [S; 2] = P1::edge_values(start);
+        let at_end: [S; 2] = P1::edge_values(end);
+        let shapes = [0, 1].map(|a| [at_start[a], at_end[a]]);
+        let radius = [at_start, at_end].map(|at| radii[0] * at[0] + radii[1] * at[1]);
+        let integral = |f, g| length * weighted_product(radius, f, g);
+        EdgeIntegrals {
+            energy: integral(positive, positive) / S::from(2),
+            gradient: shapes.map(|n| integral(positive, n)),
+            hessian: shapes.map(|m| shapes.map(|n| integral(m, n))),
+            active: length,
+        }
+    }
+}
+
+/// int_0^1 r f g for three affine functions given by their values at 0 and 1.
+#[cfg(not(kani))]
+pub fn weighted_product<S: Scalar>(r: [S; 2], f: [S; 2], g: [S; 2]) -> S {
+    let [[start, across], [_, end]] = edge_mass(r);
+    f[0] * (start * g[0] + across * g[1]) + f[1] * (across * g[0] + end * g[1])
 }
 
 impl ExactEdge<f64, 6, 3> for P2 {
     fn exact(p: [f64; 3]) -> EdgeIntegrals<f64, 3> {
         let mut sum = EdgeIntegrals::of(0.0);
-        let mut cuts = Cuts::new();
-        cuts.add_roots::<P2, 6, 3>(p);
-        for [start, end] in cuts.pieces() {
-            // By the sign of Simpson's sum, which is the integral of P: the value in the middle alone would take
-            // (s - 1/2)^2 for zero. A NaN is not <= 0: the piece counts as positive and the integrals become NaN.
-            let [first, middle, last] =
-                [start, (start + end) / 2.0, end].map(|s| value_at::<P2, f64, 6, 3>(p, s));
-            if !(first + 4.0 * middle + last <= 0.0) {
-                for (s, weight) in gauss3(start, end) {
-                    let shapes = P2::edge_values(s);
-                    // Inside a positive piece P itself is integrated: a rounding error of its sign near the ends of
-                    // the piece must not cut it again.
-                    let value = value_at::<P2, f64, 6, 3>(p, s);
-                    sum.add(weight, value, 1.0, shapes);
-                }
-            }
-        }
+        each_positive_point(p, |s, weight| {
+            // Inside a positive piece P itself is integrated: a rounding error of its sign near the ends of the piece must not cut
+            // it again.
+            sum.add(weight, value_at::<P2, f64, 6, 3>(p, s), 1.0, P2::edge_values(s));
+        });
         sum
     }
+
+    #[cfg(not(kani))]
+    fn exact_in_revolution(p: [f64; 3], radii: [f64; 2]) -> EdgeIntegrals<f64, 3> {
+        let mut sum = EdgeIntegrals::of(0.0);
+        each_positive_point(p, |s, weight| {
+            let value = value_at::<P2, f64, 6, 3>(p, s);
+            sum.add_in_revolution(weight, radius(radii, s), value, 1.0, P2::edge_values(s));
+        });
+        sum
+    }
+}
+
+/// Calls `add` with the points and weights of Gauss's rule on the pieces where P is positive.
+fn each_positive_point(p: [f64; 3], mut add: impl FnMut(f64, f64)) {
+    let mut cuts = Cuts::new();
+    cuts.add_roots::<P2, 6, 3>(p);
+    for [start, end] in cuts.pieces() {
+        // By the sign of Simpson's sum, which is the integral of P: the value in the middle alone would take
+        // (s - 1/2)^2 for zero. A NaN is not <= 0: the piece counts as positive and the integrals become NaN.
+        let [first, middle, last] =
+            [start, (start + end) / 2.0, end].map(|s| value_at::<P2, f64, 6, 3>(p, s));
+        if !(first + 4.0 * middle + last <= 0.0) {
+            gauss3(start, end).into_iter().for_each(|(s, weight)| add(s, weight));
+        }
+    }
+}
+
+/// r at `s` from its values at the two ends.
+#[cfg(not(kani))]
+pub fn radius<S: Scalar>(radii: [S; 2], s: S) -> S {
+    radii[0] * (S::from(1) - s) + radii[1] * s
+}
+
+/// [`gauss`] with the weight r, which has the values `radii` at the two ends.
+#[cfg(not(kani))]
+pub fn gauss_in_revolution<E, S, const N: usize, const M: usize>(
+    p: [S; M],
+    radii: [S; 2],
+    rule: impl IntoIterator<Item = (S, S)>,
+) -> EdgeIntegrals<S, M>
+where
+    E: Element<N, M>,
+    S: Scalar,
+{
+    let mut sum = EdgeIntegrals::of(S::from(0));
+    for (s, weight) in rule {
+        let value = value_at::<E, S, N, M>(p, s);
+        let (positive, slope) = (positive_part(value), positive_part_slope(value));
+        sum.add_in_revolution(weight, radius(radii, s), positive, slope, E::edge_values(s));
+    }
+    sum
 }
 
 /// The integrals by a rule on the whole edge: `rule` yields points in \[0, 1\] with their weights.
@@ -152,6 +237,25 @@ where
     EdgeIntegrals { energy, gradient, hessian, active: S::from(1) }
 }
 
+/// [`bilateral`] with the weight r, which has the values `radii` at the two ends: by Boole's rule, which is exact for it.
+#[cfg(not(kani))]
+pub fn bilateral_in_revolution<E, S, const N: usize, const M: usize>(
+    p: [S; M],
+    radii: [S; 2],
+) -> EdgeIntegrals<S, M>
+where
+    E: Element<N, M>,
+    S: Scalar,
+{
+    let mut sum = EdgeIntegrals::of(S::from(0));
+    for (i, weight) in [(0, 7), (1, 32), (2, 12), (3, 32), (4, 7)] {
+        let (s, weight) = (S::from(i) / S::from(4), S::from(weight) / S::from(90));
+        let value = value_at::<E, S, N, M>(p, s);
+        sum.add_in_revolution(weight, radius(radii, s), value, S::from(1), E::edge_values(s));
+    }
+    sum
+}
+
 /// int N_a N_b over \[0, 1\].
 fn mass<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(a: usize, b: usize) -> S {
     let (same, ends) = (a == b, a < 2 && b < 2);
@@ -182,10 +286,35 @@ pub fn exact_bregman<E, const N: usize, const M: usize>(p: [f64; M], q: [f64; M]
 where
     E: Element<N, M>,
 {
+    exact_bregman_with::<E, N, M>(p, q, |_, weight| weight)
+}
+
+/// [`exact_bregman`] with the weight r, which has the values `radii` at the two ends.
+#[cfg(not(kani))]
+pub fn exact_bregman_in_revolution<E, const N: usize, const M: usize>(
+    p: [f64; M],
+    q: [f64; M],
+    radii: [f64; 2],
+) -> f64
+where
+    E: Element<N, M>,
+{
+    exact_bregman_with::<E, N, M>(p, q, |s, weight| weight * radius(radii, s))
+}
+
+fn exact_bregman_with<E, const N: usize, const M: usize>(
+    p: [f64; M],
+    q: [f64; M],
+    weight: impl Fn(f64, f64) -> f64,
+) -> f64
+where
+    E: Element<N, M>,
+{
     let mut cuts = Cuts::new();
     cuts.add_roots::<E, N, M>(p);
     cuts.add_roots::<E, N, M>(q);
-    cuts.pieces().map(|[start, end]| gauss_bregman::<E, f64, N, M>(p, q, gauss3(start, end))).sum()
+    let rule = |[start, end]: [f64; 2]| gauss3(start, end).map(|(s, w)| (s, weight(s, w)));
+    cuts.pieces().map(|piece| gauss_bregman::<E, f64, N, M>(p, q, rule(piece))).sum()
 }
 
 /// The integral by a Gauss rule on the whole edge.
@@ -444,6 +573,53 @@ mod tests {
         assert_eq!(maximum::<P1, 3, 2>([2.0, -1.0]), 2.0);
         assert!(maximum::<P1, 3, 2>([f64::NAN, -1.0]).is_nan());
         assert!(maximum::<P1, 3, 2>([-1.0, f64::NAN]).is_nan());
+    }
+
+    /// A polynomial of degree p with the weight r is one of degree p + 1 without: by the fine rule, whose own error is that of the
+    /// tests above.
+    #[test]
+    fn with_the_weight_r_the_integrals_agree_with_a_fine_rule_and_without_it_they_do_not() {
+        for radii in [[0.0, 1.0], [2.0, 0.5], [1.0, 1.0]] {
+            for p in [[1.0, -2.0], [-1.0, 3.0], [2.0, 0.5]] {
+                let rule = gauss_in_revolution::<P1, f64, 3, 2>(p, radii, fine());
+                let exact = P1::exact_in_revolution(p, radii);
+                close(&exact, &rule, 3e-4);
+                assert_abs_diff_eq!(exact.energy, rule.energy, epsilon = 1e-8);
+                let without = P1::exact(p);
+                let same = (without.energy - rule.energy).abs() < 1e-3;
+                assert_eq!(same, radii == [1.0, 1.0], "{p:?} {radii:?}");
+            }
+            for p in [[1.0, -2.0, 0.3], [1.0, 1.0, -1.0], [2.0, 0.5, 1.0]] {
+                let rule = gauss_in_revolution::<P2, f64, 6, 3>(p, radii, fine());
+                let exact = P2::exact_in_revolution(p, radii);
+                close(&exact, &rule, 5e-4);
+                assert_abs_diff_eq!(exact.energy, rule.energy, epsilon = 1e-8);
+                let step = p.map(|p| p + 0.7);
+                let by_rule = gauss_bregman::<P2, f64, 6, 3>(
+                    p,
+                    step,
+                    fine().map(|(s, w)| (s, w * radius(radii, s))),
+                );
+                let bregman = exact_bregman_in_revolution::<P2, 6, 3>(p, step, radii);
+                assert_abs_diff_eq!(bregman, by_rule, epsilon = 1e-7);
+            }
+        }
+    }
+
+    /// docs/theory.md, 11.3, with P = 1 - 3 s and r = 2 + s: tau = 1/3.
+    #[test]
+    fn a_cut_p1_edge_of_revolution_by_hand() {
+        let e = P1::exact_in_revolution([1.0, -2.0], [2.0, 3.0]);
+        let (tau, r, d): (f64, f64, f64) = (1.0 / 3.0, 2.0, 1.0);
+        let energy = (r * tau / 3.0 + d * tau * tau / 12.0) / 2.0;
+        let first = r * tau * tau / 6.0 + d * tau.powi(3) / 12.0;
+        assert_abs_diff_eq!(e.energy, energy, epsilon = 3.0 * ROUNDING);
+        assert_abs_diff_eq!(e.gradient[1], first, epsilon = ROUNDING);
+        let both = r * tau / 2.0 + d * tau * tau / 6.0;
+        assert_abs_diff_eq!(e.gradient[0] + e.gradient[1], both, epsilon = 3.0 * ROUNDING);
+        let h = r * tau.powi(3) / 3.0 + d * tau.powi(4) / 4.0;
+        assert_abs_diff_eq!(e.hessian[1][1], h, epsilon = ROUNDING);
+        assert_abs_diff_eq!(e.active, tau, epsilon = ROUNDING);
     }
 
     #[test]

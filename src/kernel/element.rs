@@ -23,6 +23,9 @@ pub trait Element<const N: usize, const M: usize> {
     /// p (p + 1) / 2. It makes (11) explicit.
     const TRACE_CONSTANT: i32;
 
+    /// The number of points of [`Element::at_stiffness_points`]: the values there determine a polynomial of degree p - 1.
+    const POINTS: usize;
+
     /// The shape functions at the barycentric coordinates `l`.
     fn values<S: Scalar>(l: [S; 3]) -> [S; N];
 
@@ -57,6 +60,7 @@ pub struct P2;
 impl Element<3, 2> for P1 {
     const DEGREE: usize = 1;
     const TRACE_CONSTANT: i32 = 1;
+    const POINTS: usize = 1;
 
     fn values<S: Scalar>(l: [S; 3]) -> [S; 3] {
         l
@@ -90,6 +94,7 @@ impl Element<3, 2> for P1 {
 impl Element<6, 3> for P2 {
     const DEGREE: usize = 2;
     const TRACE_CONSTANT: i32 = 3;
+    const POINTS: usize = 3;
 
     fn values<S: Scalar>(l: [S; 3]) -> [S; 6] {
         let (one, two, four) = (S::from(1), S::from(2), S::from(4));

@@ -18,12 +18,15 @@
 //! | [`law`] | (5) as an equation for contact, and for interfaces that also pull |
 //! | [`contact_edge`] | P_gamma and sigma_n as functionals on one edge of Gamma_C |
 //! | [`edge_integral`] | the integrals over one edge in (8) and in J_h |
+//! | [`axial`] | not in the paper: the weight r and the hoop strain of bodies of revolution |
 //! | [`squares`] | not in the paper: the energies of a strain and of a stress as sums of squares |
 //! | [`composite`] | not in the paper: stresses in equilibrium, for certificates |
 //! | [`ball`] | not in the paper: numbers with their rounding enclosed |
 //! | [`double_double`] | not in the paper: numbers of twice the precision |
 //! | [`enclosing`] | not in the paper: what may be concluded from these |
 
+#[cfg(not(kani))]
+pub mod axial;
 pub mod ball;
 #[cfg(not(kani))]
 pub mod composite;

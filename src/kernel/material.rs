@@ -6,6 +6,13 @@
 //!
 //! and, with numbers of its own, the isotropic sigma = lambda tr(eps) I + 2 mu eps.
 //!
+//! In a body of revolution x is the radius r, y the axis z, and the third stress is the hoop stress: with a hoop strain h
+//!
+//! sigma = C (eps + a h),   sigma_hh = a . sigma + e h,
+//!
+//! where C is the law of plane strain, a the factors of its stress across the plane, and e Young's modulus along the hoop. The energy is
+//! that of eps + a h, and e h^2.
+//!
 //! Plane stress has the isotropic form with lambda* = 2 lambda mu / (lambda + 2 mu) in place of lambda, so a [`Material`]
 //! holds what acts in the plane and remembers which of the two it is. The isotropic law, and what follows for
 //! sigma_n, is written for D dimensions; a tensor is that of a plane, and looks at the first two coordinates only.
@@ -17,14 +24,18 @@ use nalgebra::{Matrix2, SMatrix, SVector};
 use super::Scalar;
 #[cfg(not(kani))]
 use super::squares::Squares;
+#[cfg(not(kani))]
+use super::triangle::Triangle;
 
-/// Plane strain (no strain across the plane) or plane stress (no stress across it).
+/// Plane strain (no strain across the plane), plane stress (no stress across it), or the meridian of a body of revolution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plane {
     /// eps_zz = 0
     Strain,
     /// sigma_zz = 0
     Stress,
+    /// x is the distance r from the axis, y the place z along it; the strain across the plane is the hoop strain.
+    Axisymmetric,
 }
 
 /// A material acting in the plane. All coefficients have the unit of a stress.
@@ -46,6 +57,8 @@ enum Law<S> {
         c: [S; 6],
         /// The factors of sigma_xx, sigma_yy and sigma_xy in sigma_zz.
         across: [S; 3],
+        /// Young's modulus across the plane, of a body of revolution; else 0.
+        hoop: S,
     },
 }
 
@@ -58,7 +71,7 @@ impl<S: Scalar> Material<S> {
     pub fn lame(lambda: S, mu: S, plane: Plane) -> Self {
         let two = S::from(2);
         let lambda = match plane {
-            Plane::Strain => lambda,
+            Plane::Strain | Plane::Axisymmetric => lambda,
             Plane::Stress => two * lambda * mu / (lambda + two * mu),
         };
         Material { law: Law::Isotropic { lambda, mu }, plane }
@@ -77,7 +90,19 @@ impl<S: Scalar> Material<S> {
     pub fn tensor(c: [S; 6], across: Option<[S; 3]>) -> Self {
         let plane = if across.is_some() { Plane::Strain } else { Plane::Stress };
         let across = across.unwrap_or([S::from(0); 3]);
-        Material { law: Law::Tensor { c, across }, plane }
+        Material { law: Law::Tensor { c, across, hoop: S::from(0) }, plane }
+    }
+
+    /// The material of a body of revolution that acts in its meridian as this one does in plane strain, with Young's modulus `hoop`
+    /// along the hoops. An isotropic material has it from lambda and mu.
+    #[cfg(not(kani))]
+    #[must_use]
+    pub fn of_revolution(self, hoop: S) -> Self {
+        let law = match self.law {
+            Law::Tensor { c, across, .. } => Law::Tensor { c, across, hoop },
+            isotropic => isotropic,
+        };
+        Material { law, plane: Plane::Axisymmetric }
     }
 
     /// Converts the material to another number type.
@@ -85,7 +110,9 @@ impl<S: Scalar> Material<S> {
     pub fn map<T>(&self, f: impl Fn(S) -> T) -> Material<T> {
         let law = match self.law {
             Law::Isotropic { lambda, mu } => Law::Isotropic { lambda: f(lambda), mu: f(mu) },
-            Law::Tensor { c, across } => Law::Tensor { c: c.map(&f), across: across.map(&f) },
+            Law::Tensor { c, across, hoop } => {
+                Law::Tensor { c: c.map(&f), across: across.map(&f), hoop: f(hoop) }
+            }
         };
         Material { law, plane: self.plane }
     }
@@ -104,7 +131,7 @@ impl<S: Scalar> Material<S> {
     #[cfg(not(kani))]
     #[must_use]
     pub fn turned(&self, [cosine, sine]: [S; 2]) -> Self {
-        let Law::Tensor { across, .. } = self.law else { return *self };
+        let Law::Tensor { across, hoop, .. } = self.law else { return *self };
         let axes = [[cosine, sine], [-sine, cosine]];
         // Entry (k, l) of a matrix in the axes of the material; and back.
         let inward = |m: Matrix2<S>, [k, l]: [usize; 2]| {
@@ -129,6 +156,7 @@ impl<S: Scalar> Material<S> {
         let law = Law::Tensor {
             c: [xx, yx, zx, yy, zy, zz],
             across: [across[0], across[1], two * across[2]],
+            hoop,
         };
         Material { law, plane: self.plane }
     }
@@ -139,9 +167,27 @@ impl<S: Scalar> Material<S> {
             Law::Isotropic { lambda, mu } => {
                 Law::Isotropic { lambda: factor * lambda, mu: factor * mu }
             }
-            Law::Tensor { c, across } => Law::Tensor { c: c.map(|c| factor * c), across },
+            Law::Tensor { c, across, hoop } => {
+                Law::Tensor { c: c.map(|c| factor * c), across, hoop: factor * hoop }
+            }
         };
         Material { law, plane: self.plane }
+    }
+
+    /// The factors of sigma_xx, sigma_yy and sigma_xy in the stress across the plane, without a hoop strain: nu, nu and 0 where A is
+    /// isotropic.
+    #[cfg(not(kani))]
+    pub fn across(&self) -> [S; 3] {
+        [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map(|unit| self.stress_zz(Stress::new(unit.map(S::from))))
+    }
+
+    /// Young's modulus along the hoops of a body of revolution whose law is not isotropic.
+    #[cfg(not(kani))]
+    pub fn hoop_modulus(&self) -> Option<S> {
+        match self.law {
+            Law::Tensor { hoop, .. } if self.plane == Plane::Axisymmetric => Some(hoop),
+            _ => None,
+        }
     }
 
     /// Returns whether the law is given by lambda and mu.
@@ -183,10 +229,17 @@ impl<S: Scalar> Material<S> {
         }
     }
 
-    /// Plane strain or plane stress.
+    /// Plane strain, plane stress, or a body of revolution.
     #[cfg(not(kani))]
     pub fn plane(&self) -> Plane {
         self.plane
+    }
+
+    /// r at the corners of a triangle of the meridian, if the material is that of a body of revolution: the weight there is r, in the
+    /// plane 1.
+    #[cfg(not(kani))]
+    pub fn radii<T: Scalar>(&self, triangle: &Triangle<T>) -> Option<[T; 3]> {
+        (self.plane == Plane::Axisymmetric).then(|| triangle.vertices.map(|x| x[0]))
     }
 
     /// A_nnnn for a unit vector n: the constant of sigma_n(v)^2 <= A_nnnn sigma(v):eps(v), attained by a strain along n only.
@@ -238,18 +291,43 @@ impl<S: Scalar> Material<S> {
     }
 
     /// sigma_zz that goes with a stress in the plane: where A is isotropic, lambda tr(eps) = nu (sigma_xx + sigma_yy) in plane
-    /// strain, and 0 in plane stress.
+    /// strain, and 0 in plane stress. In a body of revolution, that of a stress without a hoop strain.
     pub fn stress_zz(&self, stress: Stress<S>) -> S {
         let [xx, yy, xy] = stress.components();
         match (self.law, self.plane) {
             (_, Plane::Stress) => S::from(0),
-            (Law::Isotropic { lambda, mu }, Plane::Strain) => {
-                lambda / (S::from(2) * (lambda + mu)) * (xx + yy)
+            (Law::Isotropic { lambda, mu }, _) => lambda / (S::from(2) * (lambda + mu)) * (xx + yy),
+            (Law::Tensor { across, .. }, _) => across[0] * xx + across[1] * yy + across[2] * xy,
+        }
+    }
+
+    /// The stress in the meridian of a body of revolution and the hoop stress, for a displacement gradient there and a hoop strain.
+    #[cfg(not(kani))]
+    pub fn stress_of_revolution(&self, gradient: Matrix2<S>, hoop: S) -> (Stress<S>, S) {
+        match self.law {
+            Law::Isotropic { lambda, mu } => {
+                let two_mu = S::from(2) * mu;
+                let trace = lambda * (gradient.m11 + gradient.m22 + hoop);
+                let shear = mu * (gradient.m12 + gradient.m21);
+                let [rr, zz] = [gradient.m11, gradient.m22].map(|strain| trace + two_mu * strain);
+                (Stress::new([rr, zz, shear]), trace + two_mu * hoop)
             }
-            (Law::Tensor { across, .. }, Plane::Strain) => {
-                across[0] * xx + across[1] * yy + across[2] * xy
+            Law::Tensor { across, hoop: young, .. } => {
+                let [a, b, c] = across.map(|factor| factor * hoop);
+                let stress = self.stress(gradient + Matrix2::new(a, c, S::from(0), b));
+                (stress, self.stress_zz(stress) + young * hoop)
             }
         }
+    }
+
+    /// The stress in the plane and the one across it: `hoop` is the hoop strain of a body of revolution, and of no use in others.
+    #[cfg(not(kani))]
+    pub fn state(&self, gradient: Matrix2<S>, hoop: S) -> (Stress<S>, S) {
+        if self.plane == Plane::Axisymmetric {
+            return self.stress_of_revolution(gradient, hoop);
+        }
+        let stress = self.stress(gradient);
+        (stress, self.stress_zz(stress))
     }
 
     /// The energies of a strain and of a stress as sums of squares.
@@ -263,10 +341,7 @@ impl<S: Scalar> Material<S> {
 
     /// The square of the von Mises stress, sigma_zz included.
     pub fn von_mises_squared(&self, stress: Stress<S>) -> S {
-        let [xx, yy, xy] = stress.components();
-        let zz = self.stress_zz(stress);
-        let (a, b, c) = (xx - yy, yy - zz, zz - xx);
-        (a * a + b * b + c * c) / S::from(2) + S::from(3) * xy * xy
+        stress.von_mises_squared(self.stress_zz(stress))
     }
 
     /// The linear functional sigma_n of one shape function: with v = N w for a vector w and `gradient` = grad N at a point,
@@ -396,6 +471,13 @@ impl<S: Scalar> Stress<S> {
     /// sigma_xx, sigma_yy, sigma_xy
     pub fn components(&self) -> [S; 3] {
         [self.0[(0, 0)], self.0[(1, 1)], self.0[(0, 1)]]
+    }
+
+    /// The square of the von Mises stress with the stress `zz` across the plane.
+    pub fn von_mises_squared(&self, zz: S) -> S {
+        let [xx, yy, xy] = self.components();
+        let (a, b, c) = (xx - yy, yy - zz, zz - xx);
+        (a * a + b * b + c * c) / S::from(2) + S::from(3) * xy * xy
     }
 }
 

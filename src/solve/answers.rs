@@ -32,6 +32,7 @@ use crate::fem::discretization::Discretization;
 use crate::fem::mesh::{NO_ANGLE, length};
 use crate::fem::{Degree, EdgeRule, Piece};
 use crate::kernel::DoubleDouble;
+use crate::kernel::edge_integral::radius;
 
 /// The quantities of one part of Gamma_C, in the units of the case.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -129,8 +130,9 @@ pub(crate) fn energy_balance(
 pub fn largest_strain(d: &Discretization, u: &[[f64; 2]]) -> (f64, [f64; 2]) {
     let of = |t| {
         let g = d.space.mean_gradient(t, u);
+        let hoop = d.space.mean_hoop_strain(t, d.problem.material.of(t), u).abs();
         let radius = ((g.m11 - g.m22) / 2.0).hypot((g.m12 + g.m21) / 2.0);
-        ((g.m11 + g.m22) / 2.0).abs() + radius
+        (((g.m11 + g.m22) / 2.0).abs() + radius).max(hoop)
     };
     let mesh = d.space.mesh();
     let strains = (0..mesh.triangles().len()).map(|t| (of(t), t));
@@ -148,7 +150,7 @@ pub(crate) fn recovered_pressure(d: &Discretization, p: &[Vec<DoubleDouble>]) ->
         let is_whole = edge.degree == Degree::One || edge.geometry.curved;
         let hats = if is_whole { Hats::Whole } else { Hats::Halves };
         let of_edge = hat_integrals(edge, p, &d.rule, hats);
-        let of_one = hats.integrals();
+        let of_one = hats.integrals(edge.radii);
         for (a, &group) in groups.iter().enumerate() {
             work[group] += edge.weight() * of_edge[a];
             weight[group] += edge.length * of_one[a];
@@ -182,16 +184,20 @@ impl Hats {
         }
     }
 
-    /// Their integrals over the edge, as shares of its length.
-    fn integrals(self) -> [f64; 3] {
-        match self {
-            Hats::Whole => [0.5, 0.5, 0.0],
-            Hats::Halves => [0.25, 0.25, 0.5],
+    /// Their integrals over the edge, as shares of its length; with the weight r where it has these `radii` at the ends.
+    fn integrals(self, radii: Option<[f64; 2]>) -> [f64; 3] {
+        match (self, radii) {
+            (Hats::Whole, None) => [0.5, 0.5, 0.0],
+            (Hats::Halves, None) => [0.25, 0.25, 0.5],
+            (Hats::Whole, Some([a, b])) => [(2.0 * a + b) / 6.0, (a + 2.0 * b) / 6.0, 0.0],
+            (Hats::Halves, Some([a, b])) => {
+                [(5.0 * a + b) / 24.0, (a + 5.0 * b) / 24.0, (a + b) / 4.0]
+            }
         }
     }
 }
 
-/// int_0^1 \[P\]+ phi_a of the first component by the rule of the method.
+/// int_0^1 \[P\]+ phi_a of the first component by the rule of the method, with the weight of the piece.
 fn hat_integrals(piece: &Piece, fine: &[DoubleDouble], rule: &EdgeRule, hats: Hats) -> [f64; 3] {
     let mut sums = [0.0; 3];
     let (degree, fine) = (piece.degree, &fine[..piece.degree.nodes_per_edge()]);
@@ -203,6 +209,7 @@ fn hat_integrals(piece: &Piece, fine: &[DoubleDouble], rule: &EdgeRule, hats: Ha
             EdgeRule::Gauss(_) => degree.value_at(fine, s.into()).head(),
         };
         let value = response.q(value);
+        let weight = piece.radii.map_or(weight, |radii| weight * radius(radii, s));
         let hats = hats.at(s);
         (0..3).for_each(|a| sums[a] += weight * value * hats[a]);
     };
@@ -214,8 +221,15 @@ fn hat_integrals(piece: &Piece, fine: &[DoubleDouble], rule: &EdgeRule, hats: Ha
             cuts.sort_unstable_by(f64::total_cmp);
             for pair in cuts.windows(2) {
                 let [low, high] = [pair[0], pair[1]];
-                // Exact for the cubic that is left on each piece.
+                // Exact for the cubic that is left on each piece, with the weight r for one degree more.
                 let (middle, half) = ((low + high) / 2.0, (high - low) / 2.0);
+                if piece.radii.is_some() {
+                    let offset = 0.6_f64.sqrt() * half;
+                    add(middle - offset, half * (5.0 / 9.0));
+                    add(middle, half * (8.0 / 9.0));
+                    add(middle + offset, half * (5.0 / 9.0));
+                    continue;
+                }
                 let offset = half / 3.0_f64.sqrt();
                 add(middle - offset, half);
                 add(middle + offset, half);

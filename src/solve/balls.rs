@@ -24,6 +24,7 @@ pub fn pieces(d: &Discretization) -> Vec<Piece<PreciseBall>> {
 /// kappa of Theorem 2.3, rounded up. The directions of contact are doubles, unit vectors to a rounding error only.
 pub(super) fn kappa(d: &Discretization, pieces: &[Piece<PreciseBall>]) -> f64 {
     let degree = d.space.degree();
+    let largest = |a: PreciseBall, b: PreciseBall| if a.upper() < b.upper() { b } else { a };
     let mut shares = Vec::new();
     for piece in pieces {
         let geometry = &piece.geometry;
@@ -39,31 +40,34 @@ pub(super) fn kappa(d: &Discretization, pieces: &[Piece<PreciseBall>]) -> f64 {
             } else {
                 (!geometry.turns()).then_some(along[0].into())
             };
+            let (one, doubles) = (PreciseBall::from(1), d.space.mesh().triangle(t));
+            let radii = geometry.radii(i, |edge| {
+                let (t, exact) = (edge.triangle, PreciseBall::from);
+                let triangle = d.space.mesh().triangle(t);
+                d.problem.material.of(t).radii(&triangle).map(|radii| radii.map(exact))
+            });
+            let of_edge = radii.map(|radii| (radii.of_piece, radii.of_triangle));
+            let counted = |turning| degree.counted_length(one, turning, of_edge, PreciseBall::sqrt);
             let factor = if geometry.along_normal {
-                PreciseBall::from(1)
+                counted(None)
             } else {
                 let off = along.iter().map(|&n| (dot(n, n) - PreciseBall::from(1)).magnitude());
                 let off = PreciseBall::from(8.0 * off.fold(0.0, larger));
                 let cosine = dot(along[0], along[1]);
-                let turning = if both && geometry.turns() {
-                    degree.turning_factor_of_both(cosine, PreciseBall::sqrt)
-                } else {
-                    degree.turning_factor(cosine)
-                };
+                let turning = counted(Some((cosine, both && geometry.turns())));
                 turning * (PreciseBall::from(1) + off) + off
             };
-            let factor = chords.map_or(factor, |chords| factor * chords.ratios[i]);
+            let factor = chords.map_or(factor, |chords| factor * chords.share(i, radii, largest));
             let material = d.problem.material.of(t).map(PreciseBall::from);
             let direction = direction.filter(|_| !both);
             let stiffness =
                 traction_stiffness(&material, side.normal, direction, PreciseBall::sqrt);
-            let area = residual::exactly::<PreciseBall>(d.space.mesh().triangle(t)).double_area();
+            let area = residual::exactly::<PreciseBall>(doubles).double_area();
             let (length, area) = (factor * side.length, area / PreciseBall::from(2));
             let value = degree.coercivity_constant(stiffness, side.gamma, length, area);
             shares.push(Share::new(geometry, i, value));
         }
     }
-    let largest = |a: PreciseBall, b: PreciseBall| if a.upper() < b.upper() { b } else { a };
     by_triangle(shares, largest).values().map(|kappa| kappa.upper()).fold(0.0, larger)
 }
 

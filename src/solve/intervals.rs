@@ -210,7 +210,7 @@ impl EnclosedResidual {
                 let force = if i < along { sum[0] + p } else { sum[0] };
                 [force, sum[1] - p * n[0], sum[2] - p * n[1]]
             });
-            let weight = line.weight();
+            let weight = line.whole_weight();
             match contact.iter_mut().find(|(first, ..)| first.is_of_same_boundary(line)) {
                 Some((_, sum, weights)) => {
                     *sum = [0, 1, 2].map(|i| sum[i] + of[i]);
@@ -263,7 +263,7 @@ impl EnclosedResidual {
                 let by_body = self.arithmetic.energy_norm(d, &test);
                 let by_contact = lines.iter().fold(PreciseBall::from(0), |sum, line| {
                     let most = line.p0(&test).iter().fold(0.0, |sum, p| up(sum + p.magnitude()));
-                    sum + line.weight() * PreciseBall::from(most) * PreciseBall::from(most)
+                    sum + line.whole_weight() * PreciseBall::from(most) * PreciseBall::from(most)
                 });
                 let by_contact = root(by_contact);
                 range(reaction.widened(up((rho + self.off) * by_body + pressure * by_contact)))

@@ -10,6 +10,7 @@ use super::system::System;
 use crate::fem::discretization::{Discretization, Functional};
 use crate::fem::residual;
 use crate::fem::solvability::{Play, Slides};
+use crate::fem::stress_points::Nodal;
 use crate::fem::{EdgeRule, Piece};
 use crate::kernel::DoubleDouble;
 
@@ -41,6 +42,22 @@ pub struct Evaluation {
     pub noise: f64,
     /// In double-doubles.
     pub precisely: bool,
+}
+
+/// A displacement in double-doubles.
+struct Parts<'a> {
+    heads: &'a [[f64; 2]],
+    tails: &'a [[f64; 2]],
+}
+
+impl Nodal<f64> for Parts<'_> {
+    fn difference(&self, node: usize, from: usize) -> Vector2<f64> {
+        self.heads.difference(node, from) + self.tails.difference(node, from)
+    }
+
+    fn radial(&self, node: usize) -> f64 {
+        self.heads.radial(node)
+    }
 }
 
 impl Iterate {
@@ -90,13 +107,8 @@ impl Iterate {
             let (linear, energy) = (system.numbering.gather(&forces), d.strain_energy(&heads));
             return Evaluation { forces, linear, p, p_magnitudes, energy, noise, precisely };
         }
-        let difference = |of: &[[f64; 2]], node: usize, from: usize| {
-            Vector2::from(of[node]) - Vector2::from(of[from])
-        };
         let Functional { values: forces, magnitudes, energy } =
-            d.linear_residual_by(|node, from| {
-                difference(&heads, node, from) + difference(&tails, node, from)
-            });
+            d.linear_residual_by(&Parts { heads: &heads, tails: &tails });
         let in_doubles = |piece: &Piece| {
             let with_tails = piece.p(&heads).into_iter().zip(piece.p0(&tails));
             with_tails.map(|(p, of_tail)| DoubleDouble::from(p + of_tail)).collect::<Vec<_>>()

@@ -50,6 +50,7 @@ pub mod stresses;
 #[doc(hidden)]
 pub mod system;
 mod times;
+mod whole;
 
 use self::accuracy::Outcome;
 pub use self::answers::{ContactBoundary, EnergyBalance};

@@ -16,6 +16,7 @@ use crate::fem::piece::Stretch;
 use crate::fem::{Degree, Discretization, EdgeRule, Piece};
 use crate::kernel::Response;
 use crate::kernel::ball::{PreciseBall, up};
+use crate::kernel::edge_integral;
 
 /// A piece is taken for pressed where P is at least this share of the most that it is all along some piece; where that proves
 /// nothing, the next one: with all pieces that are pressed more holds the body, with fewer these stay pressed on a larger ball. With
@@ -28,6 +29,24 @@ const INSET: f64 = 1.0 / 64.0;
 
 /// Covers the rounding of a few sums, products and roots of positive doubles.
 const SAFETY: f64 = 1.001;
+
+/// r at the start and at the end of an edge, in a body of revolution: the weight of its integrals.
+type Radii = Option<[PreciseBall; 2]>;
+
+/// A weight times r at a place of an edge.
+fn weighted(radii: Radii, place: PreciseBall, weight: PreciseBall) -> PreciseBall {
+    radii.map_or(weight, |radii| weight * edge_integral::radius(radii, place))
+}
+
+/// The most that the square of a polynomial with `count` coefficients is on \[0, 1\] whose square has the integral 1 with the weight r:
+/// count^2 over the smaller r; or, as r is at least its larger value times the distance from the other end, count^2 (count + 1)^2 / 2
+/// over that (docs/theory.md, 11.5).
+fn most_in_revolution(count: usize, radii: [PreciseBall; 2]) -> f64 {
+    let [least, most] = [f64::min, f64::max].map(|of| of(radii[0].lower(), radii[1].lower()));
+    let (square, next) = ((count * count) as f64, ((count + 1) * (count + 1)) as f64);
+    let by_least = if least > 0.0 { square / least } else { f64::INFINITY };
+    up(by_least.min(square * next / 2.0 / most))
+}
 
 /// Values at the nodes of an edge, or what is multiplied by them.
 type Row = Vec<PreciseBall>;
@@ -71,13 +90,15 @@ pub struct Pressed {
 
 impl EdgePiece {
     /// The pieces of an edge on which P is positive.
-    fn pressed(degree: Degree, rule: &EdgeRule, p: &Row) -> Vec<Self> {
+    fn pressed(degree: Degree, rule: &EdgeRule, radii: Radii, p: &Row) -> Vec<Self> {
         let EdgeRule::Gauss(points) = rule else {
-            return Self::between_roots(degree, p);
+            return Self::between_roots(degree, radii, p);
         };
         let at = |&(s, weight): &(f64, f64)| {
-            let (shapes, weight) =
-                (degree.edge_values(PreciseBall::from(s)), PreciseBall::from(weight));
+            let (shapes, weight) = (
+                degree.edge_values(PreciseBall::from(s)),
+                weighted(radii, s.into(), weight.into()),
+            );
             let mass = products(weight, &shapes);
             EdgePiece {
                 ends: [s, s],
@@ -90,7 +111,7 @@ impl EdgePiece {
     }
 
     /// Those in the stretches between the roots of P.
-    fn between_roots(degree: Degree, p: &Row) -> Vec<Self> {
+    fn between_roots(degree: Degree, radii: Radii, p: &Row) -> Vec<Self> {
         let mut cuts = degree.roots(&p.iter().map(|p| p.head()).collect::<Vec<_>>());
         cuts.extend([0.0, 1.0]);
         cuts.sort_unstable_by(f64::total_cmp);
@@ -98,19 +119,18 @@ impl EdgePiece {
             let inset = INSET * (cut[1] - cut[0]);
             let start = if cut[0] > 0.0 { cut[0] + inset } else { 0.0 };
             let end = if cut[1] < 1.0 { cut[1] - inset } else { 1.0 };
-            Self::between(degree, [start, end])
+            Self::between(degree, radii, [start, end])
         };
         cuts.windows(2).map(stretch).filter(|piece| piece.least(p) > 0.0).collect()
     }
 
     /// The piece of an edge with these ends. Boole's rule is exact for the products. The square is at most the sum of 2 k + 1
     /// over the length, for k up to the degree p: that is (p + 1)^2, as Legendre's polynomials are at most 1.
-    fn between(degree: Degree, ends: [f64; 2]) -> Self {
+    fn between(degree: Degree, radii: Radii, ends: [f64; 2]) -> Self {
         let start = PreciseBall::from(ends[0]);
         let length = PreciseBall::from(ends[1]) - start;
-        let at = |i: i32| {
-            degree.edge_values(start + PreciseBall::from(i) / PreciseBall::from(4) * length)
-        };
+        let place = |i: i32| start + PreciseBall::from(i) / PreciseBall::from(4) * length;
+        let at = |i: i32| degree.edge_values(place(i));
         let coefficients = match degree {
             Degree::One => vec![at(0), at(4)],
             Degree::Two => {
@@ -121,11 +141,17 @@ impl EdgePiece {
             }
         };
         let count = degree.nodes_per_edge();
-        let square = PreciseBall::from((count * count) as i32) / length;
+        let square = match radii {
+            None => PreciseBall::from((count * count) as i32) / length,
+            Some(_) => {
+                let radius = |i: i32| weighted(radii, place(i), PreciseBall::from(1));
+                PreciseBall::from(most_in_revolution(count, [radius(0), radius(4)])) / length
+            }
+        };
         let mut mass = vec![vec![PreciseBall::from(0); count]; count];
         for (i, weight) in [(0, 7), (1, 32), (2, 12), (3, 32), (4, 7)] {
             let weight = length * PreciseBall::from(weight) / PreciseBall::from(90);
-            add(&mut mass, &products(weight, &at(i)));
+            add(&mut mass, &products(weighted(radii, place(i), weight), &at(i)));
         }
         EdgePiece { ends, coefficients, square, mass }
     }
@@ -148,8 +174,10 @@ impl PressedPart {
         stretches.iter().for_each(|(_, piece)| add(&mut mass, &piece.mass));
         let most = |piece: &EdgePiece| SAFETY * root_of(line) * piece.square.upper().sqrt();
         let bounds = stretches.iter().map(|(least, piece)| [*least, most(piece)]).collect();
+        // In the plane the most of the square of P0 is above that of the stress, which is affine.
+        let of_stress = SAFETY * root_of(line) * line.radii.map_or(0.0, |_| stress_factor(line));
         let at_ends = |(_, piece): &&(f64, EdgePiece)| {
-            let (ends, most) = (piece.coefficients.iter().take(2), most(piece));
+            let (ends, most) = (piece.coefficients.iter().take(2), most(piece).max(of_stress));
             ends.map(|shapes| (shapes.clone(), most)).collect::<Vec<_>>()
         };
         let places = stretches.iter().flat_map(at_ends).collect();
@@ -181,10 +209,11 @@ impl Pressed {
                 let own = p[values.clone()].to_vec();
                 let pieces = match response {
                     Response::Bilateral => {
-                        vec![(f64::INFINITY, EdgePiece::between(degree, [0.0, 1.0]))]
+                        vec![(f64::INFINITY, EdgePiece::between(degree, line.radii, [0.0, 1.0]))]
                     }
                     Response::Unilateral => {
-                        let pieces = EdgePiece::pressed(degree, &d.rule, &own).into_iter();
+                        let pieces =
+                            EdgePiece::pressed(degree, &d.rule, line.radii, &own).into_iter();
                         pieces.map(|piece| (piece.least(&own), piece)).collect()
                     }
                 };
@@ -312,9 +341,14 @@ pub fn greatest(degree: Degree, p: &[PreciseBall]) -> f64 {
 }
 
 /// How much P0(v) is along a piece at most where |v| is at most `far` at the nodes of its edges, added up over its sides, and
-/// `radius` in the energy norm a: gamma |s(v)| is at most 2 (gamma / |E|)^{1/2} |v|_a, and n~ . v at most 5/4 of the largest nodal
+/// `radius` in the energy norm a: gamma |s(v)| is at most 2 (gamma / |E|)^{1/2} |v|_a in the plane, and n~ . v at most 5/4 of the largest nodal
 /// value; where the nodes of the piece are not those of the edge, that twice.
 pub fn change(line: &Piece<PreciseBall>, far: f64, radius: f64) -> f64 {
     let spread = if line.sides.len() == 1 { 1.25 } else { 1.25 * 1.25 };
-    up(SAFETY * (spread * far + 2.0 * root_of(line) * radius))
+    up(SAFETY * (spread * far + stress_factor(line) * root_of(line) * radius))
+}
+
+/// The most that an affine function is on an edge whose square has the integral 1 over \[0, 1\], with the weight.
+fn stress_factor(line: &Piece<PreciseBall>) -> f64 {
+    line.radii.map_or(2.0, |radii| up(most_in_revolution(2, radii).sqrt()))
 }

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::answers::{self, ContactBoundary, EnergyBalance};
 use super::enclosure::{Enclosure, Unproved};
 use super::iterate::Evaluated;
+use super::whole::of_the_whole;
 use super::{MethodReport, NewtonReport, Report, Verdict};
 use crate::fem::contact_line::{Coercivity, Gamma};
 use crate::fem::dense::inner;
@@ -34,7 +35,7 @@ pub struct Solution {
     pub nodes_per_triangle: usize,
     /// u^h at the nodes.
     pub displacement: Vec<[f64; 2]>,
-    /// The mean stress on each triangle, with sigma_zz.
+    /// The mean stress on each triangle, with sigma_zz; in a body of revolution the stress in the meridian, with the hoop stress.
     pub stress: Vec<(Stress<f64>, f64)>,
     /// The von Mises stress of the mean stress on each triangle.
     pub von_mises: Vec<f64>,
@@ -203,19 +204,18 @@ impl Solution {
     /// Evaluates all reported quantities of a displacement.
     pub fn new(d: &Discretization, evaluated: Evaluated, report: Report) -> Self {
         let stress = mean_stresses(d, &evaluated.u);
+        let of_revolution = d.problem.material.are_of_revolution();
         let quantities = quantities(d, &evaluated);
         let Evaluated { u, p, residual } = evaluated;
         let recovered = answers::recovered_pressure(d, &p);
         let (largest_strain, largest_strain_at) = answers::largest_strain(d, &u);
-        let with_material =
-            || stress.iter().enumerate().map(|(t, &s)| (d.problem.material.of(t), s));
-        Solution {
+        let solution = Solution {
             degree: d.space.degree(),
             nodes: d.space.nodes().to_vec(),
             elements: d.space.connectivity().to_vec(),
             nodes_per_triangle: d.space.degree().nodes_per_triangle(),
-            von_mises: with_material().map(|(m, s)| m.von_mises_squared(s).sqrt()).collect(),
-            stress: with_material().map(|(m, s)| (s, m.stress_zz(s))).collect(),
+            von_mises: stress.iter().map(|(s, zz)| s.von_mises_squared(*zz).sqrt()).collect(),
+            stress,
             contact: contact_values(d, &u, &p, &recovered),
             between: piece_values(d, &u, &p, &recovered),
             boundaries: answers::contact_boundaries(d, &u, &p, &recovered),
@@ -231,7 +231,8 @@ impl Solution {
             verdict: report.verdict,
             quantities,
             displacement: u,
-        }
+        };
+        if of_revolution { of_the_whole(solution) } else { solution }
     }
 
     /// u^h at the point with the barycentric coordinates `l` of triangle `t`, as [`Mesh::locate`] finds them.
@@ -264,9 +265,12 @@ impl GammaReport {
     }
 }
 
-/// The mean of sigma(u) on each triangle.
-fn mean_stresses(d: &Discretization, u: &[[f64; 2]]) -> Vec<Stress<f64>> {
-    let stress = |t| d.problem.material.of(t).stress(d.space.mean_gradient(t, u));
+/// The mean of sigma(u) on each triangle, and the one across the plane.
+fn mean_stresses(d: &Discretization, u: &[[f64; 2]]) -> Vec<(Stress<f64>, f64)> {
+    let stress = |t| {
+        let material = d.problem.material.of(t);
+        material.state(d.space.mean_gradient(t, u), d.space.mean_hoop_strain(t, material, u))
+    };
     (0..d.space.mesh().triangles().len()).map(stress).collect()
 }
 

@@ -6,7 +6,7 @@
 use super::solution::Solution;
 use crate::fem::Problem;
 
-/// sigma_xx, sigma_yy, sigma_zz, sigma_xy
+/// sigma_xx, sigma_yy, sigma_zz, sigma_xy; in a body of revolution sigma_rr, sigma_zz, the hoop stress and sigma_rz.
 pub type Components = [f64; 4];
 
 /// The von Mises stress, sigma_zz included.
@@ -49,6 +49,8 @@ pub struct LargestStresses {
     pub principal_max: Extreme,
     /// The smallest principal stress, sigma_zz included: the largest compression.
     pub principal_min: Extreme,
+    /// The largest and the smallest hoop stress of a body of revolution.
+    pub hoop: Option<[Extreme; 2]>,
 }
 
 impl Solution {
@@ -62,6 +64,7 @@ impl Solution {
     /// The largest stresses, of `problem`, which is the one that this solves; none without a triangle.
     pub fn largest_stresses(&self, problem: &Problem) -> Option<LargestStresses> {
         let mut largest: Option<LargestStresses> = None;
+        let of_revolution = problem.material.are_of_revolution();
         for place in 0..problem.material.distinct().len() {
             let means = self.nodal_means(problem, |t| problem.material.place_of(t) == place);
             for (&at, (stress, triangle)) in
@@ -73,6 +76,7 @@ impl Solution {
                     von_mises: extreme(von_mises(stress)),
                     principal_max: extreme(most),
                     principal_min: extreme(least),
+                    hoop: of_revolution.then(|| [extreme(stress[2]); 2]),
                 };
                 let so_far = largest.get_or_insert(here);
                 if here.von_mises.value > so_far.von_mises.value {
@@ -83,6 +87,10 @@ impl Solution {
                 }
                 if here.principal_min.value < so_far.principal_min.value {
                     so_far.principal_min = here.principal_min;
+                }
+                if let (Some([most, least]), Some([here, _])) = (&mut so_far.hoop, here.hoop) {
+                    *most = if here.value > most.value { here } else { *most };
+                    *least = if here.value < least.value { here } else { *least };
                 }
             }
         }
@@ -101,6 +109,9 @@ impl Solution {
             let (triangle, material) = (problem.mesh.triangle(t), problem.material.of(t));
             let (barycentric, area) = (triangle.barycentric_gradients(), triangle.double_area());
             let nodal = |j: usize| self.displacement[nodes[j]].into();
+            let hoop = material.radii(&triangle).map_or([0.0; 3], |radii| {
+                self.degree.hoop_strain(radii, |j| self.displacement[nodes[j]][0])
+            });
             for (j, &node) in nodes.iter().enumerate() {
                 // Corner j, or the middle of the edge opposite corner j - 3.
                 let l = [0, 1, 2].map(|k| match j {
@@ -108,8 +119,9 @@ impl Solution {
                     _ => f64::from(u8::from(k != j - 3)) / 2.0,
                 });
                 let gradient = self.degree.displacement_gradient(l, barycentric, nodal);
-                let stress = material.stress(gradient);
-                let ([xx, yy, xy], zz) = (stress.components(), material.stress_zz(stress));
+                let hoop = self.degree.value_from_points(hoop, l);
+                let (stress, zz) = material.state(gradient, hoop);
+                let [xx, yy, xy] = stress.components();
                 let (sum, weight, _) = sums[node].get_or_insert(([0.0; 4], 0.0, t));
                 for (sum, s) in sum.iter_mut().zip([xx, yy, zz, xy]) {
                     *sum += area * s;

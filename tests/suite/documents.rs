@@ -78,6 +78,7 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
             &["mesh.rectangle.nx=4", "method.gamma0=auto", "load.body=[\"0\", \"-1\"]"],
         ),
         ("cases/disk_force.toml", &[]),
+        ("cases/hub.toml", &[]),
         // Beyond the limit of gamma0, where nothing is proved.
         (
             "cases/block.toml",

@@ -39,6 +39,7 @@ mod reference;
 mod remarks;
 #[cfg(feature = "cli")]
 mod reported;
+mod revolution;
 mod routes;
 #[cfg(feature = "cli")]
 mod set_and_sweep;

@@ -23,6 +23,10 @@ const KEYS: [&str; 8] =
 /// The moduli that a material may be given by.
 pub(super) const EXPECTED: &str = "lambda and mu, young and poisson, stiffness, or orthotropic";
 
+/// The names of the planes.
+pub(super) const PLANES: [(&str, Plane); 3] =
+    [("strain", Plane::Strain), ("stress", Plane::Stress), ("axisymmetric", Plane::Axisymmetric)];
+
 /// A material as the case has it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -38,7 +42,7 @@ pub struct MaterialEcho {
     /// `[C11, C12, C16, C22, C26, C66]` of one that is not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<[f64; 6]>,
-    /// "strain" or "stress".
+    /// "strain", "stress" or "axisymmetric".
     pub plane: String,
 }
 
@@ -46,7 +50,8 @@ impl MaterialEcho {
     fn new(material: &Material<f64>, moduli: Option<[f64; 2]>) -> Self {
         let stiffness = moduli.is_none().then(|| material.stiffness());
         let [young, poisson] = [0, 1].map(|k| moduli.map(|moduli| moduli[k]));
-        let plane = if material.plane() == Plane::Strain { "strain" } else { "stress" }.to_owned();
+        let plane = PLANES.into_iter().find(|(_, plane)| *plane == material.plane());
+        let plane = plane.map_or("", |(name, _)| name).to_owned();
         MaterialEcho { surfaces: Vec::new(), young, poisson, stiffness, plane }
     }
 
@@ -58,15 +63,18 @@ impl MaterialEcho {
 }
 
 /// The material of each triangle, and the materials as the case has them: one for the whole body, or one for each physical
-/// surface of the mesh.
+/// surface of the mesh. `of_body` is the plane that the table of the body says.
 pub(super) fn read_materials(
     table: &Table,
     mesh: &Mesh,
+    of_body: Option<Plane>,
 ) -> Result<(Materials, Vec<MaterialEcho>), FileError> {
+    let default = of_body.unwrap_or(Plane::Strain);
     let mut surfaces = table.keys_of_tables();
     surfaces.retain(|key| !KEYS.contains(key));
     let Some(first) = surfaces.first().map(|key| table.under_header(key).name) else {
-        let (material, echo) = read_material(table, Plane::Strain)?;
+        let (material, echo) = read_material(table, default)?;
+        agrees(table, of_body, &echo)?;
         let surfaces = mesh.surfaces().keys().cloned().collect();
         return Ok((material.into(), vec![MaterialEcho { surfaces, ..echo }]));
     };
@@ -75,12 +83,13 @@ pub(super) fn read_materials(
         return Err(table.at.found(&format!("{key} beside {first}"), expected));
     }
     table.only(&[&surfaces[..], &["plane"]].concat())?;
-    let plane = read_plane(table, Plane::Strain)?;
+    let plane = read_plane(table, default)?;
     let mut parts: Vec<(Material<f64>, &[usize])> = Vec::new();
     let mut echoes: Vec<MaterialEcho> = Vec::new();
     for &key in &surfaces {
         let one = table.subsection(key)?;
         let (material, echo) = read_material(&one, plane)?;
+        agrees(&one, of_body, &echo)?;
         if let Some(other) = echoes.first()
             && other.plane != echo.plane
         {
@@ -127,6 +136,9 @@ pub(super) fn only_isotropic(
     table: &Table,
 ) -> Result<Material<f64>, FileError> {
     let (found, expected) = match materials.only() {
+        Some(material) if material.plane() == Plane::Axisymmetric => {
+            ("a body of revolution", "a plane body: the exact solutions are plane")
+        }
         Some(material) if material.is_isotropic() => return Ok(*material),
         Some(_) => ("a material that is not isotropic", "lambda and mu, or young and poisson"),
         None => ("materials by surface", "one material for the whole body"),
@@ -143,9 +155,19 @@ fn on_surface<'m>(mesh: &'m Mesh, at: &Spot, key: &str) -> Result<&'m [usize], F
     }
 }
 
+/// Checks that a material has the plane of the body, if its table says one.
+fn agrees(table: &Table, of_body: Option<Plane>, echo: &MaterialEcho) -> Result<(), FileError> {
+    match PLANES.iter().find(|(_, plane)| of_body == Some(*plane)) {
+        Some((name, _)) if *name != echo.plane => {
+            let found = format!("plane {} beside [body] plane {name}", echo.plane);
+            Err(table.at.found(&found, "the same, or one of the two"))
+        }
+        _ => Ok(()),
+    }
+}
+
 fn read_plane(table: &Table, default: Plane) -> Result<Plane, FileError> {
-    let planes = [("strain", Plane::Strain), ("stress", Plane::Stress)];
-    Ok(table.optional("plane", |plane| plane.one_of(&planes))?.unwrap_or(default))
+    Ok(table.optional("plane", |plane| plane.one_of(&PLANES))?.unwrap_or(default))
 }
 
 fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, MaterialEcho), FileError> {
@@ -180,6 +202,10 @@ fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, Material
                 }
                 (Plane::Stress, Some(_)) => {
                     return Err(table.at.found("across in plane stress", "plane strain with it"));
+                }
+                (Plane::Axisymmetric, _) => {
+                    let found = "stiffness in a body of revolution";
+                    return Err(table.at.found(found, "orthotropic, whose third axis is the hoop"));
                 }
             };
             let stiffness = value("stiffness")?;
@@ -233,20 +259,34 @@ fn read_orthotropic(
 ) -> Result<Result<Material<f64>, MaterialError>, FileError> {
     let table = moduli.table()?;
     let mut keys = vec!["e1", "e2", "nu12", "g12", "angle"];
-    if plane == Plane::Strain {
+    if plane != Plane::Stress {
         keys.extend(["e3", "nu13", "nu23"]);
     }
     table.only(&keys)?;
     let number = |key, expected| table.require(key, expected)?.number();
-    let out = |key| number(key, "a number, in plane strain");
+    let beyond = match plane {
+        Plane::Axisymmetric => "a number, in a body of revolution",
+        _ => "a number, in plane strain",
+    };
+    let out = |key| number(key, beyond);
     let across = match plane {
         Plane::Stress => None,
-        Plane::Strain => Some(Across { e3: out("e3")?, nu13: out("nu13")?, nu23: out("nu23")? }),
+        Plane::Strain | Plane::Axisymmetric => {
+            Some(Across { e3: out("e3")?, nu13: out("nu13")?, nu23: out("nu23")? })
+        }
     };
     let angle = table.optional("angle", Value::number)?.unwrap_or(0.0);
     let [e1, e2, nu12, g12] = ["e1", "e2", "nu12", "g12"].map(|key| number(key, "a number"));
     let (e1, e2, nu12, g12) = (e1?, e2?, nu12?, g12?);
-    Ok(stable_orthotropic(Orthotropic { e1, e2, nu12, g12, angle, across }))
+    let material = stable_orthotropic(Orthotropic { e1, e2, nu12, g12, angle, across });
+    let Some(Across { e3, .. }) = across.filter(|_| plane == Plane::Axisymmetric) else {
+        return Ok(material);
+    };
+    if angle % 90.0 != 0.0 {
+        let expected = "a multiple of 90: in a body of revolution the axes of a material are r, z and the hoop";
+        return Err(moduli.at.found(&format!("angle {}", quote::number(angle)), expected));
+    }
+    Ok(material.and_then(|material| stable(material.of_revolution(e3))))
 }
 
 /// The force on the whole body, and those on its surfaces; an exact solution has its own.

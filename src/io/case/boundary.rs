@@ -6,7 +6,9 @@ use std::sync::Arc;
 use super::body::constant;
 use super::exact::read_kind;
 use super::table::{Spot, Table, Value};
-use crate::fem::{Condition, Hand, Mesh, Obstacle, Pair, Path, PointSupport, SharedFunction, Side};
+use crate::fem::{
+    BoundaryEdge, Condition, Hand, Mesh, Obstacle, Pair, Path, PointSupport, SharedFunction, Side,
+};
 use crate::io::input::FileError;
 use crate::quote::{listed, names, quoted};
 use crate::study::Exact;
@@ -17,13 +19,30 @@ type Obstacles<'s> = BTreeMap<&'s str, (Spot<'s>, Obstacle)>;
 /// The conditions on the boundaries of the mesh and, beside \[exact\], the kind of each.
 type Boundaries = (BTreeMap<String, Condition>, BTreeMap<String, Kind>);
 
-/// Reads the conditions on the boundaries. A whole force acts on the length of its boundary times the thickness, which is 1 if
-/// it is not given. Boundaries of `pairs` have no condition.
+/// What a boundary's length makes an area with.
+#[derive(Clone, Copy)]
+pub(super) enum Depth {
+    /// The thickness of a plane body, 1 if it is not given.
+    Of(f64),
+    /// The circle that each point of a body of revolution goes round.
+    Revolution,
+}
+
+/// The area of a boundary of a body of revolution.
+fn area_of_revolution(mesh: &Mesh, edges: &[BoundaryEdge]) -> f64 {
+    let of = |&edge: &BoundaryEdge| {
+        let [[a, _], [b, _]] = mesh.places_of_ends(edge);
+        mesh.length_and_normal(edge).0 * std::f64::consts::PI * (a + b)
+    };
+    edges.iter().map(of).sum()
+}
+
+/// Reads the conditions on the boundaries. A whole force acts on the area of its boundary. Boundaries of `pairs` have no condition.
 pub(super) fn read_boundaries(
     root: &Table,
     solution: Option<&Exact>,
     mesh: &Mesh,
-    thickness: Option<f64>,
+    depth: Depth,
     pairs: &[Pair],
 ) -> Result<Boundaries, FileError> {
     let expected = match solution {
@@ -48,9 +67,22 @@ pub(super) fn read_boundaries(
         }
         let condition = match solution {
             None => {
-                let force = |force: [f64; 2]| {
-                    let per_thickness = force.map(|force| force / thickness.unwrap_or(1.0));
-                    Condition::force(per_thickness, mesh, key).map_err(|error| at.mesh(error))
+                let force = |value: &Value| {
+                    let whole = value.vector()?;
+                    match depth {
+                        Depth::Of(thickness) => {
+                            let per_thickness = whole.map(|force| force / thickness);
+                            let force = Condition::force(per_thickness, mesh, key);
+                            force.map_err(|error| at.mesh(error))
+                        }
+                        Depth::Revolution if whole[0] != 0.0 => Err(value.wrong(
+                            "[0, Fz] on a body of revolution, whose radial forces cancel all round: traction and pressure have them",
+                        )),
+                        Depth::Revolution => {
+                            let area = area_of_revolution(mesh, edges);
+                            Ok(Condition::Traction(whole.map(|force| constant(force / area))))
+                        }
+                    }
                 };
                 read_condition(&all.subsection(key)?, &obstacles, force)?
             }
@@ -88,12 +120,12 @@ const CONDITIONS: [&str; 7] =
 fn read_condition(
     table: &Table,
     obstacles: &Obstacles,
-    force: impl Fn([f64; 2]) -> Result<Condition, FileError>,
+    force: impl Fn(&Value) -> Result<Condition, FileError>,
 ) -> Result<Condition, FileError> {
     table.only(&[&CONDITIONS[..], &["where"]].concat())?;
     let value = |key| table.require(key, "a value");
     Ok(match table.given(&CONDITIONS)[..] {
-        ["force"] => force(value("force")?.vector()?)?,
+        ["force"] => force(&value("force")?)?,
         ["displacement"] => Condition::Displacement(components(&value("displacement")?)?),
         ["traction"] => Condition::Traction(value("traction")?.functions()?),
         ["displacement", "traction"] => {
@@ -102,7 +134,7 @@ fn read_condition(
         }
         ["displacement", "force"] => {
             let of_force = value("force")?;
-            match force(of_force.vector()?)? {
+            match force(&of_force)? {
                 Condition::Traction(traction) => read_mixed(table, &of_force, traction)?,
                 other => other,
             }

@@ -40,6 +40,8 @@ pub(super) struct Scene {
     pub(super) loads: Vec<Load>,
     /// Where the largest von Mises stress is, as a point of the body.
     pub(super) most_stressed: Option<usize>,
+    /// The body is one of revolution about x = 0: its other half is drawn, too.
+    pub(super) of_revolution: bool,
 }
 
 /// An arrow of a load.
@@ -170,6 +172,7 @@ impl Scene {
                 .stress
                 .as_ref()
                 .and_then(|stress| s.nodes.iter().position(|&place| place == stress.von_mises.at)),
+            of_revolution: case.problem.material.are_of_revolution(),
         }
     }
 

@@ -1,0 +1,248 @@
+//! Bodies of revolution (docs/theory.md, 11): the weight r in the trace inequality, in the integrals over an edge and in Korn's
+//! inequality, and the hoop strain in Hooke's law and in Lemma 3.2.
+//!
+//! A function that is affine on a triangle has the values a, b at the ends of the edge and c opposite. Everything is linear in r >= 0:
+//! an inequality is one for r = 1 at each of the three corners.
+
+use signorini::kernel::axial::{corner_mass, edge_mass, hoop_strain, mass};
+use signorini::kernel::edge_integral::{ExactEdge, weighted_product};
+use signorini::kernel::{Material, P1, P2, Plane};
+use signorini::nalgebra::{Matrix2, Vector2};
+
+use crate::claim::Claim;
+use crate::statement::take;
+use crate::verdict::{Ordered, Verdict};
+use crate::{ensure, given};
+
+/// w . M w for the symmetric matrix of three values.
+fn form<S: Ordered>(m: [[S; 3]; 3], [a, b, c]: [S; 3]) -> S {
+    let two = S::from(2);
+    a * a * m[0][0]
+        + b * b * m[1][1]
+        + c * c * m[2][2]
+        + two * (a * b * m[0][1] + a * c * m[0][2] + b * c * m[1][2])
+}
+
+/// int_E r w^2 / |E| and int_T r w^2 / |T|.
+fn traces<S: Ordered>([a, b, c, ra, rb, rc]: [S; 6]) -> [S; 2] {
+    let n = edge_mass([ra, rb]);
+    let two = S::from(2);
+    let edge = a * a * n[0][0] + b * b * n[1][1] + two * a * b * n[0][1];
+    [edge, form(corner_mass([ra, rb, rc]), [a, b, c])]
+}
+
+/// What is squared in the difference for r = 1 at one of the corners.
+fn squared<S: Ordered>([a, b, c]: [S; 3]) -> [S; 5] {
+    let (two, three, four) = (S::from(2), S::from(3), S::from(4));
+    [two * (c + a) + b, two * (c + b) + a, a - b, three * (a + b) + four * c, c]
+}
+
+/// Lemma 11.3: int_E r w^2 <= 4 (|E| / |T|) int_T r w^2.
+pub fn the_weighted_trace_constant_of_p2_is_at_most_4<S: Ordered>(v: [S; 6]) -> Verdict {
+    let (zero, two, three, four) = (S::from(0), S::from(2), S::from(3), S::from(4));
+    let [a, b, c, ra, rb, rc] = v;
+    given!(ra >= zero && rb >= zero && rc >= zero);
+    let [edge, whole] = traces(v);
+    let [first, second, between, both, opposite] = squared([a, b, c]);
+    let squares = ra * (two * (first * first) + between * between)
+        + rb * (two * (second * second) + between * between)
+        + rc * (two * (both * both) / three
+            + two * (between * between)
+            + S::from(40) * (opposite * opposite) / three);
+    ensure!(S::from(60) * (four * whole - edge) == squares);
+    for square in [first, second, between, both, opposite] {
+        ensure!(square * square >= zero);
+        for radius in [ra, rb, rc] {
+            ensure!(radius * (square * square) >= zero);
+        }
+    }
+    ensure!(edge <= four * whole);
+    Verdict::Holds("always")
+}
+
+/// 3, the constant of the plane.
+pub fn control_the_trace_constant_of_the_plane<S: Ordered>(v: [S; 6]) -> Verdict {
+    let zero = S::from(0);
+    let [_, _, _, ra, rb, rc] = v;
+    given!(ra >= zero && rb >= zero && rc >= zero);
+    let [edge, whole] = traces(v);
+    ensure!(edge <= S::from(3) * whole);
+    Verdict::Holds("always")
+}
+
+/// 4 is attained where the corner opposite is on the axis: w = (1, 1, -3/2).
+pub fn the_weighted_trace_constant_is_attained<S: Ordered>([r, w]: [S; 2]) -> Verdict {
+    let (two, three) = (S::from(2), S::from(3));
+    let [edge, whole] = traces([two * w, two * w, -(three * w), r, r, S::from(0)]);
+    ensure!(edge == S::from(4) * whole);
+    Verdict::Holds("always")
+}
+
+/// sigma:eps with the hoop stress is the energy of eps + a h in the plane, and e h^2: isotropic, with the numbers of plane strain.
+pub fn the_energy_of_revolution_is_that_of_plane_strain_and_of_the_hoop<S: Ordered>(
+    [xx, yy, xy, hoop, lambda, mu]: [S; 6],
+) -> Verdict {
+    let (zero, two, three) = (S::from(0), S::from(2), S::from(3));
+    given!(mu > zero && three * lambda + two * mu > zero);
+    let material = Material::lame(lambda, mu, Plane::Axisymmetric);
+    let gradient = Matrix2::new(xx, xy, xy, yy);
+    let (stress, hoop_stress) = material.stress_of_revolution(gradient, hoop);
+    let [sxx, syy, sxy] = stress.components();
+    let energy = sxx * xx + syy * yy + two * sxy * xy + hoop_stress * hoop;
+    // nu = lambda / (2 (lambda + mu)), e = mu (3 lambda + 2 mu) / (lambda + mu), both times 2 (lambda + mu).
+    let scale = two * (lambda + mu);
+    ensure!(three * scale == two * (three * lambda + two * mu) + two * mu);
+    ensure!(scale > zero);
+    let (x, y) = (scale * xx + lambda * hoop, scale * yy + lambda * hoop);
+    let plane =
+        lambda * (x + y) * (x + y) + two * mu * (x * x + y * y + two * scale * scale * xy * xy);
+    let along = two * mu * (three * lambda + two * mu) * scale * hoop * hoop;
+    ensure!(scale * scale * energy == plane + along);
+    Verdict::Holds("always")
+}
+
+/// Lemma 3.2 with a hoop strain, at a point, for n = (1, 0): (d . sigma n)^2 <= |d|^2 (lambda + 2 mu) sigma:eps.
+pub fn the_hoop_strain_does_not_enter_the_constant_of_the_traction<S: Ordered>(
+    [xx, yy, xy, hoop, dx, dy, lambda, mu]: [S; 8],
+) -> Verdict {
+    let (zero, two, three, four) = (S::from(0), S::from(2), S::from(3), S::from(4));
+    given!(mu > zero && three * lambda + two * mu > zero);
+    let material = Material::lame(lambda, mu, Plane::Axisymmetric);
+    let (stress, hoop_stress) = material.stress_of_revolution(Matrix2::new(xx, xy, xy, yy), hoop);
+    let [sxx, syy, sxy] = stress.components();
+    let energy = sxx * xx + syy * yy + two * sxy * xy + hoop_stress * hoop;
+    let stiffness = material.normal_stiffness(Vector2::new(S::from(1), zero));
+    let whole = sxx * sxx + sxy * sxy;
+    let (sum, difference) = (yy + hoop, yy - hoop);
+    // (lambda + 2 mu) sigma:eps - |sigma n|^2 in squares: of the strains across n, and of the shear.
+    ensure!(
+        stiffness * energy - whole
+            == mu * (three * lambda + two * mu) * (sum * sum)
+                + mu * stiffness * (difference * difference)
+                + four * mu * (lambda + mu) * (xy * xy)
+    );
+    ensure!(lambda + mu > zero && stiffness > zero);
+    ensure!(mu * (three * lambda + two * mu) * (sum * sum) >= zero);
+    ensure!(mu * stiffness * (difference * difference) >= zero);
+    ensure!(mu * (lambda + mu) * (xy * xy) >= zero);
+    ensure!(whole <= stiffness * energy);
+    let (along, across) = (dx * sxx + dy * sxy, dx * sxy - dy * sxx);
+    let length = dx * dx + dy * dy;
+    ensure!(along * along + across * across == length * whole);
+    ensure!(across * across >= zero && length >= zero);
+    ensure!(length * whole <= length * (stiffness * energy));
+    ensure!(along * along <= length * (stiffness * energy));
+    Verdict::Holds("always")
+}
+
+/// The traction without its hoop strain.
+pub fn control_the_traction_without_the_hoop_strain<S: Ordered>(
+    [xx, yy, hoop, lambda, mu]: [S; 5],
+) -> Verdict {
+    let (zero, two, three) = (S::from(0), S::from(2), S::from(3));
+    given!(mu > zero && three * lambda + two * mu > zero);
+    let material = Material::lame(lambda, mu, Plane::Axisymmetric);
+    let gradient = Matrix2::new(xx, zero, zero, yy);
+    let (stress, hoop_stress) = material.stress_of_revolution(gradient, hoop);
+    let [sxx, syy, _] = stress.components();
+    let energy = sxx * xx + syy * yy + hoop_stress * hoop;
+    let [without, _, _] = material.stress(gradient).components();
+    ensure!(without * without <= (lambda + two * mu) * energy);
+    Verdict::Holds("always")
+}
+
+/// int r theta q = int v_r q: the hoop strain of P2 by its equations, and of a stretch v_r = k r on every triangle.
+pub fn the_hoop_strain_is_the_projection_and_a_stretch_has_its_own<S: Ordered>(
+    [k, a, b, c, u, v]: [S; 6],
+) -> Verdict {
+    let (zero, two) = (S::from(0), S::from(2));
+    given!(a >= zero && b >= zero && c >= zero && a + b + c > zero);
+    let radii = [a, b, c];
+    let middles = [(b + c) / two, (c + a) / two, (a + b) / two];
+    let stretch = [a, b, c, middles[0], middles[1], middles[2]].map(|r| k * r);
+    for theta in hoop_strain::<P2, S, 6, 3>(radii, &stretch) {
+        ensure!(theta == k);
+    }
+    ensure!(hoop_strain::<P1, S, 3, 2>(radii, &[k * a, k * b, k * c])[0] == k);
+    let field = [u, v, u + v, u - v, two * u, two * v];
+    let theta = hoop_strain::<P2, S, 6, 3>(radii, &field);
+    let m = mass::<P2, S, 6, 3>(radii);
+    let means = signorini::kernel::axial::means::<P2, S, 6, 3>(&field);
+    for row in 0..3 {
+        let product = (0..3).fold(zero, |sum, j| sum + m[row][j] * theta[j]);
+        ensure!(product == means[row]);
+    }
+    Verdict::Holds("always")
+}
+
+/// The integrals over a cut edge: P is positive on [0, tau], and the gradient of the energy is homogeneous.
+pub fn weighted_integrals_of_a_cut_edge_are_those_of_the_positive_part<S: Ordered>(
+    [p, q, r, s]: [S; 4],
+) -> Verdict {
+    let (zero, two) = (S::from(0), S::from(2));
+    given!(p > zero && q < zero && r >= zero && s >= zero);
+    let tau = p / (p - q);
+    let end = r + (s - r) * tau;
+    let e = P1::exact_in_revolution([p, q], [r, s]);
+    ensure!(e.active == tau);
+    ensure!(two * e.energy == tau * weighted_product([r, end], [p, zero], [p, zero]));
+    ensure!(e.gradient[0] * p + e.gradient[1] * q == two * e.energy);
+    for (row, gradient) in e.hessian.into_iter().zip(e.gradient) {
+        ensure!(row[0] * p + row[1] * q == gradient);
+    }
+    Verdict::Holds("always")
+}
+
+/// For r = 0 at one end and 1 at the other, q(s)^2 is at most 18 int r q^2 at both ends for affine q: [7.2'] on a piece that touches
+/// the axis.
+pub fn the_square_of_an_affine_function_is_at_most_18_times_its_weighted_integral<S: Ordered>(
+    [a, b]: [S; 2],
+) -> Verdict {
+    let (zero, two, three) = (S::from(0), S::from(2), S::from(3));
+    let integral = weighted_product([zero, S::from(1)], [a, b], [a, b]);
+    let eighteen = S::from(18) * integral;
+    let (at_axis, away) = (a + three * b, three * a + S::from(3) * b);
+    ensure!(two * (eighteen - a * a) == at_axis * at_axis);
+    ensure!(at_axis * at_axis >= zero);
+    ensure!(a * a <= eighteen);
+    ensure!(two * (eighteen - b * b) * three == away * away + S::from(12) * b * b);
+    ensure!(away * away >= zero && b * b >= zero);
+    ensure!(b * b <= eighteen);
+    Verdict::Holds("always")
+}
+
+/// 4, the constant of the plane.
+pub fn control_the_square_by_the_constant_of_the_plane<S: Ordered>([a, b]: [S; 2]) -> Verdict {
+    let integral = weighted_product([S::from(0), S::from(1)], [a, b], [a, b]);
+    ensure!(a * a <= S::from(4) * integral);
+    Verdict::Holds("always")
+}
+
+/// The row.
+pub fn claim() -> Claim {
+    Claim {
+        id: "21",
+        title: "Beyond the paper: bodies of revolution",
+        paper: "The paper is about the plane: its integrals have the weight 1.",
+        statement: "With the weight r and the hoop strain (docs/theory.md, 11): int_E r w^2 is at most 4 (|E| / |T|) int_T r w^2 for an affine w, which is attained where the corner opposite is on the axis. The energy is that of the strain of plane strain, moved by nu times the hoop strain, and that of the hoop by Young's modulus; (d . sigma n)^2 <= (lambda + 2 mu) sigma:eps for unit vectors d and n, whatever the hoop strain. The hoop strain is the projection of v_r / r with the weight r, and the stretch of v_r = k r is k on every triangle, also on the axis. The integrals over an edge that is cut are those of the positive part, and the square of an affine function at an end of a piece that touches the axis is at most 18 times its integral with the weight.",
+        numbers: "every ordered field (proof).",
+        preconditions: "mu > 0, 3 lambda + 2 mu > 0, r >= 0, and r > 0 at a corner of each triangle.",
+        limits: "n = (1, 0) in the inequality of the traction: the law is isotropic. The constant 72 of P2 and the sharp constants of a triangle, which have a root, are compared in doubles (unit tests of kernel::axial).",
+        single: None,
+        checks: statements! {
+            proved the_weighted_trace_constant_of_p2_is_at_most_4[a, b, c, ra, rb, rc]
+                about "Lemma 3.2", "(11)" hints(|v| { let [a, b, c, ..] = take::<_, 6>(v); squared([a, b, c]).to_vec() });
+            proved the_weighted_trace_constant_is_attained[r, w];
+            proved the_energy_of_revolution_is_that_of_plane_strain_and_of_the_hoop[xx, yy, xy, hoop, lambda, mu];
+            proved the_hoop_strain_does_not_enter_the_constant_of_the_traction[xx, yy, xy, hoop, dx, dy, lambda, mu]
+                about "Lemma 3.2", "(11)" hints(|v| { let [_, yy, xy, hoop, ..] = take::<_, 8>(v); vec![yy + hoop, yy - hoop, xy] });
+            tested the_hoop_strain_is_the_projection_and_a_stretch_has_its_own[k, a, b, c, u, v];
+            proved weighted_integrals_of_a_cut_edge_are_those_of_the_positive_part[p, q, r, s];
+            proved the_square_of_an_affine_function_is_at_most_18_times_its_weighted_integral[a, b];
+            refuted control_the_trace_constant_of_the_plane[a, b, c, ra, rb, rc] fails "edge <= S::from(3) * whole";
+            refuted control_the_traction_without_the_hoop_strain[xx, yy, hoop, lambda, mu]
+                fails "without * without <= (lambda + two * mu) * energy";
+            refuted control_the_square_by_the_constant_of_the_plane[a, b] fails "a * a <= S::from(4) * integral";
+        },
+    }
+}

@@ -1,0 +1,161 @@
+//! A rigid indenter on a half space, on the block r <= 2 a, z <= 2 a with the exact displacement on its far sides: no part of the
+//! error is that of a body that ends. The displacement is that of a pressure on r < a as an integral over sources at the complex depths
+//! z + i a t with the weight w(t):
+//!
+//! u_r = F / (4 pi mu) Re int w (z r / R^3 - (1 - 2 nu) r / (R (R + zeta))) dt,   zeta = z + i a t,   R = (r^2 + zeta^2)^(1/2)
+//! u_z = F / (4 pi mu) Re int w (z zeta / R^3 + 2 (1 - nu) / R) dt
+
+use std::f64::consts::PI;
+
+use approx::assert_abs_diff_eq;
+use signorini::fem::quadrature::gauss;
+use signorini::fem::{Condition, Degree, Mesh, Problem};
+use signorini::solve::Solution;
+
+use super::*;
+
+const POISSON: f64 = 0.3;
+
+type Complex = [f64; 2];
+
+fn times(a: Complex, b: Complex) -> Complex {
+    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
+}
+
+fn over(a: Complex, b: Complex) -> Complex {
+    let size = b[0] * b[0] + b[1] * b[1];
+    times(a, [b[0] / size, -b[1] / size])
+}
+
+/// The root with a positive real part.
+fn root(a: Complex) -> Complex {
+    let size = a[0].hypot(a[1]);
+    [((size + a[0]) / 2.0).sqrt(), ((size - a[0]) / 2.0).sqrt().copysign(a[1])]
+}
+
+/// The displacement for a = 1 and F = 1; E = 1.
+fn displacement([r, z]: [f64; 2], rule: &[(f64, f64)], weight: fn(f64) -> f64) -> [f64; 2] {
+    let mu = 1.0 / (2.0 * (1.0 + POISSON));
+    let mut sum = [0.0; 2];
+    for &(t, w) in rule {
+        let zeta = [z, t];
+        let square = times(zeta, zeta);
+        let distance = root([r * r + square[0], square[1]]);
+        let cube = times(times(distance, distance), distance);
+        let below = times(distance, [distance[0] + zeta[0], distance[1] + zeta[1]]);
+        let bulge = over([z * r, 0.0], cube)[0];
+        let radial = bulge - (1.0 - 2.0 * POISSON) * over([r, 0.0], below)[0];
+        let axial = over([z * zeta[0], z * zeta[1]], cube)[0];
+        let axial = axial + 2.0 * (1.0 - POISSON) * over([1.0, 0.0], distance)[0];
+        // The integrand is even in t.
+        let w = 2.0 * w * weight(t);
+        sum = [sum[0] + w * radial, sum[1] + w * axial];
+    }
+    sum.map(|u| u / (4.0 * PI * mu))
+}
+
+/// The block with n cells along a, the indenter below it, which reaches `depth` deep into it at r = 0; contact where r < `reach`.
+fn indented(
+    n: usize,
+    degree: Degree,
+    (force, weight): (f64, fn(f64) -> f64),
+    gap: fn(f64) -> f64,
+    reach: f64,
+) -> Solution {
+    let whole = meridian([0.0, 2.0], 2.0, [2 * n, 2 * n], false);
+    let mut named = named_edges(&whole);
+    let pressed = |ends: &[usize; 2]| ends.iter().all(|&v| whole.vertices()[v][0] <= reach + 1e-9);
+    let (below, _): (Vec<_>, Vec<_>) = named["bottom"].iter().copied().partition(pressed);
+    named.insert("bottom".to_owned(), below);
+    let mesh = Mesh::new(whole.vertices().to_vec(), whole.triangles().to_vec(), named).unwrap();
+    let rule = gauss(60);
+    let far = || {
+        let (x, y) = (rule.clone(), rule.clone());
+        Condition::displacement(
+            move |at| force * displacement(at, &x, weight)[0],
+            move |at| force * displacement(at, &y, weight)[1],
+        )
+    };
+    let problem = Problem::of(mesh, elastic(1.0, POISSON))
+        .with("top", far())
+        .with("right", far())
+        .with("bottom", Condition::contact(move |[r, _]| gap(r)));
+    solved(&problem, degree)
+}
+
+const REDUCED: f64 = 1.0 / (1.0 - POISSON * POISSON);
+
+/// R = 20, a = 1: F = 4 E* a^3 / (3 R), and the depth is a^2 / R.
+fn hertz(n: usize, degree: Degree) -> Solution {
+    let force = 4.0 * REDUCED / (3.0 * 20.0);
+    let weight = |t: f64| 3.0 * (1.0 - t * t) / 4.0;
+    indented(n, degree, (force, weight), |r| (r * r / 2.0 - 1.0) / 20.0, 2.0)
+}
+
+fn force_of(s: &Solution) -> f64 {
+    s.quantities.contact_force
+}
+
+#[test]
+fn a_paraboloid_presses_as_hertz_says() {
+    let force = 4.0 * REDUCED / (3.0 * 20.0);
+    let peak = 2.0 * REDUCED / (PI * 20.0);
+    for (n, degree, tolerance, of_peak) in
+        [(16, Degree::One, 3e-3, 0.02), (8, Degree::Two, 3e-4, 0.02)]
+    {
+        let s = hertz(n, degree);
+        assert_abs_diff_eq!(force_of(&s) / force, 1.0, epsilon = tolerance);
+        // Not at the node on the axis alone, where a pressure has no weight: the recovered one is a mean.
+        assert_abs_diff_eq!(s.boundaries[0].peak_pressure / peak, 1.0, epsilon = of_peak);
+    }
+}
+
+/// The control: by the formula for a line contact, F = pi E* a^2 / (4 R) a unit of length, nothing fits.
+#[test]
+fn control_hertz_of_a_cylinder_is_not_that_of_a_sphere() {
+    let s = hertz(8, Degree::One);
+    assert!((force_of(&s) / (PI * REDUCED / (4.0 * 20.0)) - 1.0).abs() > 0.3);
+}
+
+#[test]
+fn a_flat_punch_presses_by_twice_its_radius_and_depth() {
+    let depth = 0.05;
+    let force = 2.0 * REDUCED * depth;
+    let s = indented(16, Degree::Two, (force, |_| 0.5), |_| -0.05, 1.0);
+    // Of first order: the pressure is infinite at the edge.
+    assert_abs_diff_eq!(force_of(&s) / force, 1.0, epsilon = 7e-3);
+}
+
+/// The ball between two plates of cases/sphere.toml, by its force: peak pressure, contact radius and approach as Hertz and Tatara say.
+#[test]
+fn a_ball_between_plates_has_hertzs_pressure_and_tataras_approach() {
+    const RADIUS: f64 = 10.0;
+    let reduced = 210_000.0 / (1.0 - 0.09);
+    for (degree, of_peak, of_radius) in [(1, 0.012, 0.006), (2, 0.006, 0.004)] {
+        let case = case("sphere.toml", &[&format!("method.degree={degree}")]);
+        let (s, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
+        let enclosed = s.enclosure.as_ref().unwrap().relative.unwrap();
+        assert!(enclosed <= ENCLOSED, "{enclosed:e}");
+        let force = force_of(&s);
+        let a = (3.0 * force * RADIUS / (4.0 * reduced)).cbrt();
+        let peak = 3.0 * force / (2.0 * PI * a * a);
+        assert_abs_diff_eq!(s.boundaries[0].peak_pressure / peak, 1.0, epsilon = of_peak);
+        // a^2 = 5/2 of the mean of r^2, which no end of contact has to be found for.
+        let mut moment = 0.0;
+        for pair in s.contact.iter().flat_map(|edge| edge.points.windows(2)) {
+            let [p, q] = [0, 1].map(|i| (s.nodes[pair[i].node][0], pair[i].pressure));
+            let (width, middle) = (q.0 - p.0, ((p.0 + q.0) / 2.0, (p.1 + q.1) / 2.0));
+            // Simpson's rule.
+            let of = |(r, pressure): (f64, f64)| 2.0 * PI * r * r * r * pressure;
+            moment += width / 6.0 * (of(p) + 4.0 * of(middle) + of(q));
+        }
+        let found = (2.5 * moment / force).sqrt();
+        assert_abs_diff_eq!(found / a, 1.0, epsilon = of_radius);
+        let far = a * a + 4.0 * RADIUS * RADIUS;
+        let f = 2.0 * 1.3 * RADIUS * RADIUS / far.powf(1.5) + 0.91 / far.sqrt();
+        let approach = a * a / RADIUS - force * f / (PI * 210_000.0);
+        assert_abs_diff_eq!(0.024_545 / approach, 1.0, epsilon = 6e-3);
+        // Without the other side of the ball the approach is off by more: the control.
+        assert!((0.024_545 / (a * a / RADIUS) - 1.0).abs() > 0.012);
+    }
+}
