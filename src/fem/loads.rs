@@ -161,11 +161,11 @@ impl Resultants {
 pub fn resultants(problem: &Problem, space: &Space) -> Result<Resultants, DataError> {
     let mut all = Resultants::default();
     let points = |load: &dyn Function| points(load, space.degree().number());
-    each_force_on_body(problem, space, &points, |force| all.body[force.c] += force.value)?;
+    each_force_on_body(problem, space, points, |force| all.body[force.c] += force.value)?;
     for (name, condition) in &problem.conditions {
         let mut sum = [0.0; 2];
         let add = |force: Force| sum[force.c] += force.value;
-        each_force_of(problem, (name, condition), space, &points, add)?;
+        each_force_of(problem, (name, condition), space, points, add)?;
         if condition.has_load() {
             all.boundaries.insert(name.clone(), sum);
         }

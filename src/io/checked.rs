@@ -48,7 +48,7 @@ fn held(outline: &Outline) -> String {
     match (outline.free_motions, outline.slides) {
         (0, _) => "by its supports".to_owned(),
         (_, 0) => format!(
-            "by contact: supports leave {motions} free, against which the loads press the body"
+            "by contact: supports leave {motions} free, and the loads press the body against what stops it"
         ),
         (_, slides) => format!(
             "supports leave {motions} free, and contact {slides} of them: one of the solutions will be shown"

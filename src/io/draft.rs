@@ -98,7 +98,7 @@ fn used(mesh: &Mesh) -> [Used; 2] {
         mesh.outline().iter().any(|&edge| mesh.places_of_ends(edge).iter().all(|p| holds(p[1])))
     };
     let find = |level: &dyn Fn(f64) -> f64, holds: &dyn Fn(f64, f64) -> bool| {
-        let levels = [1e-6, 0.05, 0.25, 0.5].map(|share| level(share));
+        let levels = [1e-6, 0.05, 0.25, 0.5].map(level);
         levels.into_iter().find(|&at| is_there(&|y| holds(y, at))).unwrap_or(level(0.5))
     };
     let below = find(&|share| low[1] + share * height, &|y, at| y < at);

@@ -11,58 +11,58 @@ use signorini::solve::solve;
 #[derive(Clone, Copy)]
 enum Named {
     /// The case calls them `bottom` and `top`, as the mesh does.
-    ByName,
+    Names,
     /// By the numbers of their groups.
-    ByNumber,
+    Numbers,
     /// The mesh does not, so the case names them by their places.
-    ByPlace,
+    Places,
 }
-use Named::{ByName, ByNumber, ByPlace};
+use Named::{Names, Numbers, Places};
 
 const SPLIT: &str = "of the mesh are split into two triangles each, along their shorter diagonal";
 const NO_ENTITIES: &str = "the mesh file has names of groups, but no $Entities";
 
 /// The meshes that are read, with how their boundaries are named, their area, and what the remark has, if there is one.
 const READ: [(&str, Named, f64, &str); 39] = [
-    ("msh41", ByName, 1.0, ""),
-    ("msh41_binary", ByName, 1.0, ""),
-    ("msh22", ByName, 1.0, ""),
-    ("msh22_binary", ByName, 1.0, ""),
-    ("msh21", ByName, 1.0, ""),
-    ("msh2", ByName, 1.0, ""),
-    ("parametric_22", ByName, 1.0, ""),
-    ("comment_first", ByName, 1.0, ""),
-    ("no_entities", ByPlace, 1.0, NO_ENTITIES),
-    ("unnamed_unused", ByName, 1.0, ""),
-    ("numbers_only", ByNumber, 1.0, ""),
-    ("numbers_only_22_binary", ByNumber, 1.0, ""),
-    ("no_curves", ByPlace, 1.0, ""),
-    ("no_groups", ByPlace, 1.0, ""),
-    ("points", ByName, 1.0, ""),
-    ("curves_in_two_groups", ByName, 1.0, ""),
-    ("curves_in_two_groups_22", ByName, 1.0, ""),
-    ("surface_in_two_groups", ByName, 1.0, ""),
-    ("surface_in_two_groups_22", ByName, 1.0, ""),
-    ("curve_inside", ByName, 1.0, ""),
-    ("curve_outside", ByName, 1.0, ""),
-    ("clockwise", ByName, 1.0, ""),
-    ("clockwise_22", ByName, 1.0, ""),
-    ("one_surface_clockwise", ByName, 2.0, ""),
-    ("partitions", ByName, 1.0, ""),
-    ("partitions_binary", ByName, 1.0, ""),
-    ("partitions_with_ghosts", ByName, 1.0, ""),
-    ("partitions_22", ByName, 1.0, ""),
-    ("quadrangles", ByName, 1.0, SPLIT),
-    ("quadrangles_order_2", ByName, 1.0, SPLIT),
-    ("quadrangles_and_triangles", ByName, 2.0, SPLIT),
-    ("order_2", ByName, 1.0, ""),
-    ("order_3", ByName, 1.0, ""),
-    ("z_is_2", ByName, 1.0, "the mesh lies in the plane z = 2"),
-    ("meshio_names", ByName, 1.0, ""),
-    ("meshio_bare", ByPlace, 1.0, ""),
-    ("meshio_bare_binary", ByPlace, 1.0, ""),
-    ("meshio_clockwise", ByPlace, 1.0, ""),
-    ("meshio_of_abaqus", ByPlace, 1.0, ""),
+    ("msh41", Names, 1.0, ""),
+    ("msh41_binary", Names, 1.0, ""),
+    ("msh22", Names, 1.0, ""),
+    ("msh22_binary", Names, 1.0, ""),
+    ("msh21", Names, 1.0, ""),
+    ("msh2", Names, 1.0, ""),
+    ("parametric_22", Names, 1.0, ""),
+    ("comment_first", Names, 1.0, ""),
+    ("no_entities", Places, 1.0, NO_ENTITIES),
+    ("unnamed_unused", Names, 1.0, ""),
+    ("numbers_only", Numbers, 1.0, ""),
+    ("numbers_only_22_binary", Numbers, 1.0, ""),
+    ("no_curves", Places, 1.0, ""),
+    ("no_groups", Places, 1.0, ""),
+    ("points", Names, 1.0, ""),
+    ("curves_in_two_groups", Names, 1.0, ""),
+    ("curves_in_two_groups_22", Names, 1.0, ""),
+    ("surface_in_two_groups", Names, 1.0, ""),
+    ("surface_in_two_groups_22", Names, 1.0, ""),
+    ("curve_inside", Names, 1.0, ""),
+    ("curve_outside", Names, 1.0, ""),
+    ("clockwise", Names, 1.0, ""),
+    ("clockwise_22", Names, 1.0, ""),
+    ("one_surface_clockwise", Names, 2.0, ""),
+    ("partitions", Names, 1.0, ""),
+    ("partitions_binary", Names, 1.0, ""),
+    ("partitions_with_ghosts", Names, 1.0, ""),
+    ("partitions_22", Names, 1.0, ""),
+    ("quadrangles", Names, 1.0, SPLIT),
+    ("quadrangles_order_2", Names, 1.0, SPLIT),
+    ("quadrangles_and_triangles", Names, 2.0, SPLIT),
+    ("order_2", Names, 1.0, ""),
+    ("order_3", Names, 1.0, ""),
+    ("z_is_2", Names, 1.0, "the mesh lies in the plane z = 2"),
+    ("meshio_names", Names, 1.0, ""),
+    ("meshio_bare", Places, 1.0, ""),
+    ("meshio_bare_binary", Places, 1.0, ""),
+    ("meshio_clockwise", Places, 1.0, ""),
+    ("meshio_of_abaqus", Places, 1.0, ""),
 ];
 
 /// The meshes that are refused, with the words.
@@ -98,9 +98,9 @@ fn file(name: &str) -> PathBuf {
 /// A block on this mesh, pushed onto a floor.
 fn case_on(mesh: &str, named: Named) -> String {
     let ([top, bottom], places) = match named {
-        ByName => (["top", "bottom"], ["", ""]),
-        ByNumber => (["3", "1"], ["", ""]),
-        ByPlace => (["top", "bottom"], ["where = \"y > 1 - 1e-9\"", "where = \"abs(y) < 1e-9\""]),
+        Names => (["top", "bottom"], ["", ""]),
+        Numbers => (["3", "1"], ["", ""]),
+        Places => (["top", "bottom"], ["where = \"y > 1 - 1e-9\"", "where = \"abs(y) < 1e-9\""]),
     };
     format!(
         "mesh.gmsh = \"{mesh}.msh\"\nmaterial = {{ young = 1, poisson = 0 }}\n[boundary.{top}]\n{}\ndisplacement = [0, -0.01]\n[boundary.{bottom}]\n{}\ncontact = {{}}\n",
@@ -175,7 +175,7 @@ fn rectangles_are_split_along_one_diagonal_and_the_number_is_said() {
 
 /// The case of the table, with more text behind it.
 fn error_with(mesh: &str, more: &str) -> String {
-    let text = case_on(mesh, ByName) + more;
+    let text = case_on(mesh, Names) + more;
     let case = Case::parse(&file(mesh), &text, &[]);
     case.err().map_or("read".to_owned(), |error| error.error.to_string())
 }
@@ -195,8 +195,8 @@ fn groups_that_overlap_are_refused_only_if_both_are_used() {
         let with = |materials: &[&str]| {
             let each = |name: &&str| format!("material.{name} = {{ young = 1, poisson = 0 }}\n");
             let materials: String = materials.iter().map(each).collect();
-            let text = case_on(mesh, ByName)
-                .replace("material = { young = 1, poisson = 0 }\n", &materials);
+            let text =
+                case_on(mesh, Names).replace("material = { young = 1, poisson = 0 }\n", &materials);
             Case::parse(&file(mesh), &text, &[])
                 .err()
                 .map_or("read".to_owned(), |e| e.error.to_string())
@@ -253,7 +253,7 @@ fn triangles_that_run_both_ways_on_one_surface_are_refused() {
 #[test]
 fn boundaries_by_place_are_refused_where_they_mean_nothing() {
     let with = |place: &str| {
-        let text = case_on("no_curves", ByPlace).replace("abs(y) < 1e-9", place);
+        let text = case_on("no_curves", Places).replace("abs(y) < 1e-9", place);
         Case::parse(&file("no_curves"), &text, &[])
             .err()
             .map_or("read".to_owned(), |e| e.error.to_string())
@@ -280,7 +280,7 @@ fn boundaries_by_place_are_refused_where_they_mean_nothing() {
         "{error}"
     );
     let text =
-        case_on("msh41", ByName).replace("[boundary.top]\n", "[boundary.top]\nwhere = \"y > 0.9\"");
+        case_on("msh41", Names).replace("[boundary.top]\n", "[boundary.top]\nwhere = \"y > 0.9\"");
     let error = Case::parse(&file("msh41"), &text, &[]).err().unwrap().error.to_string();
     let expected = "[boundary.top] where: the mesh has a boundary named 'top' already; expected another name beside where";
     assert_eq!(error, expected);
@@ -293,8 +293,8 @@ fn a_boundary_by_place_holds_what_the_same_boundary_holds_by_name() {
         let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
         solution.displacement
     };
-    let by_place = case_on("msh41", ByPlace)
+    let by_place = case_on("msh41", Places)
         .replace("boundary.top", "boundary.upper")
         .replace("boundary.bottom", "boundary.lower");
-    assert_eq!(solved(&case_on("msh41", ByName)), solved(&by_place));
+    assert_eq!(solved(&case_on("msh41", Names)), solved(&by_place));
 }
