@@ -70,12 +70,7 @@ pub fn minimise(
 ) -> Result<f64, SolveError> {
     let mut stiffness = 1.0;
     if first {
-        let before = body.residual(&derivatives(edges, &body.y())).norm;
-        residuals.push(before);
-        if before == 0.0 {
-            // Nothing acts on the body, or it moves as a whole.
-            return Ok(0.0);
-        }
+        residuals.push(body.residual(&derivatives(edges, &body.y())).norm);
         match body.start(edges)? {
             Some(contact) => stiffness = f64::min(SOFT / contact, 1.0),
             None => residuals.push(body.residual(&derivatives(edges, &body.y())).norm),

@@ -309,3 +309,43 @@ fn a_whole_force_is_spread_over_its_boundary_also_beside_a_component_that_is_hel
         "control: the top is held in one of them"
     );
 }
+
+/// A block that falls by 1 onto a floor and against a wall; gamma times the pressure is some 1e-18 beside the gap, so that P in doubles
+/// has no digit of it.
+#[test]
+fn a_block_that_falls_far_lands_on_floor_and_wall() {
+    let text = "
+        mesh.rectangle = { width = 1, height = 1, nx = 8, ny = 8 }
+        material = { young = 1, poisson = 0.999999 }
+        load.body = [-3e-10, -1e-9]
+        boundary.left.contact.gap = 1
+        boundary.bottom.contact.gap = 1
+    ";
+    for (degree, poisson) in [(2, "0.499999"), (1, "0.4999")] {
+        let degree = format!("method.degree={degree}");
+        let case = case_of(&text.replace("0.999999", poisson), &[&degree]);
+        let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
+        let displacement = solution.quantities.max_displacement;
+        // It moves by the gap in both directions, and hardly strains.
+        assert!((displacement - 2.0_f64.sqrt()).abs() < 1e-8, "{degree}: {displacement}");
+        assert!(solution.plays.is_empty() && solution.balance.imbalance.abs() < 1e-8);
+    }
+}
+
+/// Of a beam of 1 : 10^4 that lies on the floor A alone has a factor in doubles by luck; with the pressed edges it has one.
+#[test]
+fn a_slender_beam_that_lies_on_a_floor_is_proved_by_what_it_presses() {
+    let text = r#"
+        mesh.rectangle = { width = 10000, height = 1, nx = 100, ny = 1, diagonal = "crossed" }
+        material = { young = 1, poisson = 0.3 }
+        load.body = [0, -1e-4]
+        boundary.left.displacement = [0, 0]
+        boundary.bottom.contact.gap = 0.02
+        method.degree = 2
+    "#;
+    for cells in ["100", "110", "180"] {
+        let case = case_of(text, &[&format!("mesh.rectangle.nx={cells}")]);
+        let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
+        assert_eq!(solution.verdict.reason(), None, "{cells}");
+    }
+}

@@ -52,9 +52,11 @@ pub fn loaded_bodies() -> Result<Vec<(&'static str, Problem)>, String> {
     for (i, (_, problem)) in bodies.iter_mut().enumerate() {
         let down = if i % 2 == 0 { -1.0 } else { 1.0 };
         problem.body_force = [constant(0.3), constant(down)];
-        let moved = Condition::Displacement([0.05, 0.1 * down].map(|u| Some(constant(u))));
         // One side is moved: two that meet would have to agree.
         let side = if problem.conditions.remove("right").is_some() { "right" } else { "top" };
+        // The right side ends on the bottom, and no further down than its obstacle.
+        let by = if side == "right" { 0.02 } else { 0.1 };
+        let moved = Condition::Displacement([0.05, by * down].map(|u| Some(constant(u))));
         problem.conditions.remove("top");
         let gap = function(|[x, _]| 0.02 + 0.01 * x);
         let all = [(side, moved), ("bottom", Condition::Contact { gap })];
