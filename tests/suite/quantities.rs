@@ -520,7 +520,7 @@ fn a_weight_with_kinks_inside_edges_has_the_force_of_a_uniform_pressure_times_it
             assert!(high - low < 2.0 * force, "{degree:?}, n = {n}: [{low}, {high}]");
             // Control: the weight that is straight between the vertices has another force, which is not in the middle.
             let nodes: Vec<f64> =
-                (0..=n).map(|k| weight.at(Ball::exactly(k as f64 / n as f64)).centre()).collect();
+                (0..=n).map(|k| weight.at(Ball::point(k as f64 / n as f64)).centre()).collect();
             let straight: f64 =
                 nodes.windows(2).map(|w| (w[0] + w[1]) / 2.0 / n as f64).sum::<f64>() * p;
             assert!((straight - force).abs() > 1e-4, "n = {n}: {straight} {force}");
