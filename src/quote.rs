@@ -99,6 +99,7 @@ fn escaped(text: impl Iterator<Item = char>) -> String {
 
 /// A text for a page: spaces in place of control characters (a table of bytes above 127 has some, too) and of those that turn
 /// the direction of the text round or are not seen; line breaks and tabs stay.
+#[cfg(feature = "files")]
 pub(crate) fn on_page(text: &str) -> String {
     let is_kept = |c: char| {
         matches!(c, '\n' | '\t') || !(is_hidden(c) || matches!(c, '\u{fffe}' | '\u{ffff}'))
@@ -107,6 +108,7 @@ pub(crate) fn on_page(text: &str) -> String {
 }
 
 /// A text in JSON, in which the characters that a terminal obeys are escaped: the text that it stands for is the same.
+#[cfg(feature = "files")]
 pub(crate) fn in_json(json: &str) -> String {
     let mut shown = String::with_capacity(json.len());
     for c in json.chars() {
@@ -164,6 +166,7 @@ mod tests {
         assert_eq!(line(&long(201)), long(200) + "...");
     }
 
+    #[cfg(feature = "files")]
     #[test]
     fn pages_and_json_hold_no_character_that_a_terminal_obeys() {
         assert_eq!(on_page("a\u{202e}b\u{9b}\tc\u{feff}\n"), "a b \tc \n");

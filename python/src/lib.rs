@@ -132,7 +132,7 @@ fn interruptible<T: Send + 'static>(
 ) -> PyResult<T> {
     let is_stopped = Arc::new(AtomicBool::new(false));
     let stopped = Arc::clone(&is_stopped);
-    let (sender, receiver) = channel();
+    let (sender, mut receiver) = channel();
     let work = move || {
         let stage = || {
             if stopped.load(Ordering::Relaxed) {
@@ -146,7 +146,12 @@ fn interruptible<T: Send + 'static>(
     let thread = std::thread::Builder::new().name("signorini".to_owned()).stack_size(STACK);
     thread.spawn(work).map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
     loop {
-        match py.detach(|| receiver.recv_timeout(BETWEEN_LOOKS)) {
+        let result;
+        (receiver, result) = py.detach(move || {
+            let result = receiver.recv_timeout(BETWEEN_LOOKS);
+            (receiver, result)
+        });
+        match result {
             Ok(result) => return result,
             Err(RecvTimeoutError::Timeout) => {
                 if let Err(signal) = py.check_signals() {
@@ -168,7 +173,7 @@ fn interruptible<T: Send + 'static>(
 const STACK: usize = 8 << 20;
 
 /// The cells of a block of a mesh: Gmsh's number of their kind, their nodes, and on which entity each lies.
-type Block<'a> = (i32, &'a [u8], &'a [u8]);
+type Block = (i32, Vec<u8>, Vec<u8>);
 
 /// The names of entities by their numbers.
 type EntityNames = Vec<(i32, Vec<String>)>;
@@ -198,7 +203,7 @@ fn plane_mesh<'py>(
     for (number, cells, entities) in blocks {
         let kind =
             Kind::of_gmsh(number).map_err(|found| wrong(format!("cell {tag} is {found}")))?;
-        let nodes = indices::<1>(cells, &format!("the block that begins with cell {tag}"))?;
+        let nodes = indices::<1>(&cells, &format!("the block that begins with cell {tag}"))?;
         let entities = entities.as_chunks::<4>().0;
         for (nodes, entity) in nodes.as_flattened().chunks(kind.nodes).zip(entities) {
             raw.elements.add(kind, tag, nodes, i32::from_ne_bytes(*entity));

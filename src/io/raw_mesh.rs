@@ -5,7 +5,7 @@
 //! corners, and an element that is listed once for each of its groups is one. What is decided is said in a remark: quadrangles
 //! are split, and a plane z = c is taken for the plane of the body. A group without a name is called by its number.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use nalgebra::Vector2;
 
@@ -239,73 +239,89 @@ impl RawMesh {
     pub fn made(mut self, share: Option<f64>, pairs: &[Pair]) -> Result<Made> {
         let mut remarks = std::mem::take(&mut self.remarks);
         let cells = self.elements.triangles.len() + 2 * self.elements.quadrangles.len();
-        // Two maps from tags, which are at most half empty and twice as large for a moment while they grow; the lists.
-        let maps = 3 * bytes_of::<[usize; 4]>(self.nodes.len()).saturating_mul(2);
-        memory::check(maps.saturating_add(bytes_of::<[usize; 8]>(cells)))?;
+        // A map from tags, which is at most half empty and twice as large for a moment while it grows; the lists.
+        let map = 3 * bytes_of::<[usize; 2]>(self.nodes.len()).saturating_mul(2);
+        memory::check(map.saturating_add(bytes_of::<[usize; 12]>(cells)))?;
         if cells == 0 {
             return Err(noted(MeshError::Empty, NO_TRIANGLE));
         }
-        let position = self.positions()?;
-        let place = |node: usize| self.nodes[position[&node]].place;
-        self.check_names_of_nodes(&position)?;
+        self.count_nodes_from_0()?;
         for on_edge in &self.elements.on_edges {
-            check_straight(on_edge, place)?;
+            self.check_straight(on_edge)?;
         }
-        remarks.extend(self.plane(&position)?);
-        let is_mixed = turn(&mut self.elements, |node| plane_place(place(node)));
+        remarks.extend(self.plane()?);
+        let places: Vec<[f64; 2]> = self.nodes.iter().map(|node| plane_place(node.place)).collect();
+        let is_mixed = turn(&mut self.elements, &places);
         let quadrangles = std::mem::take(&mut self.elements.quadrangles);
         remarks.extend(said_of_split(quadrangles.len()));
         for Element { tag, nodes, entity } in quadrangles {
-            let places = nodes.map(|node| plane_place(place(node)));
-            let halves = halves(places).map(|half| half.map(|corner| nodes[corner]));
+            let halves = halves(nodes.map(|node| places[node]));
+            let halves = halves.map(|half| half.map(|corner| nodes[corner]));
             self.elements.triangles.extend(halves.map(|nodes| Element { tag, nodes, entity }));
         }
         if let Some(share) = share {
-            self.merge_nodes(share, pairs);
+            self.merge_nodes(&places, share, pairs);
         }
         let note =
             if is_mixed { format!("{}; {MIXED}", self.numbers) } else { self.numbers.to_owned() };
-        let mesh = self.mesh(&note, pairs)?;
+        let mesh = self.mesh(&places, &note, pairs)?;
         Ok(Made { mesh, remarks })
     }
 
-    /// The place of each node in the list, by its number.
-    fn positions(&self) -> Result<HashMap<usize, usize>> {
+    /// Puts the places of nodes in the list into the elements, instead of their tags.
+    fn count_nodes_from_0(&mut self) -> Result<()> {
         let mut position = HashMap::with_capacity(self.nodes.len());
         for (i, Node { tag, .. }) in self.nodes.iter().enumerate() {
             if position.insert(*tag, i).is_some() {
-                return Err(format!(
+                let said = format!(
                     "there is a second node {tag}; expected a tag of its own for each node"
-                )
-                .into());
+                );
+                return Err(said.into());
             }
         }
-        Ok(position)
+        let number = |element: usize, nodes: &mut [usize]| -> Result<()> {
+            for node in nodes {
+                let said =
+                    || format!("element {element} names node {node}, which is not in $Nodes");
+                *node = *position.get(node).ok_or_else(said)?;
+            }
+            Ok(())
+        };
+        let Elements { points, lines, triangles, quadrangles, on_edges } = &mut self.elements;
+        points.iter_mut().try_for_each(|e| number(e.tag, &mut e.nodes))?;
+        lines.iter_mut().try_for_each(|e| number(e.tag, &mut e.nodes))?;
+        triangles.iter_mut().try_for_each(|e| number(e.tag, &mut e.nodes))?;
+        quadrangles.iter_mut().try_for_each(|e| number(e.tag, &mut e.nodes))?;
+        on_edges.iter_mut().try_for_each(|e| {
+            number(e.element, &mut e.ends)?;
+            number(e.element, std::slice::from_mut(&mut e.node))
+        })
     }
 
-    fn check_names_of_nodes(&self, position: &HashMap<usize, usize>) -> Result<()> {
-        let Elements { points, lines, triangles, quadrangles, on_edges } = &self.elements;
-        let mut named = points
-            .iter()
-            .flat_map(|e| e.nodes.map(|node| (e.tag, node)))
-            .chain(lines.iter().flat_map(|e| e.nodes.map(|node| (e.tag, node))))
-            .chain(triangles.iter().flat_map(|e| e.nodes.map(|node| (e.tag, node))))
-            .chain(quadrangles.iter().flat_map(|e| e.nodes.map(|node| (e.tag, node))))
-            .chain(on_edges.iter().map(|e| (e.element, e.node)));
-        match named.find(|(_, node)| !position.contains_key(node)) {
-            None => Ok(()),
-            Some((element, node)) => {
-                Err(format!("element {element} names node {node}, which is not in $Nodes").into())
-            }
+    /// Refuses an edge whose inner nodes do not divide it evenly.
+    fn check_straight(
+        &self,
+        &NodeOnEdge { element, node, ends: [a, b], share }: &NodeOnEdge,
+    ) -> Result<()> {
+        let place = |node: usize| Vector2::from(plane_place(self.nodes[node].place));
+        let expected = place(a) * (1.0 - share) + place(b) * share;
+        let off = length(place(node) - expected) / length(place(b) - place(a));
+        if off <= STRAIGHT {
+            return Ok(());
         }
+        let node = self.nodes[node].tag;
+        Err(format!(
+            "element {element} is curved: node {node} on its edge lies {off:e} of the edge's length beside its place; expected straight edges: mesh finer with element order 1 (Mesh.ElementOrder = 1), the smooth boundary is found from the vertices"
+        )
+        .into())
     }
 
     /// Checks that the corners of triangles and quadrangles lie in a plane z = c, which is a remark if c is not 0.
-    fn plane(&self, position: &HashMap<usize, usize>) -> Result<Option<String>> {
+    fn plane(&self) -> Result<Option<String>> {
         let Elements { triangles, quadrangles, .. } = &self.elements;
         let corners = triangles.iter().flat_map(|e| e.nodes);
         let corners = corners.chain(quadrangles.iter().flat_map(|e| e.nodes));
-        let nodes = || corners.clone().map(|node| &self.nodes[position[&node]]);
+        let nodes = || corners.clone().map(|node| &self.nodes[node]);
         let by_z = |a: &&Node, b: &&Node| a.place[2].total_cmp(&b.place[2]);
         let (Some(low), Some(high)) = (nodes().min_by(by_z), nodes().max_by(by_z)) else {
             return Ok(None);
@@ -336,31 +352,28 @@ impl RawMesh {
 
     /// Gives the elements on nodes that lie together the first of these nodes, and leaves out what loses an edge by it. Nodes
     /// that no triangle uses stay as they are, and the two boundaries of a pair stay apart.
-    fn merge_nodes(&mut self, share: f64, pairs: &[Pair]) {
-        let on_sides: Vec<[HashSet<usize>; 2]> = pairs
+    fn merge_nodes(&mut self, places: &[[f64; 2]], share: f64, pairs: &[Pair]) {
+        let on_sides: Vec<[BTreeSet<usize>; 2]> = pairs
             .iter()
             .map(|pair| pair.boundaries.each_ref().map(|name| self.nodes_on(name)))
             .collect();
         let Elements { points, lines, triangles, .. } = &mut self.elements;
-        let used: HashSet<usize> = triangles.iter().flat_map(|t| t.nodes).collect();
-        let kept: Vec<&Node> = self.nodes.iter().filter(|node| used.contains(&node.tag)).collect();
-        let places: Vec<[f64; 2]> = kept.iter().map(|node| plane_place(node.place)).collect();
+        let kept = used(triangles, places.len());
+        let of_kept: Vec<[f64; 2]> = kept.iter().map(|&node| places[node]).collect();
         let are_apart = |v: usize, w: usize| {
-            let [v, w] = [kept[v].tag, kept[w].tag];
+            let [v, w] = [kept[v], kept[w]];
             on_sides.iter().any(|[first, second]| {
                 (first.contains(&v) && second.contains(&w))
                     || (first.contains(&w) && second.contains(&v))
             })
         };
-        let merged = merge(&places, &[], share, are_apart);
-        let first: HashMap<usize, usize> = kept
-            .iter()
-            .zip(&merged.vertex)
-            .map(|(node, &vertex)| (node.tag, kept[merged.old_vertex[vertex]].tag))
-            .collect();
-        let with_first = |nodes: &mut [usize]| {
-            nodes.iter_mut().for_each(|tag| *tag = first.get(tag).copied().unwrap_or(*tag));
-        };
+        let merged = merge(&of_kept, &[], share, are_apart);
+        let mut first: Vec<usize> = (0..places.len()).collect();
+        for (&node, &vertex) in kept.iter().zip(&merged.vertex) {
+            first[node] = kept[merged.old_vertex[vertex]];
+        }
+        let with_first =
+            |nodes: &mut [usize]| nodes.iter_mut().for_each(|node| *node = first[*node]);
         points.iter_mut().for_each(|point| with_first(&mut point.nodes));
         lines.iter_mut().for_each(|line| with_first(&mut line.nodes));
         triangles.iter_mut().for_each(|triangle| with_first(&mut triangle.nodes));
@@ -369,37 +382,30 @@ impl RawMesh {
     }
 
     /// The nodes on the curves of this name.
-    fn nodes_on(&self, name: &str) -> HashSet<usize> {
+    fn nodes_on(&self, name: &str) -> BTreeSet<usize> {
         let is_named =
             |line: &&Element<2>| names_of(&self.names[1], line.entity).iter().any(|of| of == name);
         self.elements.lines.iter().filter(is_named).flat_map(|line| line.nodes).collect()
     }
 
     /// The mesh of the triangles, in their order.
-    fn mesh(self, note: &str, pairs: &[Pair]) -> Result<Mesh> {
+    fn mesh(self, places: &[[f64; 2]], note: &str, pairs: &[Pair]) -> Result<Mesh> {
         let RawMesh { nodes, elements, names, .. } = self;
         let Elements { points, lines, triangles, .. } = elements;
         let (triangles, other_entities) = once(triangles, &names[2]);
-        let used: HashSet<usize> = triangles.iter().flat_map(|t| t.nodes).collect();
-        let kept: Vec<&Node> = nodes.iter().filter(|node| used.contains(&node.tag)).collect();
-        let vertex_of: HashMap<usize, usize> =
-            kept.iter().enumerate().map(|(vertex, node)| (node.tag, vertex)).collect();
-        let place: HashMap<usize, [f64; 2]> =
-            if lines.iter().any(|line| !is_known(line, &vertex_of)) {
-                nodes.iter().map(|node| (node.tag, plane_place(node.place))).collect()
-            } else {
-                HashMap::new()
-            };
+        let kept = used(&triangles, nodes.len());
+        let mut vertex_of = vec![None; nodes.len()];
+        kept.iter().enumerate().for_each(|(vertex, &node)| vertex_of[node] = Some(vertex));
 
         let mut parts: BTreeMap<String, Vec<[usize; 2]>> = empty(&names[1]);
         let mut faults = BTreeMap::new();
         let mut curves: BTreeMap<String, Vec<[[f64; 2]; 2]>> = BTreeMap::new();
         for line in &lines {
             for name in names_of(&names[1], line.entity) {
-                if is_known(line, &vertex_of) {
-                    parts.entry(name.clone()).or_default().push(line.nodes.map(|n| vertex_of[&n]));
+                if let [Some(a), Some(b)] = line.nodes.map(|node| vertex_of[node]) {
+                    parts.entry(name.clone()).or_default().push([a, b]);
                 } else {
-                    let ends = line.nodes.map(|n| place.get(&n).copied().unwrap_or_default());
+                    let ends = line.nodes.map(|node| places[node]);
                     curves.entry(name.clone()).or_default().push(ends);
                     let fault = MeshError::NoSuchEdge { boundary: name.clone(), ends };
                     faults.entry(name.clone()).or_insert(fault);
@@ -407,9 +413,8 @@ impl RawMesh {
             }
         }
         let mut surfaces: BTreeMap<String, Vec<usize>> = empty(&names[2]);
-        let others = other_entities.into_iter();
         let own = triangles.iter().enumerate().map(|(t, triangle)| (t, triangle.entity));
-        for (t, entity) in own.chain(others) {
+        for (t, entity) in own.chain(other_entities) {
             for name in names_of(&names[2], entity) {
                 surfaces.entry(name.clone()).or_default().push(t);
             }
@@ -422,27 +427,31 @@ impl RawMesh {
         for point in &points {
             for name in names_of(&names[0], point.entity) {
                 let of_name = named_points.entry(name.clone()).or_default();
-                of_name.extend(vertex_of.get(&point.nodes[0]).filter(|v| !of_name.contains(v)));
+                of_name.extend(vertex_of[point.nodes[0]].filter(|v| !of_name.contains(v)));
             }
         }
-        let corners = triangles.iter().map(|t| t.nodes.map(|node| vertex_of[&node])).collect();
-        let places = kept.iter().map(|node| plane_place(node.place)).collect();
-        Mesh::with_pairs(places, corners, parts, pairs)
+        let corners =
+            triangles.iter().map(|t| t.nodes.map(|node| vertex_of[node].unwrap_or_default()));
+        let of_kept = kept.iter().map(|&node| places[node]).collect();
+        Mesh::with_pairs(of_kept, corners.collect(), parts, pairs)
             .and_then(|mesh| mesh.with_names(surfaces, named_points))
             .map(|mesh| mesh.with_faults(faults).with_curves(curves))
             .map_err(|error| {
-                let error = error.renumbered(|vertex| kept[vertex].tag, |t| triangles[t].tag);
-                noted(error, note)
+                let of_vertex = |vertex: usize| nodes[kept[vertex]].tag;
+                noted(error.renumbered(of_vertex, |t| triangles[t].tag), note)
             })
     }
 }
 
-fn plane_place([x, y, _]: [f64; 3]) -> [f64; 2] {
-    [x, y]
+/// The nodes that are corners of triangles, in order.
+fn used(triangles: &[Element<3>], nodes: usize) -> Vec<usize> {
+    let mut is_used = vec![false; nodes];
+    triangles.iter().flat_map(|t| t.nodes).for_each(|node| is_used[node] = true);
+    (0..nodes).filter(|&node| is_used[node]).collect()
 }
 
-fn is_known(line: &Element<2>, vertex_of: &HashMap<usize, usize>) -> bool {
-    line.nodes.iter().all(|node| vertex_of.contains_key(node))
+fn plane_place([x, y, _]: [f64; 3]) -> [f64; 2] {
+    [x, y]
 }
 
 fn names_of(names: &BTreeMap<i32, Vec<String>>, entity: i32) -> &[String] {
@@ -462,22 +471,6 @@ fn noted(error: MeshError, note: &str) -> Failure {
 /// file have 16 digits, and a thousandth of the body may be the length of an edge.
 const STRAIGHT: f64 = 1e-10;
 
-/// Refuses an edge whose inner nodes do not divide it evenly.
-fn check_straight(
-    &NodeOnEdge { element, node, ends, share }: &NodeOnEdge,
-    place: impl Fn(usize) -> [f64; 3],
-) -> Result<()> {
-    let [a, b, at] = [ends[0], ends[1], node].map(|n| Vector2::from(plane_place(place(n))));
-    let off = length(at - (a * (1.0 - share) + b * share)) / length(b - a);
-    if off <= STRAIGHT {
-        return Ok(());
-    }
-    Err(format!(
-        "element {element} is curved: node {node} on its edge lies {off:e} of the edge's length beside its place; expected straight edges: mesh finer with element order 1 (Mesh.ElementOrder = 1), the smooth boundary is found from the vertices"
-    )
-    .into())
-}
-
 /// Twice the area of a polygon, positive if it runs counter-clockwise; 0 where it is nothing beside the polygon's size.
 fn turning<const N: usize>(places: [[f64; 2]; N]) -> f64 {
     let from = |i: usize| Vector2::from(places[i % N]) - Vector2::from(places[0]);
@@ -487,12 +480,13 @@ fn turning<const N: usize>(places: [[f64; 2]; N]) -> f64 {
 }
 
 /// Turns the elements of each surface on which all run clockwise. Returns whether there is one on which some do.
-fn turn(elements: &mut Elements, place: impl Fn(usize) -> [f64; 2]) -> bool {
+fn turn(elements: &mut Elements, places: &[[f64; 2]]) -> bool {
+    let place = |node: usize| places[node];
     let Elements { triangles, quadrangles, .. } = elements;
     // For each surface whether some run clockwise and whether some run the other way.
     let mut found: HashMap<i32, [bool; 2]> = HashMap::new();
-    let areas = triangles.iter().map(|e| (e.entity, turning(e.nodes.map(&place))));
-    let more = quadrangles.iter().map(|e| (e.entity, turning(e.nodes.map(&place))));
+    let areas = triangles.iter().map(|e| (e.entity, turning(e.nodes.map(place))));
+    let more = quadrangles.iter().map(|e| (e.entity, turning(e.nodes.map(place))));
     for (entity, area) in areas.chain(more) {
         let [clockwise, other] = found.entry(entity).or_default();
         *clockwise |= area < 0.0;
@@ -542,22 +536,27 @@ fn once(
     if triangles.iter().all(|t| t.entity == triangles[0].entity) {
         return (triangles, Vec::new());
     }
-    let key = |t: usize| {
-        let mut nodes = triangles[t].nodes;
+    let sorted = |(t, triangle): (usize, &Element<3>)| {
+        let mut nodes = triangle.nodes;
         nodes.sort_unstable();
-        nodes
+        (nodes, t)
     };
-    let mut order: Vec<usize> = (0..triangles.len()).collect();
-    order.sort_by_key(|&t| key(t));
+    let mut order: Vec<([usize; 3], usize)> = triangles.iter().enumerate().map(sorted).collect();
+    order.sort_unstable();
     // The first triangle that each is the same as.
     let mut first: Vec<usize> = (0..triangles.len()).collect();
-    for same in order.chunk_by(|&a, &b| key(a) == key(b)) {
-        let mut groups: Vec<&[String]> = vec![names_of(names, triangles[same[0]].entity)];
-        for &t in &same[1..] {
-            let of_this = names_of(names, triangles[t].entity);
-            if groups.iter().all(|of_other| of_other.iter().all(|name| !of_this.contains(name))) {
-                groups.push(of_this);
-                first[t] = same[0];
+    for same in order.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1) {
+        let mut others: Vec<i32> = vec![triangles[same[0].1].entity];
+        for &(_, t) in &same[1..] {
+            let entity = triangles[t].entity;
+            let names_of_this = names_of(names, entity);
+            let is_apart = |&other: &i32| {
+                let shared = names_of(names, other).iter().any(|name| names_of_this.contains(name));
+                other != entity && !shared
+            };
+            if others.iter().all(is_apart) {
+                others.push(entity);
+                first[t] = same[0].1;
             }
         }
     }

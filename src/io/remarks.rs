@@ -2,10 +2,11 @@
 
 use super::case::Case;
 use super::numbers::short;
-use crate::fem::ContactLine;
+use crate::fem::boundary_normals::SmoothBoundary;
 use crate::fem::contact_line::Gamma;
 use crate::fem::piece::Stretch;
 use crate::fem::tree::Bounds;
+use crate::fem::{ContactLine, Pair};
 use crate::fem::{Degree, Space};
 use crate::quote;
 use crate::solve::Solution;
@@ -19,6 +20,9 @@ const LARGE_DISPLACEMENT: f64 = 0.1;
 
 /// Overlaps below this share of the body's size are rounding: mesh files have nine digits or more.
 const NO_OVERLAP: f64 = 1e-9;
+
+/// Two bodies that overlap before loading by more than this share of their least radius or width strain by as much.
+const LARGE_OVERLAP: f64 = 0.01;
 
 /// A triangle whose limit of gamma0 is this many times below the median of the line spoils the line.
 const SLIVER: f64 = 8.0;
@@ -54,6 +58,7 @@ pub(super) fn remarks(case: &Case, solution: &Solution) -> Vec<String> {
         ));
     }
     remarks.extend(overlap(case));
+    remarks.extend(interference(case, solution));
     let size = size(case);
     let largest = solution.quantities.max_displacement;
     if largest > LARGE_DISPLACEMENT * size {
@@ -86,6 +91,33 @@ fn size(case: &Case) -> f64 {
 /// The name of the obstacle of a contact boundary, if it has one.
 fn named_obstacle(case: &Case, boundary: &str) -> Option<String> {
     case.problem.obstacle_of(boundary).map(|name| quote::quoted(name, '\''))
+}
+
+/// Says which bodies of pairs overlap by more before loading than small strains are for, and where most.
+fn interference(case: &Case, solution: &Solution) -> Vec<String> {
+    let (mesh, length) = (&case.problem.mesh, length_unit(case));
+    let smooth = SmoothBoundary::new(mesh);
+    let of_pair = |pair: &Pair| {
+        let own = solution
+            .between
+            .iter()
+            .filter(|piece| piece.boundaries.iter().zip(&pair.boundaries).all(|(a, b)| **a == **b));
+        let points = own.flat_map(|piece| &piece.points);
+        let deepest = points.min_by(|a, b| a.gap.total_cmp(&b.gap))?;
+        let share = -deepest.gap / pair.scale(mesh, &smooth).ok()?;
+        let ([first, second], [x, y]) =
+            (pair.boundaries.each_ref().map(|name| quote::quoted(name, '\'')), deepest.at[0]);
+        (share > LARGE_OVERLAP).then(|| {
+            format!(
+                "the bodies of {first} and {second} overlap by {}{length} at ({}, {}) before loading, {} % of their least radius or width: strains are taken to be small",
+                short(-deepest.gap, 3),
+                short(x, 4),
+                short(y, 4),
+                short(100.0 * share, 2)
+            )
+        })
+    };
+    case.problem.pairs.iter().filter_map(of_pair).collect()
 }
 
 /// Says where the body is deepest in its obstacle before it is loaded, if it is.

@@ -5,7 +5,7 @@ use approx::assert_abs_diff_eq;
 use signorini::fem::{Condition, DataError, Mesh, Obstacle, PointSupport, Problem, Side};
 use signorini::kernel::{Material, Plane};
 use signorini::solve::{
-    Course, Degree, RouteName, Settings, Solution, SolveError, solve, solve_along,
+    Course, Degree, Method, RouteName, Settings, Solution, SolveError, solve, solve_along,
 };
 
 use crate::common::*;
@@ -178,4 +178,34 @@ fn a_shaft_that_the_loads_turn_in_its_bearing_is_refused_with_the_moment() {
     assert_abs_diff_eq!(drive.unwrap(), -0.01 * std::f64::consts::PI / 4.0, epsilon = 2e-4);
     assert!(error.to_string().contains("rotation about (0, 0)"), "{error}");
     assert!(error.to_string().contains("drive it with a moment of -0.007"), "{error}");
+}
+
+/// A whole force in code and in a case file, beside a component that is held, is the force that the floor gives back.
+#[test]
+fn a_whole_force_is_spread_over_its_boundary_also_beside_a_component_that_is_held() {
+    let mesh = unit_square(4).mesh().unwrap();
+    let force = Condition::force([0.0, -3.0], &mesh, "top").unwrap();
+    let unknown = Condition::force([0.0, -3.0], &mesh, "roof").err().unwrap().to_string();
+    assert!(unknown.starts_with("no boundary named 'roof'"), "{unknown}");
+    let problem = Problem::of(mesh, unit_material())
+        .with("top", force)
+        .with("left", Condition::normal(|_| 0.0))
+        .with("bottom", Condition::contact(|_| 0.0));
+    let (in_code, _) = solve(&problem, &Method::default(), &Settings::default()).unwrap();
+    let text = "mesh.rectangle = { width = 1, height = 1, nx = 4, ny = 4 }
+        material = { lambda = 1, mu = 1 }
+        boundary.top = { displacement = [0, \"free\"], force = [0, -3] }
+        boundary.bottom.contact = {}";
+    let case = case_of(text, &[]);
+    let (in_case, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
+    for solution in [&in_code, &in_case] {
+        // The tolerance of the solver is 1e-10 of the loads.
+        let force = solution.quantities.contact_force;
+        assert!((force - 3.0).abs() < 1e-9, "{force}");
+    }
+    assert!(in_code.quantities.reactions["left"][0].abs() < 1e-9);
+    assert!(
+        in_code.displacement != in_case.displacement,
+        "control: the top is held in one of them"
+    );
 }

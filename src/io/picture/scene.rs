@@ -8,9 +8,7 @@ use crate::fem::{BoundaryEdge, Degree};
 use crate::io::case::{Case, Measure};
 use crate::io::numbers::round_below;
 use crate::io::result::{ContinuousCertificate, Results};
-use crate::solve::solution::{
-    ContactEdgeValues, ContactValues, PieceNodeValues, PieceValues,
-};
+use crate::solve::solution::{ContactEdgeValues, ContactValues, PieceNodeValues, PieceValues};
 use crate::solve::{ContactBoundary, Solution, Verdict};
 
 #[derive(Clone, Debug)]
@@ -169,7 +167,8 @@ fn contact_surfaces(s: &Solution, results: &Results) -> Vec<ContactSurface> {
     let mut surfaces: Vec<ContactSurface> = Vec::new();
     for edges in s.contact.chunk_by(|a, b| a.boundary == b.boundary) {
         let name = edges[0].boundary.to_string();
-        let carries = results.contact.iter().find(|part| part.boundary == name && part.partner.is_none());
+        let carries =
+            results.contact.iter().find(|part| part.boundary == name && part.partner.is_none());
         let presses = carries.is_some_and(|part| results.is_in_contact(part));
         let connected = |a: &ContactEdgeValues, b: &ContactEdgeValues| {
             a.points.last().map(|p| p.node) == b.points.first().map(|p| p.node)
