@@ -33,8 +33,8 @@ pub enum DataError {
         values: [f64; 2],
     },
     #[error(
-        "the body is not held: nothing stops the {}{}; expected a support that stops it, such as displacement = [0, 0] or normal = 0 on a boundary, or loads that press the body against its obstacles (contact can push, not pull)",
-        listed(motions), driven(motions, *drive)
+        "the body is not held: nothing stops the {}{}; expected a support that stops it, such as displacement = [0, 0] or normal = 0 on a boundary, or loads that press the body against its obstacles (contact can push, not pull){}",
+        listed(motions), driven(motions, *drive), of_bodies(motions)
     )]
     RigidMotion { motions: Vec<FreeMotion>, drive: Option<f64> },
     #[error(
@@ -85,6 +85,15 @@ fn listed(motions: &[FreeMotion]) -> String {
         more => format!("; nor {more} more"),
     };
     list.join("; nor the ") + &more
+}
+
+/// What else may hold a body of several.
+fn of_bodies(motions: &[FreeMotion]) -> &'static str {
+    if motions.iter().any(FreeMotion::is_of_one_of_several) {
+        "; bodies that touch each other are a [[pair]] of boundaries"
+    } else {
+        ""
+    }
 }
 
 fn driven(motions: &[FreeMotion], drive: Option<f64>) -> String {

@@ -89,15 +89,7 @@ impl Pair {
     /// # Errors
     /// A reach that is not positive, or beyond 3/2 of the least radius of curvature; unknown boundaries.
     pub fn reach_on(&self, mesh: &Mesh, smooth: &SmoothBoundary) -> Result<f64, DataError> {
-        let (mut curvature, mut place) = (0.0, [0.0; 2]);
-        for name in &self.boundaries {
-            for &edge in self.edges(mesh, name)? {
-                let curve = smooth.edge(mesh, edge);
-                if curve.curvature() > curvature {
-                    (curvature, place) = (curve.curvature(), curve.at(0.5).0.into());
-                }
-            }
-        }
+        let (curvature, place) = self.largest_curvature(mesh, smooth)?;
         match self.reach {
             None => Ok((self.smaller_body(mesh)? / 4.0).min(1.0 / curvature)),
             Some(reach) if !(reach > 0.0 && reach.is_finite()) => {
@@ -112,6 +104,36 @@ impl Pair {
         }
     }
 
+    /// The largest curvature of the two boundaries, and where it is.
+    fn largest_curvature(
+        &self,
+        mesh: &Mesh,
+        smooth: &SmoothBoundary,
+    ) -> Result<(f64, [f64; 2]), DataError> {
+        let (mut curvature, mut place) = (0.0, [0.0; 2]);
+        for name in &self.boundaries {
+            for &edge in self.edges(mesh, name)? {
+                let curve = smooth.edge(mesh, edge);
+                if curve.curvature() > curvature {
+                    (curvature, place) = (curve.curvature(), curve.at(0.5).0.into());
+                }
+            }
+        }
+        Ok((curvature, place))
+    }
+
+    /// The length beside which an overlap of the two bodies is to be small: the least radius of curvature of the boundaries, or how wide
+    /// the narrower body is, the shorter side of the box around it.
+    ///
+    /// # Errors
+    /// Unknown boundaries.
+    pub(crate) fn scale(&self, mesh: &Mesh, smooth: &SmoothBoundary) -> Result<f64, DataError> {
+        let (curvature, _) = self.largest_curvature(mesh, smooth)?;
+        let boxes = self.boxes(mesh)?;
+        let width = |Bounds { low, high }: Bounds| (high[0] - low[0]).min(high[1] - low[1]);
+        Ok(boxes.into_iter().map(width).fold(1.0 / curvature, f64::min))
+    }
+
     /// The edges of a boundary of the pair.
     fn edges<'m>(&self, mesh: &'m Mesh, name: &str) -> Result<&'m [BoundaryEdge], DataError> {
         mesh.edges_of(name).map_err(|error| match error {
@@ -124,15 +146,19 @@ impl Pair {
 
     /// The size of the smaller body: the longer side of the box around it.
     fn smaller_body(&self, mesh: &Mesh) -> Result<f64, DataError> {
+        Ok(self.boxes(mesh)?.into_iter().map(Bounds::size).fold(f64::INFINITY, f64::min))
+    }
+
+    /// The boxes around the bodies of the two boundaries.
+    fn boxes(&self, mesh: &Mesh) -> Result<Vec<Bounds>, DataError> {
         let parts = Parts::new(mesh);
-        let mut smaller = f64::INFINITY;
-        for name in &self.boundaries {
+        let around = |name: &String| {
             let part = mesh.edges_of(name)?.first().map(|edge| parts.of_triangle()[edge.triangle]);
             let own = mesh.triangles().iter().zip(parts.of_triangle());
             let corners = own.filter(|(_, of)| Some(**of) == part).flat_map(|(corners, _)| corners);
-            smaller = smaller.min(Bounds::around(corners.map(|&v| mesh.vertices()[v])).size());
-        }
-        Ok(smaller)
+            Ok(Bounds::around(corners.map(|&v| mesh.vertices()[v])))
+        };
+        self.boundaries.iter().map(around).collect()
     }
 
     /// g at partners.

@@ -119,6 +119,11 @@ impl FreeMotion {
         if self.turn == 0.0 { self.shift[0].hypot(self.shift[1]) } else { self.turn }
     }
 
+    /// The body has several parts, of which one moves.
+    pub(super) fn is_of_one_of_several(&self) -> bool {
+        self.place.is_some()
+    }
+
     /// A support that would stop it.
     pub fn remedy(&self) -> String {
         match self.about() {

@@ -218,7 +218,7 @@ pub fn results(
             allow_noncoercive: case.method.allow_noncoercive,
         }),
         remarks,
-        mesh: MeshSizes::new(mesh, solution.nodes.len(), solution.contact.len()),
+        mesh: MeshSizes::new(mesh, solution.nodes.len(), solution.pieces.len()),
         gamma: GammaChoice::from(&solution.gamma),
         newton: NewtonHistory {
             iterations: solution.newton.iterations(),

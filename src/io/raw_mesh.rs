@@ -5,7 +5,7 @@
 //! corners, and an element that is listed once for each of its groups is one. What is decided is said in a remark: quadrangles
 //! are split, and a plane z = c is taken for the plane of the body. A group without a name is called by its number.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use nalgebra::Vector2;
 
@@ -353,7 +353,7 @@ impl RawMesh {
     /// Gives the elements on nodes that lie together the first of these nodes, and leaves out what loses an edge by it. Nodes
     /// that no triangle uses stay as they are, and the two boundaries of a pair stay apart.
     fn merge_nodes(&mut self, places: &[[f64; 2]], share: f64, pairs: &[Pair]) {
-        let on_sides: Vec<[HashSet<usize>; 2]> = pairs
+        let on_sides: Vec<[BTreeSet<usize>; 2]> = pairs
             .iter()
             .map(|pair| pair.boundaries.each_ref().map(|name| self.nodes_on(name)))
             .collect();
@@ -382,7 +382,7 @@ impl RawMesh {
     }
 
     /// The nodes on the curves of this name.
-    fn nodes_on(&self, name: &str) -> HashSet<usize> {
+    fn nodes_on(&self, name: &str) -> BTreeSet<usize> {
         let is_named =
             |line: &&Element<2>| names_of(&self.names[1], line.entity).iter().any(|of| of == name);
         self.elements.lines.iter().filter(is_named).flat_map(|line| line.nodes).collect()

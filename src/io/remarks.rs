@@ -69,6 +69,7 @@ pub(super) fn remarks(problem: &Problem, solution: &Solution, words: &Words) -> 
         ));
     }
     remarks.extend(model::overlap(problem, words));
+    remarks.extend(model::interference(problem, solution, words));
     let (largest, size) = (solution.quantities.max_displacement, size(problem));
     if largest > LARGE_DISPLACEMENT * size {
         remarks.push(format!(

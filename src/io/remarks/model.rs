@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 
 use super::{NO_LENGTH, Words, named_obstacle, obstacle_of, place, size};
-use crate::fem::boundary_normals::SMOOTH;
+use crate::fem::boundary_normals::{SMOOTH, SmoothBoundary};
 use crate::fem::mesh::ROUNDED;
 use crate::fem::rigid::Parts;
-use crate::fem::{BoundaryEdge, ContactLine, Degree, Mesh, Problem, Space};
+use crate::fem::{BoundaryEdge, ContactLine, Degree, Mesh, Pair, Problem, Space};
 use crate::io::numbers::short;
 use crate::kernel::Material;
 use crate::quote;
@@ -125,6 +125,37 @@ pub(super) fn overlap(problem: &Problem, words: &Words) -> Option<String> {
         words.length(-gap),
         place(deepest)
     ))
+}
+
+/// Two bodies that overlap before loading by more than this share of their least radius or width strain by as much.
+const LARGE_OVERLAP: f64 = 0.01;
+
+/// Says which bodies of pairs overlap by more before loading than small strains are for, and where most.
+pub(super) fn interference(
+    problem: &Problem,
+    solution: &Solution,
+    words: &Words,
+) -> Vec<String> {
+    let smooth = SmoothBoundary::new(&problem.mesh);
+    let of_pair = |pair: &Pair| {
+        let own = solution
+            .between
+            .iter()
+            .filter(|piece| piece.boundaries.iter().zip(&pair.boundaries).all(|(a, b)| **a == **b));
+        let points = own.flat_map(|piece| &piece.points);
+        let deepest = points.min_by(|a, b| a.gap.total_cmp(&b.gap))?;
+        let share = -deepest.gap / pair.scale(&problem.mesh, &smooth).ok()?;
+        let [first, second] = pair.boundaries.each_ref().map(|name| quote::quoted(name, '\''));
+        (share > LARGE_OVERLAP).then(|| {
+            format!(
+                "the bodies of {first} and {second} overlap by {} at {} before loading, {} % of their least radius or width: strains are taken to be small",
+                words.length(-deepest.gap),
+                place(deepest.at[0]),
+                short(100.0 * share, 2)
+            )
+        })
+    };
+    problem.pairs.iter().filter_map(of_pair).collect()
 }
 
 /// Says which peaks of the pressure lie where theory has no bound for it: at the end of a contact boundary, or at a corner of it,
