@@ -224,9 +224,6 @@ pub fn claim() -> Claim {
         id: "21",
         title: "Beyond the paper: bodies of revolution",
         paper: "The paper is about the plane: its integrals have the weight 1.",
-        statement: "With the weight r and the hoop strain (docs/theory.md, 11): int_E r w^2 is at most 4 (|E| / |T|) int_T r w^2 for an affine w, which is attained where the corner opposite is on the axis. The energy is that of the strain of plane strain, moved by nu times the hoop strain, and that of the hoop by Young's modulus; (d . sigma n)^2 <= (lambda + 2 mu) sigma:eps for unit vectors d and n, whatever the hoop strain. The hoop strain is the projection of v_r / r with the weight r, and the stretch of v_r = k r is k on every triangle, also on the axis. The integrals over an edge that is cut are those of the positive part, and the square of an affine function at an end of a piece that touches the axis is at most 18 times its integral with the weight.",
-        numbers: "every ordered field (proof).",
-        preconditions: "mu > 0, 3 lambda + 2 mu > 0, r >= 0, and r > 0 at a corner of each triangle.",
         limits: "n = (1, 0) in the inequality of the traction: the law is isotropic. The constant 72 of P2 and the sharp constants of a triangle, which have a root, are compared in doubles (unit tests of kernel::axial).",
         single: None,
         checks: statements! {
