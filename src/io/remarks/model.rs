@@ -131,11 +131,7 @@ pub(super) fn overlap(problem: &Problem, words: &Words) -> Option<String> {
 const LARGE_OVERLAP: f64 = 0.01;
 
 /// Says which bodies of pairs overlap by more before loading than small strains are for, and where most.
-pub(super) fn interference(
-    problem: &Problem,
-    solution: &Solution,
-    words: &Words,
-) -> Vec<String> {
+pub(super) fn interference(problem: &Problem, solution: &Solution, words: &Words) -> Vec<String> {
     let smooth = SmoothBoundary::new(&problem.mesh);
     let of_pair = |pair: &Pair| {
         let own = solution
