@@ -28,10 +28,11 @@ pub struct Arguments {
     pub verbose: bool,
 }
 
-const SCOPE: &str = "Linear elastic, small displacements and rotations, plane strain or plane stress. Contact is with rigid obstacles, \
-                     without friction: they push and never pull; gap and direction are those of the undeformed body.\n\
-                     Not computed: 3D, axisymmetry, large displacements or sliding, contact of two deformable bodies, friction, \
-                     plasticity and other nonlinear materials, dynamics, thermal strain.\n\
+const SCOPE: &str = "Linear elastic, small displacements and rotations, plane strain, plane stress or bodies of revolution. Contact is \
+                     with rigid obstacles and between deformable bodies, without friction: they push and never pull; gap and direction \
+                     are those of the undeformed bodies.\n\
+                     Not computed: 3D, large displacements or sliding, friction, plasticity and other nonlinear materials, dynamics, \
+                     thermal strain.\n\
                      docs/case.md of the sources lists the keys of a case file.";
 
 const EXIT_CODES: &str = "Exit codes: 0 solved and proved; 1 no result: it could not be computed or written, or a certificate was not accepted; \
