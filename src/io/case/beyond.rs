@@ -50,7 +50,7 @@ pub(super) fn not_computed(word: &str) -> Option<String> {
     let asks = |key: &&str| {
         word.strip_prefix(*key).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
     };
-    let (what, _) = BEYOND.iter().find(|(_, keys)| keys.iter().any(|key| asks(&key)))?;
+    let (what, _) = BEYOND.iter().find(|(_, keys)| keys.iter().any(asks))?;
     Some(format!("{what} is not computed by this program"))
 }
 
