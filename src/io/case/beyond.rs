@@ -60,7 +60,7 @@ pub(super) fn not_here(word: &str) -> Option<String> {
     let asks = |key: &&str| {
         word.strip_prefix(*key).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
     };
-    let is_asked = |(_, keys): &&(&str, &[&str])| keys.iter().any(|key| asks(&key));
+    let is_asked = |(_, keys): &&(&str, &[&str])| keys.iter().any(asks);
     let beyond = BEYOND.iter().find(is_asked);
     let beyond = beyond.map(|(what, _)| format!("{what} is not computed by this program"));
     beyond.or_else(|| ELSEWHERE.iter().find(is_asked).map(|(remedy, _)| (*remedy).to_owned()))
