@@ -20,7 +20,7 @@ use signorini::certify::Rejection;
 use signorini::certify::certify;
 use signorini::certify::proof::{Certificate, Edge, Lift, Proof, Role};
 use signorini::fem::constraints::Constraints;
-use signorini::fem::korn::{Hold, Korn};
+use signorini::fem::korn::{Hold, Korn, Term};
 use signorini::fem::{
     Condition, Diagonal, Materials, Mesh, Obstacle, Problem, Rectangle, SharedFunction, Side, Space,
 };
@@ -237,7 +237,7 @@ fn by_the_lemma(mesh: &Mesh, space: &Space, material: &Material<f64>, holds: &[H
         high - low
     };
     let size = range(0).hypot(range(1));
-    let root = holds[0].triangle;
+    let root = holds[0].terms[0].triangle;
     let mut along = vec![f64::INFINITY; count];
     along[root] = 0.0;
     // As many rounds as a path has steps at most.
@@ -263,11 +263,11 @@ fn by_the_lemma(mesh: &Mesh, space: &Space, material: &Material<f64>, holds: &[H
     let (mut rows, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
     for (k, hold) in holds.iter().enumerate() {
         right[k] = hold.most;
-        for &(at, d) in &hold.terms {
+        for Term { triangle, at, along } in &hold.terms {
             let [x, y] = [0, 1].map(|c| number(at[c]) - origin[c]);
-            let [p, q] = d.map(number);
+            let [p, q] = along.map(number);
             rows[k] = [rows[k][0] + p, rows[k][1] + q, rows[k][2] + (q * x - p * y) / size];
-            right[k] += p.hypot(q) * up_to(hold.triangle);
+            right[k] += p.hypot(q) * up_to(*triangle);
         }
     }
     // Cramer's rule: the columns of the inverse are products of two rows.
@@ -314,8 +314,7 @@ fn factors(draw: &Held, degree: Degree, by: f64) -> Verdict {
     let holds: Vec<Hold> = demands
         .into_iter()
         .map(|(triangle, at, d)| Hold {
-            triangle,
-            terms: vec![(at.map(Ball::point), d.map(Ball::point))],
+            terms: vec![Term { triangle, at: at.map(Ball::point), along: d.map(Ball::point) }],
             most: random.share(),
         })
         .collect();

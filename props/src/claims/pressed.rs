@@ -11,6 +11,7 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
 use signorini::fem::contact_line::Coercivity;
+use signorini::fem::korn::Term;
 use signorini::fem::quadrature::gauss;
 use signorini::fem::{Diagonal, Discretization, EdgeRule, Piece, Problem, Rectangle};
 use signorini::kernel::PreciseBall;
@@ -205,7 +206,7 @@ fn holds_on(degree: Degree, rule: EdgeRule, kappa: f64, share: f64) -> Result<f6
     for (s, hold) in places.into_iter().zip(&holds) {
         let mut component = Mat::zeros(count - 1, 1);
         let nodes = d.space.edge_nodes(at.edge().edge()).into_iter().zip(degree.edge_values(s));
-        for ((node, shape), (x, [_, y])) in nodes.zip(&hold.terms) {
+        for ((node, shape), Term { at: x, along: [_, y], .. }) in nodes.zip(&hold.terms) {
             let place = d.space.nodes()[node];
             let near = |ball: kernel::Ball, value: f64| {
                 ball.lower() - 1e-15 <= value && value <= ball.upper() + 1e-15
