@@ -68,6 +68,8 @@ fn a_shrink_fit_has_lames_pressure() {
         let found = s.quantities.contact_force / (2.0 * PI);
         assert_abs_diff_eq!(found * compliance / INTERFERENCE, 1.0, epsilon = tolerance);
         // The control: as plates the two are not pressed alike.
-        assert!((found * ((1.0 - 0.3) + (5.0 / 3.0 + 0.3) / 2.0) / INTERFERENCE - 1.0).abs() > 0.05);
+        assert!(
+            (found * ((1.0 - 0.3) + (5.0 / 3.0 + 0.3) / 2.0) / INTERFERENCE - 1.0).abs() > 0.05
+        );
     }
 }
