@@ -10,7 +10,7 @@ use crate::fem::{
     BoundaryEdge, Condition, Hand, Mesh, Obstacle, Path, PointSupport, SharedFunction, Side,
 };
 use crate::io::input::FileError;
-use crate::quote::{listed, names, number};
+use crate::quote::{listed, names};
 use crate::study::Exact;
 use crate::study::exact::Kind;
 
@@ -114,9 +114,7 @@ fn read_condition(
         ["force"] => {
             let (force, whole) = (value("force")?, value("force")?.vector()?);
             if matches!(depth, Depth::Revolution) && whole[0] != 0.0 {
-                let [x, y] = whole.map(number);
-                return Err(force.wrong_as(
-                    &format!("[{x}, {y}]"),
+                return Err(force.wrong(
                     "[0, Fz] on a body of revolution, whose radial forces cancel all round: traction and pressure have them",
                 ));
             }
