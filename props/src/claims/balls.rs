@@ -212,7 +212,7 @@ pub fn chains_of_doubles_are_exact() -> Outcome {
 fn moments_of(draw: &Draw, share: f64) -> Verdict {
     let &([a, b, ..], [r, s]) = draw;
     let p = [PreciseBall::from(a).widened(r * a.abs()), PreciseBall::from(b).widened(s * b.abs())];
-    let found = moments(&EdgeRule::Exact, Degree::One, &p);
+    let found = moments(&EdgeRule::Exact, Degree::One, None, &p);
     Exact::scope(|| {
         for start in members(p[0]) {
             for end in members(p[1]) {
