@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::answers::{self, ContactBoundary, EnergyBalance};
 use super::enclosure::{Enclosure, Unproved};
+use super::intervals::{Intervals, Range};
 use super::iterate::Evaluated;
 use super::{MethodReport, NewtonReport, Report, Verdict};
 use crate::fem::Degree;
@@ -142,9 +143,14 @@ impl Solution {
     /// Evaluates all reported quantities of a displacement.
     pub fn new(d: &Discretization, evaluated: Evaluated, report: Report) -> Self {
         let stress = mean_stresses(d, &evaluated.u);
-        let quantities = quantities(d, &evaluated);
+        let mut quantities = quantities(d, &evaluated);
         let Evaluated { u, p, residual } = evaluated;
         let recovered = answers::recovered_pressure(d, &p);
+        let balance = answers::energy_balance(d, &u, &p, &residual, quantities.energy);
+        let mut boundaries = answers::contact_boundaries(d, &u, &p, &recovered);
+        if let Ok(enclosure) = &report.enclosure {
+            put_between(&enclosure.intervals, &mut quantities, &mut boundaries);
+        }
         let with_material =
             || stress.iter().enumerate().map(|(t, &s)| (d.problem.material.of(t), s));
         Solution {
@@ -155,9 +161,9 @@ impl Solution {
             von_mises: with_material().map(|(m, s)| m.von_mises_squared(s).sqrt()).collect(),
             stress: with_material().map(|(m, s)| (s, m.stress_zz(s))).collect(),
             contact: contact_values(d, &u, &p, &recovered),
-            boundaries: answers::contact_boundaries(d, &u, &p, &recovered),
+            boundaries,
             largest_strain: answers::largest_strain(d, &u),
-            balance: answers::energy_balance(d, &u, &p, &residual, quantities.energy),
+            balance,
             gamma: GammaReport::new(d),
             newton: report.newton,
             method: report.method,
@@ -188,6 +194,29 @@ impl Solution {
             size.max(self.displacement[j][0].abs()).max(self.displacement[j][1].abs())
         });
         sum * (1.0 + 1e-14) + 1e-14 * size
+    }
+}
+
+/// Moves numbers that are outside their proved intervals by their own rounding, as the energy of a body that hardly strains is,
+/// to the nearer ends.
+fn put_between(
+    proved: &Intervals,
+    quantities: &mut Quantities,
+    boundaries: &mut [ContactBoundary],
+) {
+    let put = |value: &mut f64, [low, high]: Range| *value = value.max(low).min(high);
+    put(&mut quantities.energy, proved.energy);
+    put(&mut quantities.max_displacement, proved.max_displacement);
+    for (name, reaction) in &mut quantities.reactions {
+        let intervals = proved.reactions.get(name).into_iter().flatten();
+        reaction.iter_mut().zip(intervals).for_each(|(r, &range)| put(r, range));
+    }
+    for part in boundaries {
+        let Some(of) = proved.contact.iter().find(|of| of.boundary == part.boundary) else {
+            continue;
+        };
+        put(&mut part.force, of.force);
+        part.resultant.iter_mut().zip(of.resultant).for_each(|(r, range)| put(r, range));
     }
 }
 
