@@ -38,8 +38,10 @@ pub(super) struct ContactSurface {
     /// Its connected parts, each from start to end, the body on its left. Where the pressure jumps there are two samples at
     /// one place.
     pub(super) parts: Vec<Vec<ContactSample>>,
-    /// The proved zones of it; `None` without a certificate.
+    /// The zones of its certificate, if it has one.
     pub(super) zones: Option<Vec<Zone>>,
+    /// The certificate has a reservation, or is one of another problem than is meant.
+    pub(super) reserved: bool,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -188,6 +190,7 @@ fn contact_surfaces(s: &Solution, results: &Results) -> Vec<ContactSurface> {
                 .map(|part| part.iter().flat_map(|e| &e.points).map(sample).collect())
                 .collect(),
             zones: proved.map(zones),
+            reserved: proved.is_some_and(|c| !c.rigorous || c.problem.is_some()),
             name,
         });
     }
