@@ -40,11 +40,13 @@ pub struct SmoothPoint {
     pub normal: Vector2<f64>,
 }
 
-/// A vertex of the outline: the edge before, the edge after and the angle by which it turns left.
+/// A vertex of the outline: the edge before, the edge after, the angle by which it turns left, and whether that is no angle but
+/// the rounding of vertices, as on a straight side after many bisections.
 struct Passage {
     before: usize,
     after: usize,
     bend: f64,
+    straight: bool,
 }
 
 impl SmoothBoundary {
@@ -65,15 +67,20 @@ impl SmoothBoundary {
             let (&[before], &[after]) = (&before[..], &after[..]) else { return None };
             let (n, m) = (facets[before].1, facets[after].1);
             let bend = n.perp(&m).atan2(n.dot(&m));
-            Some(Passage { before, after, bend })
+            let rounding = mesh.turned_by_rounding([outline[before], outline[after]]);
+            let straight = bend.abs() <= NO_ANGLE.max(rounding);
+            Some(Passage { before, after, bend, straight })
         };
         let bend_at = |vertex: usize| passage(vertex).map_or(f64::INFINITY, |p| p.bend);
+        let straight = |vertex: usize| passage(vertex).is_some_and(|p| p.straight);
 
         // The normal that both edges share at a vertex, where they share one.
         let mut shared: BTreeMap<usize, Vector2<f64>> = BTreeMap::new();
         for &vertex in around.keys() {
-            let Some(Passage { before, after, bend }) = passage(vertex) else { continue };
-            if bend.abs() <= NO_ANGLE || bend.abs() > SMOOTH.to_radians() {
+            let Some(Passage { before, after, bend, straight: false }) = passage(vertex) else {
+                continue;
+            };
+            if bend.abs() > SMOOTH.to_radians() {
                 continue;
             }
             let [previous, _] = mesh.ends(outline[before]);
@@ -81,7 +88,7 @@ impl SmoothBoundary {
             let (behind, ahead) = (bend_at(previous), bend_at(next));
             let arc_starts = |beyond: f64| beyond * bend > 0.0 && bend.abs() <= beyond.abs();
             let ((a, n), (b, m)) = (facets[before], facets[after]);
-            let normal = match (behind.abs() <= NO_ANGLE, ahead.abs() <= NO_ANGLE) {
+            let normal = match (straight(previous), straight(next)) {
                 (true, true) => None,
                 (true, false) => arc_starts(ahead).then_some(n),
                 (false, true) => arc_starts(behind).then_some(m),
@@ -95,7 +102,6 @@ impl SmoothBoundary {
             let facet = facets[e].1;
             let ends = mesh.ends(edge);
             let own = ends.map(|vertex| shared.get(&vertex).copied());
-            let straight = |vertex: usize| bend_at(vertex).abs() <= NO_ANGLE;
             let both = match own {
                 [Some(start), Some(end)] => [start, end],
                 [Some(start), None] if straight(ends[1]) => [start, facet],
@@ -172,6 +178,34 @@ mod tests {
         let mesh = fan(&rim);
         let smooth = SmoothBoundary::new(&mesh);
         assert!(mesh.outline().iter().all(|&e| smooth.at_ends(e).is_none()));
+    }
+
+    /// A triangle whose oblique side ends at `corner`, bisected there again and again.
+    fn bisected(times: usize) -> Mesh {
+        let corners = vec![[0.1, 0.2], [3.3, 0.7], [1.7, 2.9]];
+        let mut mesh = Mesh::new(corners, vec![[0, 1, 2]], []).unwrap();
+        let mut newest = mesh.opposite_longest();
+        for _ in 0..times {
+            let place = |t: usize| mesh.triangles()[t].contains(&1);
+            let marked: Vec<usize> = (0..mesh.triangles().len()).filter(|&t| place(t)).collect();
+            mesh = mesh.bisected(&newest, &marked).unwrap().mesh;
+            newest = vec![0; mesh.triangles().len()];
+        }
+        mesh
+    }
+
+    #[test]
+    fn a_straight_side_is_straight_after_many_bisections() {
+        let mesh = bisected(30);
+        let smooth = SmoothBoundary::new(&mesh);
+        assert!(mesh.outline().iter().all(|&e| smooth.at_ends(e).is_none()));
+        // Control: the normals of its edges differ by more than the tolerance for coarse meshes.
+        let normals = mesh.outline().iter().map(|&edge| mesh.length_and_normal(edge).1);
+        let sides: Vec<Vector2<f64>> = normals.collect();
+        let differ = |n: &Vector2<f64>| {
+            sides.iter().map(|m| n.perp(m).abs()).any(|sine| NO_ANGLE < sine && sine < 1e-3)
+        };
+        assert!(sides.iter().any(differ));
     }
 
     #[test]
