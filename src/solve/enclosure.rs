@@ -353,12 +353,14 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
 }
 
 impl Enclosure {
-    /// The radius over |u~|_a or, for a body that hardly strains, over what that would be if it did.
+    /// The radius over |u~|_a or, for a body that hardly strains, over what that would be if it did; infinite where neither is known.
     pub fn in_parts(&self) -> f64 {
         if self.radius == 0.0 {
             0.0
+        } else if self.hardly_strains {
+            self.radius / self.if_strained
         } else {
-            self.relative.unwrap_or(self.radius / self.if_strained)
+            self.relative.unwrap_or(f64::INFINITY)
         }
     }
 

@@ -289,10 +289,11 @@ fn the_relative_radius_is_relative_to_the_energy_norm_or_the_body_hardly_strains
                 let by_norm = enclosure.radius / energy.sqrt();
                 assert!((relative / by_norm - 1.0).abs() < 0.5 || relative > 0.1, "{relative}");
             }
-            None => assert!(high.sqrt() < 1e-9 * enclosure.if_strained, "{by}: {high}"),
+            // Of 1e6 on what is known of the strain is less than its rounding: nothing is proved.
+            None => assert_eq!(enclosure.hardly_strains, by < 1e6, "{by}: {high}"),
         }
         // Beside what it would be if the body strained, the radius is small.
-        assert_eq!(solution.verdict == Verdict::Proved, enclosure.in_parts() <= 1e-6);
+        assert_eq!(solution.verdict == Verdict::Proved, by < 1e6, "{by}");
     }
     // Control: a body that strains has a norm.
     let solution = solved(&block(4), Degree::One);
