@@ -71,7 +71,9 @@ fn a_corner_whose_errors_doubles_cannot_hold_says_so() {
         let [mesh, exact] =
             ["mesh.trapezoid.omega", "exact.omega"].map(|key| format!("{key}={omega}"));
         let more = ["--levels", "1", "--set", &mesh, "--set", &exact];
-        ended(&run("cases/corner.toml", &more, &out))
+        let output = run("cases/corner.toml", &more, &out);
+        let (code, said) = ended(&output);
+        (code, said.to_owned())
     };
     let (code, said) = with("2.9");
     assert!(code == Some(1) && said.contains("beyond the range of doubles"), "{code:?}: {said}");
