@@ -198,7 +198,7 @@ pub struct SolveOptions {
     #[arg(long)]
     pub json: bool,
     /// Also bound the distance to the true solution, and write the proof to certificate.json and certificate.bin, for
-    /// `signorini audit`; takes about as long again as the solution
+    /// `signorini audit`; with the forces between two numbers it takes one to five times as long as the solution
     #[arg(long)]
     pub certificate: bool,
     /// Refine the mesh until the error is proved to be at most this: "5 %" of the energy norm, or "force NAME 2 %" of the contact
