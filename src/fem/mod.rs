@@ -16,7 +16,7 @@ pub mod embedding;
 mod function;
 #[doc(hidden)]
 pub mod graded_quadrature;
-mod groups;
+pub(crate) mod groups;
 pub(crate) mod held;
 #[doc(hidden)]
 pub mod korn;

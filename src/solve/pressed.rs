@@ -187,6 +187,9 @@ impl PressedPart {
     }
 }
 
+/// A stretch with the least that P is on it.
+type Measured = (f64, EdgePiece);
+
 impl Pressed {
     /// Nothing: |v|_S = |v|_A.
     pub fn nowhere(count: usize) -> Self {
@@ -202,7 +205,7 @@ impl Pressed {
         share: f64,
     ) -> Self {
         let degree = d.space.degree();
-        let mut all: Vec<(usize, Range<usize>, Vec<(f64, EdgePiece)>)> = Vec::new();
+        let mut all: Vec<(usize, Range<usize>, Vec<Measured>)> = Vec::new();
         for (edge, line) in lines.iter().enumerate() {
             let p = line.p(u);
             for (response, values) in line.responses() {
