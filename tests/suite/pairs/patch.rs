@@ -3,6 +3,9 @@
 use super::*;
 use crate::common::DEGREES;
 
+/// Where a point of a mesh goes.
+type Map = Box<dyn Fn([f64; 2]) -> [f64; 2]>;
+
 /// What rounding may make of displacements, relative to the largest, in numbers of size 1.
 const ROUNDING: f64 = 1e-12;
 
@@ -35,7 +38,7 @@ impl Turn {
 fn two_blocks(moduli: [f64; 2], turn: Turn, law: Law) -> Problem {
     let lower = rectangle([0.0, 0.0], [1.0, 1.0]);
     let upper = rectangle([0.0, 1.0], [1.0, 2.0]);
-    let [lower, upper]: [Box<dyn Fn([f64; 2]) -> [f64; 2]>; 2] =
+    let [lower, upper]: [Map; 2] =
         [Box::new(move |x| turn.of(lower(x))), Box::new(move |x| turn.of(upper(x)))];
     let block =
         |name, cells, modulus, map| Block { name, cells, material: young(modulus, POISSON), map };
