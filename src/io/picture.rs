@@ -579,7 +579,9 @@ mod tests {
             vec![
                 zone(0.0, 0.4, Limit::Opening(0.004)),
                 zone(0.1, 0.3, Limit::Opening(0.001)),
-                zone(0.6, 1.0, Limit::Force(0.02)),
+                // What the plot shows ends with the contact, at 0.5.
+                zone(0.4, 0.5, Limit::Force(0.005)),
+                zone(0.6, 1.0, Limit::Force(9.0)),
             ]
         };
         let proved = said(zones(), false);
