@@ -107,7 +107,7 @@ PARTS = {  # name: (what is in it, material, the rest)
     "lug": ("two materials, contact with a floor, a wall and a pin in a bore, pressure on a fillet",
             'plane = "strain"\n\n[material.rubber]\nyoung = 20\npoisson = 0.45\n\n[material.steel]\nyoung = 210000\npoisson = 0.3',
             '[load.steel]\nbody = [0, -0.05]\n\n[obstacle.floor]\nplane = { point = [0, 0.01], normal = [0, 1] }\n\n'
-            '[obstacle.wall]\nplane = { point = [0, 0], normal = [2, 0] }\n\n'
+            '[obstacle.wall]\nplane = { point = [-0.005, 0], normal = [2, 0] }\n\n'
             '[obstacle.pin]\ncircle = { center = [8, 30.005], radius = 3.99, side = "outside" }\n\n[boundary.base]\n'
             'contact = { obstacle = "floor" }\n\n[boundary.back]\ncontact = { obstacle = "wall" }\n\n[boundary.bore]\n'
             'contact = { obstacle = "pin" }\n\n[boundary.fillet]\npressure = 3\n\n[boundary.right]\ntraction = [-2, 0]\n\n'

@@ -35,8 +35,10 @@ def result(problem, method, gamma, u, history, seconds):
 def quantities(problem, method, u):
     pressure = method.edges.pressure(method.u.x.array)
     largest = np.max(np.hypot(u[0::2], u[1::2]), initial=0.0)
+    energy = float(method.energy())
     return {
-        "energy": float(method.energy()),
+        "a_uu": energy,
+        "elastic_energy": energy / 2,
         "work": problem.comm.allreduce(float(problem.load @ u)),
         "max_displacement": max(problem.comm.allgather(float(largest))),
         **pressure,

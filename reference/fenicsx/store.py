@@ -53,7 +53,7 @@ def differences(a, b):
     over displacement is one), an error against the energy norm, a displacement against the largest: numbers that are 0 in exact arithmetic
     then need no rule of their own."""
     quantities = a["quantities"]
-    energy, displacement = quantities["energy"], quantities["max_displacement"]
+    energy, displacement = quantities["a_uu"], quantities["max_displacement"]
     forces = [quantities["contact_force"], *(component for pair in quantities["reactions"].values() for component in pair)]
     force = max([energy / displacement if displacement > 0 else 0.0, *map(abs, forces)])
     scales = {"contact_force": force, "contact_resultant": force, "reactions": force, "work": max(abs(quantities["work"]), energy),
