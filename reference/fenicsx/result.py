@@ -38,7 +38,7 @@ def result(problem, method, gamma, u, history, seconds):
 def whole(content):
     """Makes energies and forces of a radian those of the whole revolution. Radial forces cancel all round: they are left for a radian."""
     for numbers in (content["quantities"], *content["contact"]):
-        for key in ("energy", "work", "contact_force", "force"):
+        for key in ("a_uu", "elastic_energy", "work", "contact_force", "force"):
             if key in numbers:
                 numbers[key] *= 2 * np.pi
     vectors = [content["quantities"]["contact_resultant"], *content["quantities"]["reactions"].values()]
