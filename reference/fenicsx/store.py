@@ -30,7 +30,7 @@ TOLERANCE = 1e-11
 
 
 def cases():
-    """{name: case file}, without those with pairs of boundaries, which this engine has not."""
+    """{name: case file}, without those with pairs of boundaries, which pair.py solves."""
     files = [*sorted((ROOT / "cases").glob("*.toml")), *sorted((ROOT / "reference" / "cases").glob("*.toml"))]
     return {file.stem: file for file in files if "pair" not in tomllib.loads(file.read_text(encoding="utf-8"))}
 

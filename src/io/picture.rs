@@ -235,6 +235,7 @@ mod tests {
             von_mises: (0..mesh.triangles().len()).map(|t| 1.0 + (t % 7) as f64).collect(),
             units: None,
             stretch: None,
+            apart: 0.0,
             interfaces: Vec::new(),
             outline: mesh.outline().iter().map(|&edge| mesh.ends(edge)).collect(),
             contact: vec![ContactSurface {
