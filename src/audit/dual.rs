@@ -17,12 +17,9 @@ use super::balance::{OnEdges, Stop};
 use super::balanced::{Balanced, Topology, outward};
 use super::certificate::{Certificate, Curved, Edge, Piece, Role, Shape, exactly, is_oblique};
 use super::checks::Rejection;
-use super::forces::{
-    Cover, ForceTarget, Forces, WrongLifting, component, energy, mean, ratio, reach,
-};
-use super::stresses::{Ground, Lengths, Numbers, RoundedLaw, RoundedLaws, Staged, resultant};
+use super::forces::{Cover, ForceTarget, Forces, WrongLifting, component, energy, ratio, reach};
 use crate::kernel::composite::{Composite, Frame, Loads, Wrench};
-use crate::kernel::{Ball, Enclosing, Triangle};
+use crate::kernel::{Ball, Enclosing, PreciseBall, Triangle};
 
 /// Why a dual pair proves nothing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -195,6 +192,21 @@ struct Pair<S> {
     stops: Vec<Stop<Ball>>,
 }
 
+/// The resultant of tractions on the edges of a triangle, to twice the precision of doubles: what tractions that balance to
+/// rounding leave is then known by far better than rounding.
+fn resultant(triangle: &Triangle<Ball>, forces: [[Vector2<Ball>; 2]; 3]) -> Wrench<Ball> {
+    let precise = |v: Vector2<Ball>| v.map(|x| PreciseBall::around(x.centre().into(), x.radius()));
+    let triangle = Triangle { vertices: triangle.vertices.map(precise) };
+    let loads = Loads { forces: forces.map(|ends| ends.map(precise)), body: [Vector2::zeros(); 3] };
+    let wrench = loads.resultant(&triangle).about(triangle.vertices[0]);
+    let rounded = |v: Vector2<PreciseBall>| v.map(PreciseBall::rounded);
+    Wrench {
+        force: rounded(wrench.force),
+        moment: wrench.moment.rounded(),
+        about: rounded(wrench.about),
+    }
+}
+
 /// Vectors in doubles, and how far a component may be from them.
 fn in_doubles(vectors: [Vector2<Ball>; 2]) -> ([Vector2<f64>; 2], f64) {
     let mut off = 0.0_f64;
@@ -221,7 +233,7 @@ struct Summed<S> {
     shares: Vec<f64>,
 }
 
-impl<S: Staged> Forces<'_, S> {
+impl<S: Enclosing> Forces<'_, S> {
     /// Encloses the contact force with the weight of its target by each of some dual pairs; an end may be infinite.
     ///
     /// # Errors
@@ -270,15 +282,10 @@ impl<S: Staged> Forces<'_, S> {
         Ok(Pair { w: pair.shape(), forces, off, stops: closed.stops })
     }
 
-    /// The numbers of C eps(w) - rho on triangle `t`, in doubles if these are sharp beside them or a `typical` length.
-    fn numbers(
-        &self,
-        (t, law): (usize, &RoundedLaw),
-        pair: &Pair<S>,
-        ground: Option<&(Ground, Frame<f64>)>,
-        typical: f64,
-    ) -> Numbers {
+    /// C eps(w) - rho on triangle `t` for the tractions in doubles, and the energy at most of what is to be added to those.
+    fn apart(&self, (t, frame): (usize, &Frame<S>), pair: &Pair<S>) -> (Composite<S>, Ball) {
         let (state, piece) = (self.state, &self.certificate.pieces[t]);
+        let triangle = &state.triangles[t];
         let mut forces = outward(piece.edges, t, &state.topology, &pair.forces);
         let mut off = piece.edges.iter().map(|&e| pair.off[e]).fold(0.0, f64::max);
         for stop in pair.stops.iter().filter(|stop| stop.root == t) {
@@ -286,18 +293,16 @@ impl<S: Staged> Forces<'_, S> {
             (0..2).for_each(|k| forces[0][k] += more[k]);
             off += beside + f64::EPSILON * forces[0].iter().map(Vector2::amax).sum::<f64>();
         }
-        let in_doubles = ground.and_then(|(ground, frame)| {
-            let w = (piece.vertices.map(|p| pair.w.points[p]), pair.w.bulges_of(piece));
-            ground.numbers(frame, &piece.material, w, (forces, off), typical)
-        });
-        in_doubles.unwrap_or_else(|| {
-            let triangle = &state.triangles[t];
-            let forces = forces.map(|ends| ends.map(|force| exactly(force.into())));
-            let loads = Loads { forces, body: [Vector2::zeros(); 3] };
-            let sigma = pair.w.stress(piece, triangle);
-            let apart = Composite::new(&Frame::new(triangle), &loads).distance_from(&sigma);
-            Numbers::slowly(law, piece, triangle, &apart, off)
-        })
+        let forces = forces.map(|ends| ends.map(|force| exactly(force.into())));
+        let loads = Loads { forces, body: [Vector2::zeros(); 3] };
+        let apart = Composite::new(frame, &loads).distance_from(&pair.w.stress(piece, triangle));
+        let triangle = Triangle { vertices: triangle.vertices.map(|v| v.map(S::ball)) };
+        let loads = Loads {
+            forces: [[Vector2::repeat(Ball::around(0.0, off)); 2]; 3],
+            body: [Vector2::zeros(); 3],
+        };
+        let beside = Composite::new(&Frame::new(&triangle), &loads);
+        (apart, beside.energy(&piece.material(), triangle.double_area()))
     }
 
     /// Verifies that these are pairs and sums over the triangles.
@@ -305,33 +310,36 @@ impl<S: Staged> Forces<'_, S> {
         if pairs.is_empty() {
             return Ok(Vec::new());
         }
-        let pieces = &self.certificate.pieces;
+        let (state, pieces) = (self.state, &self.certificate.pieces);
         let start = |(_, pair): &(ForceTarget, Certificate)| {
             let (zero, shares) = (Ball::from(0), Vec::with_capacity(pieces.len()));
-            Ok((self.pair(pair)?, zero, Lengths::new(), zero, shares))
+            Ok((self.pair(pair)?, [zero; 4], shares))
         };
         let mut sums = pairs.iter().map(start).collect::<Result<Vec<_>, WrongPair>>()?;
-        let (own, mut length, mut laws) = (self.own(), Lengths::new(), RoundedLaws::default());
+        let mut of_mean = Ball::from(0);
         for (t, piece) in pieces.iter().enumerate() {
-            let (law, triangle) = (laws.of(&piece.material), &self.state.triangles[t]);
-            let ground = Ground::new(law, triangle).map(|ground| {
-                let frame = Frame::new(&ground.triangle);
-                (ground, frame)
-            });
-            length.add(&own[t]);
-            for (pair, product, eta, norm, shares) in &mut sums {
-                let apart = self.numbers((t, law), pair, ground.as_ref(), eta.typical(t));
-                *product += Ball::point(own[t].dot(&apart));
-                shares.push(eta.add(&apart));
+            let (triangle, material) = (&state.triangles[t], piece.material());
+            let (double_area, frame) = (triangle.double_area(), Frame::new(triangle));
+            let (_, own) = state.stresses(self.certificate, t);
+            of_mean += own.energy(&material, double_area).ball();
+            for (pair, [product, square, beside, norm], shares) in &mut sums {
+                let (apart, rest) = self.apart((t, &frame), pair);
+                let affine = (apart.corners, apart.centre);
+                *product += own.product_with_affine(affine, &material, double_area).ball();
+                let share = apart.energy(&material, double_area).ball();
+                shares.push(share.centre());
+                *square += share;
+                *beside += rest;
                 if self.loose != 0.0 {
-                    let ground = ground.as_ref().map(|(ground, _)| ground);
-                    *norm += energy(&pair.w, (piece, triangle), ground, mean(*norm, t));
+                    *norm += energy(&pair.w, piece, triangle);
                 }
             }
         }
-        let summed = |(pair, product, eta, norm, shares): (_, _, Lengths, _, _)| {
-            let product = product + Ball::around(0.0, length.error_of_product(eta));
-            Summed { pair, product, eta: eta.length(), norm, shares }
+        let root = |square: Ball| Ball::point(square.sqrt().upper());
+        let summed = |(pair, [product, square, beside, norm], shares): (_, [Ball; 4], _)| {
+            let [own, eta, beside] = [of_mean, square, beside].map(root);
+            let product = product + Ball::around(0.0, (own * beside).upper());
+            Summed { pair, product, eta: (eta + beside).upper(), norm, shares }
         };
         Ok(sums.into_iter().map(summed).collect())
     }
@@ -356,7 +364,7 @@ impl<S: Staged> Forces<'_, S> {
             }
             let d = certificate.directions(e, &state.points);
             let [start, end] = certificate.edges[e].ends.map(|p| state.points[p]);
-            let length = ball((end - start).dot(&(end - start)).sqrt());
+            let length = (end - start).dot(&(end - start)).sqrt().ball();
             // |E| r at both ends.
             let r = [0, 1].map(|k| component(exactly(pair.forces[e][k].into()), d[k]));
             let g = certificate.gap(e, state);
@@ -365,16 +373,16 @@ impl<S: Staged> Forces<'_, S> {
             let at_end = g[0] + g[1] * two + g[2] * three + g[3] * four;
             middle -= (r[0] * at_start + r[1] * at_end) / S::from(20);
             let off = Ball::around(0.0, pair.off[e]);
-            beside += (off * ball(at_start) + off * ball(at_end)) / Ball::from(20);
+            beside += (off * at_start.ball() + off * at_end.ball()) / Ball::from(20);
             for k in 0..2 {
-                let r = (ball(r[k]) + off) / length;
+                let r = (r[k].ball() + off) / length;
                 most[0] = most[0].max(ratio(-r.lower(), -pressure[k]));
                 most[1] = most[1].max(ratio(r.upper(), -pressure[k]));
             }
         }
         let missed = self.all_missed(&pair.w, target, cover)?;
         let point = Ball::point;
-        let middle = ball(middle) + beside + product / Ball::from(2);
+        let middle = middle.ball() + beside + product / Ball::from(2);
         let (eta, norm) = (point(eta), point(norm.sqrt().upper()));
         let force = point(cover.map_or(0.0, Cover::force));
         let loose = point(2.0 * self.loose) * (norm + eta / Ball::from(2));
@@ -395,10 +403,4 @@ impl<S: Staged> Forces<'_, S> {
         ];
         Ok(ByPair { between, shares, factors })
     }
-}
-
-/// A ball around a number.
-fn ball<S: Staged>(x: S) -> Ball {
-    let (centre, radius) = x.centred();
-    Ball::around(centre, radius)
 }

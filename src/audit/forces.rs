@@ -9,7 +9,6 @@
 //! integral is at most beta A + e R(w0), by \[Q2\] with A <= M^2 - |sigma - m|^2. So w may leave its target where the body is
 //! off the obstacle; w0 is 1 on Gamma_C and covers rounding.
 
-use std::cell::OnceCell;
 use std::fmt::Display;
 
 use nalgebra::Vector2;
@@ -19,7 +18,6 @@ use super::certificate::{Certificate, Edge, Piece, Role, Shape, exactly, is_obli
 use super::checks::Rejection;
 use super::dual::WrongPair;
 use super::proof::Proof;
-use super::stresses::{Ground, Numbers, RoundedLaws, Staged, strain_energy};
 use crate::kernel::composite::Affine;
 use crate::kernel::{Ball, Enclosing, Scalar, Triangle};
 
@@ -333,20 +331,13 @@ pub struct Forces<'a, S> {
     pub mean: Mean,
     /// The error of L(w) and a(v, w) for each unit of |w|_a, as data oscillate.
     pub loose: f64,
-    sums: Beside<S>,
-}
-
-/// By-products of the pass over the triangles that sums up the bound.
-pub(crate) struct Beside<S> {
     unbalanced: Imbalance<S>,
-    /// The numbers of C eps(v) - tau on each triangle; empty until they are needed.
-    own: OnceCell<Vec<Numbers>>,
 }
 
 /// int f . w - a(v, w) for w with a component 1 at a point, and for such a bulge on an edge: grad l_i is minus the scaled normal
 /// N_i over J = 2 |T|, so of sigma = C eps(v), affine with the values s_i and the sum S, l_i has the work -1/6 S N_i and 4 l_j l_k
 /// -1/6 ((S + s_j) N_k + (S + s_k) N_j); of f, with the sum F, J/24 (F + f_i) and J/30 (2 F - f_i).
-struct Imbalance<S> {
+pub(crate) struct Imbalance<S> {
     points: Vec<Vector2<S>>,
     /// Empty where no w has bulges.
     bulges: Vec<Vector2<S>>,
@@ -394,13 +385,13 @@ impl Certificate {
     ///
     /// # Errors
     /// As [`Certificate::evaluate`]; a dual pair that is none; inside, a lifting that is not what it should be on the boundary.
-    pub fn forces<S: Staged>(
+    pub fn forces<S: Enclosing>(
         &self,
         evidence: &Evidence,
     ) -> Result<Vec<Result<[f64; 2], WrongLifting>>, WrongPair> {
         let state = self.balanced::<S>(self.topology()?)?;
-        let (proof, sums) = self.sum_for(&state, evidence)?;
-        let (_, found, pairs) = self.forces_near(&state, &proof, evidence, sums)?;
+        let (proof, unbalanced) = self.sum_for(&state, evidence)?;
+        let (_, found, pairs) = self.forces_near(&state, &proof, evidence, unbalanced)?;
         let targets = evidence.liftings.iter().map(|(target, _)| *target);
         let nearest = |(target, ends): (ForceTarget, Result<[f64; 2], WrongLifting>)| {
             ends.map(|ends| evidence.nearest(target, ends, &pairs))
@@ -409,27 +400,21 @@ impl Certificate {
     }
 
     /// [`Certificate::sum`], with what the evidence needs of it.
-    pub(crate) fn sum_for<S: Staged>(
+    pub(crate) fn sum_for<S: Enclosing>(
         &self,
         state: &Balanced<S>,
         evidence: &Evidence,
-    ) -> Result<(Proof, Beside<S>), Rejection> {
-        let (has_forces, has_pairs) = (evidence.has_forces(), !evidence.pairs.is_empty());
+    ) -> Result<(Proof, Imbalance<S>), Rejection> {
+        let has_forces = evidence.has_forces();
         let points = if has_forces { state.points.len() } else { 0 };
         let bulges = if evidence.has_bulges() { self.edges.len() } else { 0 };
         let mut unbalanced = Imbalance::new(points, bulges);
-        let (mut own, mut laws) = (Vec::new(), RoundedLaws::default());
-        let proof = self.sum_beside(state, |t, sigma, apart| {
-            let (piece, triangle) = (&self.pieces[t], &state.triangles[t]);
+        let proof = self.sum_beside(state, |t, sigma| {
             if has_forces {
-                unbalanced.add(piece, triangle, sigma);
-            }
-            if has_pairs {
-                own.push(Numbers::new(laws.of(&piece.material), piece, triangle, apart));
+                unbalanced.add(&self.pieces[t], &state.triangles[t], sigma);
             }
         })?;
-        let own = if has_pairs { OnceCell::from(own) } else { OnceCell::new() };
-        Ok((proof, Beside { unbalanced, own }))
+        Ok((proof, unbalanced))
     }
 
     /// Verifies that what is said of forces is what their data give.
@@ -438,13 +423,13 @@ impl Certificate {
         state: &Balanced<Ball>,
         proof: &Proof,
         evidence: &Evidence,
-        sums: Beside<Ball>,
+        unbalanced: Imbalance<Ball>,
     ) -> Result<(), Rejection> {
         let Some(claimed) = &evidence.between else { return Ok(()) };
         let wrong = |force: usize, problem: &dyn Display| {
             Err(Rejection::Force { force, problem: problem.to_string() })
         };
-        let (cover, found, pairs) = match self.forces_near(state, proof, evidence, sums) {
+        let (cover, found, pairs) = match self.forces_near(state, proof, evidence, unbalanced) {
             Ok(found) => found,
             Err(WrongPair::Rejected(rejection)) => return Err(rejection),
             Err(error) => return wrong(0, &error),
@@ -475,19 +460,19 @@ impl Certificate {
     }
 
     /// [`forces`] of a certificate in equilibrium, with its proof.
-    fn forces_near<S: Staged>(
+    fn forces_near<S: Enclosing>(
         &self,
         state: &Balanced<S>,
         proof: &Proof,
         evidence: &Evidence,
-        sums: Beside<S>,
+        unbalanced: Imbalance<S>,
     ) -> Result<Enclosed, WrongPair> {
         let mean = Mean::new(state, proof, self.lift());
         if evidence.of.len() != self.edges.len() {
             let (what, found) = ("boundaries of edges", evidence.of.len());
             return Err(Rejection::Length { what, found, expected: self.edges.len() }.into());
         }
-        let forces = Forces::with(sums, self, state, &evidence.of, mean);
+        let forces = Forces::with(unbalanced, self, state, &evidence.of, mean);
         let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
         let found = forces.between(&evidence.liftings, cover.as_ref());
         let pairs = forces.by_pairs(&evidence.pairs, cover.as_ref())?;
@@ -498,7 +483,7 @@ impl Certificate {
 /// w0, and what forces lie between by liftings and by dual pairs.
 type Enclosed = (Option<Cover>, Vec<Result<[f64; 2], WrongLifting>>, Vec<[f64; 2]>);
 
-impl<'a, S: Staged> Forces<'a, S> {
+impl<'a, S: Enclosing> Forces<'a, S> {
     /// With M.
     pub fn new(
         certificate: &'a Certificate,
@@ -510,33 +495,19 @@ impl<'a, S: Staged> Forces<'a, S> {
         for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
             unbalanced.add(piece, triangle, &state.v.stress(piece, triangle));
         }
-        let sums = Beside { unbalanced, own: OnceCell::new() };
-        Forces::with(sums, certificate, state, of, mean)
+        Forces::with(unbalanced, certificate, state, of, mean)
     }
 
-    /// With the sums over the triangles at hand.
+    /// With the sum over the triangles at hand.
     fn with(
-        sums: Beside<S>,
+        unbalanced: Imbalance<S>,
         certificate: &'a Certificate,
         state: &'a Balanced<S>,
         of: &'a [Option<usize>],
         mean: Mean,
     ) -> Self {
         let loose = certificate.loose();
-        Forces { certificate, state, of, mean, loose, sums }
-    }
-
-    /// The numbers of C eps(v) - tau on each triangle.
-    pub(crate) fn own(&self) -> &[Numbers] {
-        let (pieces, state) = (&self.certificate.pieces, self.state);
-        self.sums.own.get_or_init(|| {
-            let mut laws = RoundedLaws::default();
-            let of = |(t, piece): (usize, &Piece)| {
-                let (_, apart) = state.stresses(self.certificate, t);
-                Numbers::new(laws.of(&piece.material), piece, &state.triangles[t], &apart)
-            };
-            pieces.iter().enumerate().map(of).collect()
-        })
+        Forces { certificate, state, of, mean, loose, unbalanced }
     }
 
     /// int f . w - a(v, w)
@@ -544,7 +515,7 @@ impl<'a, S: Staged> Forces<'a, S> {
         let sum = |forces: &[Vector2<S>], w: &[Vector2<S>]| {
             forces.iter().zip(w).fold(S::from(0), |sum, (f, w)| sum + f.dot(w))
         };
-        let Imbalance { points, bulges } = &self.sums.unbalanced;
+        let Imbalance { points, bulges } = &self.unbalanced;
         let at_points = sum(points, &w.points);
         w.bulges.as_ref().map_or(at_points, |of_w| at_points + sum(bulges, of_w))
     }
@@ -643,11 +614,10 @@ impl<'a, S: Staged> Forces<'a, S> {
     /// L(w) - int m : eps(w) and |w|_a of some displacements, in one pass over the triangles.
     fn values(&self, shapes: &[Shape<S>]) -> Vec<LiftingValue<S>> {
         let (certificate, state) = (self.certificate, self.state);
-        let (mut squares, mut laws) = (vec![Ball::from(0); shapes.len()], RoundedLaws::default());
-        for (t, (piece, triangle)) in certificate.pieces.iter().zip(&state.triangles).enumerate() {
-            let ground = Ground::new(laws.of(&piece.material), triangle);
+        let mut squares = vec![Ball::from(0); shapes.len()];
+        for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
             for (square, w) in squares.iter_mut().zip(shapes) {
-                *square += energy(w, (piece, triangle), ground.as_ref(), mean(*square, t));
+                *square += energy(w, piece, triangle);
             }
         }
         let value = |(w, square): (&Shape<S>, Ball)| {
@@ -827,25 +797,9 @@ impl<'a, S: Staged> Forces<'a, S> {
     }
 }
 
-/// The mean of a sum of so many; 0 of none.
-pub(crate) fn mean(sum: Ball, count: usize) -> f64 {
-    if count == 0 { 0.0 } else { sum.upper() / count as f64 }
-}
-
-/// int eps(w) : C eps(w) on a triangle: in doubles, if these are sharp beside it or a `typical` one.
-pub(crate) fn energy<S: Staged>(
-    w: &Shape<S>,
-    (piece, triangle): (&Piece, &Triangle<S>),
-    ground: Option<&Ground>,
-    typical: f64,
-) -> Ball {
-    let (nodal, bulges) = (piece.vertices.map(|p| w.points[p]), w.bulges_of(piece));
-    let in_doubles = ground.and_then(|ground| ground.energy((nodal, bulges), typical));
-    in_doubles.unwrap_or_else(|| {
-        let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
-        let energy = strain_energy(&piece.material().squares(), (&nodal, bulges), &normals);
-        Ball::point((energy / (triangle.double_area() * S::from(24))).upper())
-    })
+/// int eps(w) : C eps(w) on a triangle.
+pub(crate) fn energy<S: Enclosing>(w: &Shape<S>, piece: &Piece, triangle: &Triangle<S>) -> Ball {
+    w.stress(piece, triangle).energy(&piece.material(), triangle.double_area()).ball()
 }
 
 /// The largest ratio of a to b, not below 0: infinite where b is 0 and a is not.

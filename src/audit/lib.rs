@@ -12,7 +12,6 @@
 //! | `balance`, `balanced` | tractions in exact equilibrium |
 //! | [`proof`] | the bound |
 //! | [`forces`], [`dual`] | forces of the true solution between two numbers; to second order |
-//! | [`stresses`] | their stresses in doubles, with what these are off by |
 #![cfg(not(kani))]
 
 mod balance;
@@ -26,6 +25,5 @@ pub mod forces;
 pub mod format;
 mod on_contact;
 pub mod proof;
-pub mod stresses;
 
 pub(crate) use signorini_kernel as kernel;

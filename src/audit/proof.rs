@@ -104,7 +104,7 @@ impl Certificate {
         let state = self.balanced::<Ball>(self.topology()?)?;
         let double_area = |t: usize| state.triangles[t].double_area();
         self.check_balance((&state.forces, &state.resultants), double_area, &state.closed)?;
-        let (proof, sums) = self.sum_for(&state, &claim.forces)?;
+        let (proof, unbalanced) = self.sum_for(&state, &claim.forces)?;
         if claim.shares.len() != proof.shares.len() {
             let (found, expected) = (claim.shares.len(), proof.shares.len());
             return Err(Rejection::Length { what: "claimed shares", found, expected });
@@ -119,7 +119,7 @@ impl Certificate {
         if !bound.is_at_most(claim.bound) {
             return Err(Rejection::Bound { claimed: claim.bound, found: bound });
         }
-        self.check_forces(&state, &proof, &claim.forces, sums)?;
+        self.check_forces(&state, &proof, &claim.forces, unbalanced)?;
         Ok(proof)
     }
 
@@ -225,14 +225,14 @@ impl Certificate {
     /// The right side of the theorem.
     #[doc(hidden)]
     pub fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
-        self.sum_beside(state, |_, _, _| ())
+        self.sum_beside(state, |_, _| ())
     }
 
-    /// [`Certificate::sum`]; `also` gets each triangle with C eps(v) and C eps(v) - tau there.
+    /// [`Certificate::sum`]; `also` gets each triangle with C eps(v) there.
     pub(crate) fn sum_beside<S: Enclosing>(
         &self,
         state: &Balanced<S>,
-        mut also: impl FnMut(usize, &Affine<S>, &Composite<S>),
+        mut also: impl FnMut(usize, &Affine<S>),
     ) -> Result<Proof, Rejection> {
         let Balanced { triangles, v, forces, .. } = state;
         let zero = S::from(0);
@@ -242,7 +242,7 @@ impl Certificate {
             let material = piece.material();
             let double_area = triangles[t].double_area();
             let (sigma, distance) = state.stresses(self, t);
-            also(t, &sigma, &distance);
+            also(t, &sigma);
             let share = self.share(state, t, &distance);
             shares.push(share.upper());
             square += share;

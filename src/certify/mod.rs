@@ -50,7 +50,7 @@ pub use signorini_audit::forces::Ramp;
 #[cfg(feature = "files")]
 pub use signorini_audit::format;
 use signorini_audit::{balanced, certificate};
-pub use signorini_audit::{dual, forces, proof, stresses};
+pub use signorini_audit::{dual, forces, proof};
 
 use self::proof::{Piece, Role};
 pub use self::quantities::ProvedQuantities;

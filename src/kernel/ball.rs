@@ -222,7 +222,7 @@ impl<C: Centre> MidRad<C> {
 
     /// A ball that contains all numbers from `lo` to `hi`.
     #[inline]
-    fn between(lo: f64, hi: f64) -> Self {
+    pub(crate) fn between(lo: f64, hi: f64) -> Self {
         if lo == hi {
             return Self::from(lo);
         }
@@ -391,6 +391,11 @@ where
     #[inline]
     fn lower(self) -> f64 {
         MidRad::lower(self)
+    }
+
+    #[inline]
+    fn ball(self) -> Ball {
+        self.rounded()
     }
 }
 

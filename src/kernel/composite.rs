@@ -261,6 +261,35 @@ impl<S: Scalar> Composite<S> {
         }
         law.per_moduli(sum) * double_area / S::from(576)
     }
+
+    /// int_T tau : C^-1 rho, the bilinear form of [`Composite::energy`]; rho has no bulges.
+    pub fn product_with_affine(
+        &self,
+        (corners, centre): ([[Stress<S>; 2]; 3], Stress<S>),
+        material: &Material<S>,
+        double_area: S,
+    ) -> S {
+        let (three, eight) = (S::from(3), S::from(8));
+        let law = material.squares();
+        let two_thirds = S::from(2) / three;
+        let mut sum = law.products(self.centre, centre).map(|x| eight * x);
+        for ([a, b], [c, d]) in self.corners.into_iter().zip(corners) {
+            let of_sums =
+                law.products(a + b + self.centre * two_thirds, c + d + centre * two_thirds);
+            let of_differences = law.products(a - b, c - d);
+            sum = [0, 1].map(|k| sum[k] + three * of_sums[k] + of_differences[k]);
+        }
+        // Half of what is linear in the bulges.
+        let linear = eight / S::from(5);
+        for ([c, d], h) in corners.iter().zip(self.bulges.iter().flatten()) {
+            let whole = (*c + *d + centre) * S::from(2);
+            for (h, opposite) in h.iter().zip([centre, *d, *c]) {
+                let along = law.products(*h, whole - opposite);
+                sum = [0, 1].map(|k| sum[k] + linear * along[k]);
+            }
+        }
+        law.per_moduli(sum) * double_area / S::from(576)
+    }
 }
 
 impl<S: Scalar> Loads<S> {
@@ -637,5 +666,31 @@ mod tests {
         let expected = sigma.matrix().dot(&gradient) * T.double_area() / 2.0;
         let energy = tau.energy(&material, T.double_area());
         assert_relative_eq!(energy, expected, max_relative = ROUNDING);
+    }
+
+    #[test]
+    fn the_product_is_the_bilinear_form_of_the_energy() {
+        let tensor = Material::tensor([12.0, 3.0, 2.0, 5.0, -1.0, 4.0], None);
+        for material in [Material::lame(1.3, 0.7, Plane::Strain), tensor] {
+            for a in [of(&balanced()), bent(&balanced())] {
+                let b = of(&Loads { body: UNLOADED.body, ..balanced() });
+                let plus = |sign: f64| Composite {
+                    corners: [0, 1, 2]
+                        .map(|i| [0, 1].map(|j| a.corners[i][j] + b.corners[i][j] * sign)),
+                    centre: a.centre + b.centre * sign,
+                    bulges: a.bulges,
+                };
+                let energy = |tau: &Composite<f64>| tau.energy(&material, T.double_area());
+                let expected = (energy(&plus(1.0)) - energy(&plus(-1.0))) / 4.0;
+                let product = |a: &Composite<f64>| {
+                    a.product_with_affine((b.corners, b.centre), &material, T.double_area())
+                };
+                let scale = (energy(&a) * energy(&b)).sqrt();
+                assert_abs_diff_eq!(product(&a), expected, epsilon = 10.0 * ROUNDING * scale);
+                // Control: a bulge counts.
+                let flat = Composite { bulges: None, ..a };
+                assert_eq!((product(&flat) - expected).abs() > 1e-6 * scale, a.bulges.is_some());
+            }
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Numbers that enclose a real one, and what may be concluded from them: the comparisons of the checker of certificates. A
 //! conclusion holds for every number that is enclosed; where nothing is known, and of a NaN, nothing is concluded.
 
-use super::Scalar;
+use super::{Ball, Scalar};
 
 /// A number that stands for a real one: a double for a quick look, a ball or an interval for a proof, a rational for the
 /// truth.
@@ -17,6 +17,12 @@ pub trait Enclosing: Scalar {
 
     /// A double that it is not below.
     fn lower(self) -> f64;
+
+    /// A ball around it.
+    #[inline]
+    fn ball(self) -> Ball {
+        Ball::between(self.lower(), self.upper())
+    }
 
     /// Returns whether it is known to be positive.
     #[inline]

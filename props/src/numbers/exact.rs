@@ -11,7 +11,6 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
-use signorini::certify::stresses::Staged;
 use signorini::kernel::{Enclosing, Scalar};
 
 struct Arena {
@@ -190,17 +189,6 @@ impl Enclosing for Exact {
 
     fn lower(self) -> f64 {
         -(-self).upper()
-    }
-}
-
-/// No doubles stand for them.
-impl Staged for Exact {
-    const IN_DOUBLES: bool = false;
-
-    /// The next double below, and a step of doubles.
-    fn centred(self) -> (f64, f64) {
-        let below = self.lower();
-        (below, below.next_up() - below)
     }
 }
 
