@@ -85,7 +85,10 @@ fn drawn(seed: u64) -> Drawn {
     // moment is 2 bend^2 sum mu x^3 for each unit of load, at most bend^2 / 16 with |x| <= 1/2: that is how far from the axis the load may be.
     let aside = (narrow[0] + narrow[1]) / 2.0 - 0.5 + tilt * (narrow[1] - narrow[0]) / 12.0;
     let most = bend * bend / 16.0;
-    let held = if kind != "free" || law != Law::Contact || bend == 0.0 || aside.abs() < most / 2.0 {
+    // Three nodes are on a circle, whose normals meet at one point.
+    let is_curved = n.min(m) > 2;
+    let is_pushed_aside = kind == "free" && law == Law::Contact && bend != 0.0;
+    let held = if !is_pushed_aside || (aside.abs() < most / 2.0 && is_curved) {
         Some(true)
     } else if aside.abs() > 2.0 * most {
         Some(false)
