@@ -402,3 +402,23 @@ def test_an_adapted_solution_has_forces_between_two_numbers():
     assert low > 0 and high == float("inf")
     assert solution.certified["reaction y", "top"][0] < 0
     assert signorini.solve_case(CASES / "block.toml").certified == {}
+
+
+def test_a_pair_of_bodies_is_given_as_tables_and_has_the_points_of_both_sides():
+    # Two unit squares, one on the other, 4 and 6 cells wide.
+    (lower, below, names), (upper, above, others) = square(4), square(6)
+    points = np.vstack((lower, upper + [0, 1]))
+    triangles = np.vstack((below, above + len(lower)))
+    boundaries = {"floor": names["bottom"], "low": names["top"], "up": others["bottom"] + len(lower), "load": others["top"] + len(lower)}
+    tables = {"material": {"young": 1.0, "poisson": 0.0}, "boundary": {"floor": {"displacement": [0, 0]}, "load": {"displacement": ["free", -0.02]}}}
+    solution = signorini.solve(points, triangles, boundaries, pairs=[{"boundaries": ["low", "up"]}], **tables)
+    assert solution.verdict == "proved"
+    contact = solution.contact
+    # The stress is 0.01 everywhere, on the 8 pieces between the nodes of both, which are no nodes.
+    assert contact.boundary.tolist() == 16 * ["low"] + 16 * ["up"]
+    np.testing.assert_allclose(contact.pressure, 0.01, rtol=1e-10)
+    assert (contact.node == -1).all() and contact.place.shape == (32, 2)
+    np.testing.assert_allclose(contact.place[:, 1], 1, atol=1e-14)
+    # The control: bodies that touch are refused without a pair.
+    with pytest.raises(signorini.CaseError, match="pair"):
+        signorini.solve(points, triangles, boundaries, **tables)

@@ -14,11 +14,11 @@ use super::{Done, complain, summarised};
 pub fn run(mesh: &Path, out: Option<&Path>, quiet: bool) -> Result<Done, Failure> {
     let phases = Phases::start(quiet);
     phases.enter("reading the mesh");
-    let made = gmsh::read(mesh, None, &[])?;
+    let (made, pairs) = gmsh::read_with_pairs(mesh)?;
     drop(phases);
     let out = out.map_or_else(|| mesh.with_extension("toml"), Path::to_owned);
     let title = mesh.file_stem().unwrap_or_default().to_string_lossy();
-    let text = draft::draft(&title, &name_for(mesh, &out), &made.mesh);
+    let text = draft::draft(&title, &name_for(mesh, &out), &made.mesh, &pairs);
     write(&out, &text)?;
     // The draft is a guess about a mesh that nobody has described yet: what is wrong with it is said, and the file stays.
     let case = match Case::parse(&out, &text, &[]) {

@@ -264,6 +264,26 @@ pub fn pieces(
     Ok(pieces)
 }
 
+/// Those of these pairs that are of two bodies and that face each other, somewhere, no further apart than their edges are long.
+pub fn touching(mesh: &Mesh, pairs: &[Pair]) -> Vec<Pair> {
+    let (parts, smooth) = (Parts::new(mesh), SmoothBoundary::new(mesh));
+    let bodies = |name: &String| -> BTreeSet<usize> {
+        let edges = mesh.edges_of(name).unwrap_or_default();
+        edges.iter().map(|edge| parts.of_triangle()[edge.triangle]).collect()
+    };
+    let is_near = |piece: &PairPiece| {
+        let length = |side: &PairSide| mesh.length_and_normal(side.edge).0;
+        let longest = piece.sides.iter().map(length).fold(0.0, f64::max);
+        piece.gap.iter().all(|gap| gap.abs() <= longest)
+    };
+    let touches = |pair: &&Pair| {
+        let [first, second] = pair.boundaries.each_ref().map(bodies);
+        first.is_disjoint(&second)
+            && pieces(mesh, &smooth, pair, Degree::One).is_ok_and(|all| all.iter().any(is_near))
+    };
+    pairs.iter().filter(touches).cloned().collect()
+}
+
 /// The piece between two pairs of partners that are on the edges `on` of the two boundaries. `None` if rounding leaves nothing of it.
 fn piece(
     sides: &[Boundary; 2],

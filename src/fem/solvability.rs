@@ -371,17 +371,19 @@ fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -> Option<Ve
             }
             let columns = used.iter().map(|(i, _)| rows[*i].clone()).collect();
             let weights = least_squares(columns, target);
-            let step = used
-                .iter()
-                .enumerate()
-                .filter(|(j, _)| weights[*j] <= 0.0)
-                .map(|(j, (_, old))| old / (old - weights[j]))
-                .fold(f64::INFINITY, f64::min);
-            let t = step.min(1.0);
+            // How far the weights may go towards these until one of them is 0; that one is, however it is rounded.
+            let until = |j: usize| {
+                let old = used[j].1;
+                if old > 0.0 { old / (old - weights[j]) } else { 0.0 }
+            };
+            let negative = (0..used.len()).filter(|&j| weights[j] <= 0.0);
+            let first = negative.min_by(|&i, &j| until(i).total_cmp(&until(j)));
+            let t = first.map_or(1.0, until);
             for (j, (_, weight)) in used.iter_mut().enumerate() {
-                *weight += t * (weights[j] - *weight);
+                let is_first = first == Some(j);
+                *weight = if is_first { 0.0 } else { *weight + t * (weights[j] - *weight) };
             }
-            if step > 1.0 {
+            if first.is_none() {
                 break;
             }
             used.retain(|(_, weight)| *weight > 0.0);

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::numbers::short;
 use crate::fem::tree::Bounds;
-use crate::fem::{BoundaryEdge, Mesh};
+use crate::fem::{BoundaryEdge, Mesh, Pair};
 use crate::quote::{self, number};
 
 /// The boundaries that are listed; more are counted.
@@ -19,20 +19,23 @@ struct Used {
     place: Option<String>,
 }
 
-/// The text of a case file for this mesh, which it calls `gmsh`.
-pub fn draft(title: &str, gmsh: &Path, mesh: &Mesh) -> String {
+/// The text of a case file for this mesh, which it calls `gmsh`, with these pairs of boundaries that touch each other.
+pub fn draft(title: &str, gmsh: &Path, mesh: &Mesh, pairs: &[Pair]) -> String {
     let mut text = format!(
         "# Replace material, support and floor by yours: those below make a first run. docs/case.md lists all keys.\ntitle = {}\n\n[mesh]\ngmsh = {}\n",
         string(title),
         string(&gmsh.to_string_lossy())
     );
     materials(mesh, &mut text);
-    let [bottom, top] = used(mesh);
+    let in_pair =
+        |name: &str| pairs.iter().any(|pair| pair.boundaries.iter().any(|other| other == name));
+    let [bottom, top] = used(mesh, &in_pair);
     let bounds = Bounds::around(mesh.vertices().iter().copied());
     let [low, high] = [bounds.low, bounds.high];
     text += "\n# The boundaries of the mesh. Conditions: displacement, traction, pressure, force, normal, tangential, contact; without one a\n# boundary is free.\n";
     let names: Vec<&str> = mesh.boundary_names().collect();
-    for name in names.iter().take(MOST).filter(|name| **name != bottom.name && **name != top.name) {
+    let is_used = |name: &str| name == bottom.name || name == top.name || in_pair(name);
+    for name in names.iter().take(MOST).filter(|name| !is_used(name)) {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "# [boundary.{}]     # {}", key(name), seen(mesh, name));
     }
@@ -52,6 +55,14 @@ pub fn draft(title: &str, gmsh: &Path, mesh: &Mesh) -> String {
         number((low[0] + high[0]) / 2.0),
         number(low[1])
     );
+    for Pair { boundaries: [first, second], .. } in pairs {
+        let _ = write!(
+            text,
+            "\n[[pair]]     # two bodies that touch each other; law = \"bonded\" glues them\nboundaries = [{}, {}]\n",
+            string(first),
+            string(second)
+        );
+    }
     text
 }
 
@@ -69,10 +80,10 @@ fn materials(mesh: &Mesh, text: &mut String) {
     }
 }
 
-/// The boundary that is lowest and the one that is highest, by the mesh's names, or else by their places.
-fn used(mesh: &Mesh) -> [Used; 2] {
+/// The boundary that is lowest and the one that is highest, by the mesh's names, or else by their places; none that touches another one.
+fn used(mesh: &Mesh, in_pair: &dyn Fn(&str) -> bool) -> [Used; 2] {
     let mut by_height: Vec<(f64, &str)> = Vec::new();
-    for name in mesh.boundary_names() {
+    for name in mesh.boundary_names().filter(|name| !in_pair(name)) {
         let edges = mesh.edges_of(name).unwrap_or_default();
         if !edges.is_empty() {
             by_height.push((mean_height(mesh, edges), name));

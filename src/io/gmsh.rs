@@ -20,7 +20,7 @@ use std::path::Path;
 
 use super::input::{self, FileError, MOST_OF_A_MESH};
 use super::raw_mesh::{ByDimension, Elements, Kind, Made, Node, RawMesh};
-use crate::fem::Pair;
+use crate::fem::{Pair, pairs};
 use crate::memory;
 use cursor::{Cursor, Version, shown};
 
@@ -47,6 +47,30 @@ pub fn from_bytes(bytes: &[u8], file: &Path, share: Option<f64>, pairs: &[Pair])
     let raw = read_sections(&mut cursor)?;
     raw.made(share, pairs).map_err(|error| cursor.in_the_file(error))
 }
+
+/// The mesh in this file, and its bodies' boundaries that touch each other, as pairs: those of two bodies that face each other no further
+/// apart than their edges are long.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_with_pairs(file: &Path) -> Result<(Made, Vec<Pair>)> {
+    let bytes = input::read(file, MOST_OF_A_MESH)?;
+    let mut cursor = Cursor { bytes: &bytes, file, at: 0, version: Version::Four, binary: false };
+    let names = read_sections(&mut cursor)?.curve_names();
+    let with = |pairs: &[Pair]| from_bytes(&bytes, file, None, pairs);
+    // A mesh in which bodies touch is refused but for pairs: all are taken for some first, unless these are too many to look at.
+    let count = if names.len() <= MOST_NAMES { names.len() } else { 0 };
+    let all: Vec<Pair> = (0..count)
+        .flat_map(|j| (0..j).map(move |i| (i, j)))
+        .map(|(i, j)| Pair::new(&*names[i], &*names[j]))
+        .collect();
+    let Ok(made) = with(&all) else { return Ok((with(&[])?, Vec::new())) };
+    let touching = pairs::touching(&made.mesh, &all);
+    Ok((with(&touching)?, touching))
+}
+
+/// Of more named curves no pairs are tried.
+const MOST_NAMES: usize = 40;
 
 /// The physical groups of each entity.
 type Groups = ByDimension<BTreeMap<i32, Vec<i32>>>;

@@ -231,6 +231,12 @@ const NO_TRIANGLE: &str =
 const MIXED: &str = "others of its surface run counter-clockwise";
 
 impl RawMesh {
+    /// The names of its curves.
+    pub(super) fn curve_names(&self) -> Vec<String> {
+        let names: BTreeSet<&String> = self.names[1].values().flatten().collect();
+        names.into_iter().cloned().collect()
+    }
+
     /// The mesh of the corners of triangles and quadrangles, its nodes merged that are no further apart than a share of the body's
     /// size, if one is given. The boundaries of these pairs may touch each other, and are not merged.
     ///

@@ -235,6 +235,33 @@ fn check_says_what_acts_on_each_boundary_and_what_contact_holds() {
     assert!(text(&output.stdout).contains(held), "{}", text(&output.stdout));
 }
 
+#[test]
+fn new_writes_a_pair_for_bodies_that_touch_each_other() {
+    let folder = with_files("new_pair", &[]);
+    for (mesh, pairs) in [
+        ("reference/pairs/apart.msh", &["\"low\", \"up\""][..]),
+        ("cases/pin_lug.msh", &["\"hole\", \"pin\""]),
+        (
+            "cases/stack.msh",
+            &["\"lower_top\", \"middle_bottom\"", "\"middle_top\", \"upper_bottom\""],
+        ),
+        // Bodies that share the nodes of their line are glued there, as far as a mesh can say.
+        ("reference/pairs/joined.msh", &[]),
+    ] {
+        let name = Path::new(mesh).file_name().unwrap().to_str().unwrap();
+        fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join(mesh), folder.join(name)).unwrap();
+        let output = signorini(&folder, &["new", name]);
+        assert_eq!(output.status.code(), Some(0), "{mesh}: {output:?}");
+        let case = name.replace(".msh", ".toml");
+        let text = fs::read_to_string(folder.join(&case)).unwrap();
+        assert_eq!(text.matches("[[pair]]").count(), pairs.len(), "{text}");
+        assert!(pairs.iter().all(|pair| text.contains(pair)), "{text}");
+    }
+    // What it writes can be solved at once, unless a body would slide off the other one.
+    let output = signorini(&folder, &["solve", "stack.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+}
+
 /// What `new` writes for any mesh is a case that is sound and can be solved.
 #[test]
 fn new_writes_a_case_that_can_be_solved_and_replaces_no_file() {

@@ -356,3 +356,15 @@ fn the_shipped_cases_have_no_other_remarks_than_these() {
         }
     }
 }
+
+/// The rings overlap by 0.03; their least radius is 29.985, and the box around the narrower one is 30 wide.
+#[test]
+fn bodies_of_a_pair_that_overlap_by_more_than_a_hundredth_of_their_size_are_remarked() {
+    let words =
+        ["the bodies of 'shaft' and 'bore' overlap by 0.6", "strains are taken to be small"];
+    for (given, clearance) in [(true, "-0.6"), (false, "-0.2")] {
+        let setting = format!("pair.0.clearance={clearance}");
+        let case = case("press_fit.toml", &[&setting, "method.degree=1"]);
+        expect(given, &of(&case), &words, clearance);
+    }
+}

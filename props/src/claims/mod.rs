@@ -20,6 +20,8 @@ pub mod method;
 pub mod mixed;
 #[cfg(not(kani))]
 pub mod one_solution;
+#[cfg(not(kani))]
+pub mod pairs;
 pub mod positive_part;
 pub mod prop_2_1;
 #[cfg(not(kani))]
@@ -59,6 +61,7 @@ pub fn all() -> Vec<Claim> {
         floating_point::claim(),
         constants::claim(),
         variational_inequality::claim(),
+        pairs::claim(),
     ];
     claims.sort_by_key(|claim| claim.id.parse::<u32>().expect("the id of a row is a number"));
     claims

@@ -1,5 +1,7 @@
 //! Exact solutions: uniform stress in blocks whose meshes do not match, 7 cells against 11, is found to rounding.
 
+use std::collections::BTreeSet;
+
 use super::*;
 use crate::common::DEGREES;
 
@@ -188,6 +190,74 @@ fn control_the_stress_of_the_second_body_with_the_wrong_sign_is_noticed() {
         let turned = |_: &Piece, i: usize| if i == 0 { 1.0 } else { -1.0 };
         let wrong = with_planted(&problem, &method(degree), |d| with_stress(d, turned));
         assert!(wrong.is_err() || off(&problem, &wrong.unwrap(), degree, &exact) > 1e-4);
+    }
+}
+
+/// One piece for each edge of the first body, whatever nodes the second one has there: its side is the edge of that body where the piece
+/// starts, and what is beyond it.
+fn unmerged(d: &Discretization) -> Vec<Piece> {
+    let whole = with_geometry(d, |geometry| {
+        let [own, other] = [0, 1].map(|i| geometry.stretches[i].positions.clone());
+        let slope = (other[1] - other[0]) / (own[1] - own[0]);
+        for (a, s) in d.space.degree().edge_positions().into_iter().enumerate() {
+            geometry.stretches[0].positions[a] = s;
+            geometry.stretches[1].positions[a] = other[0] + (s - own[0]) * slope;
+        }
+    });
+    let mut known = BTreeSet::new();
+    let is_first = |piece: &Piece| {
+        let edge = piece.geometry.stretches[0].edge;
+        known.insert((edge.triangle, edge.local))
+    };
+    let mut firsts = whole;
+    firsts.retain(is_first);
+    let mut start = 0;
+    for piece in &mut firsts {
+        piece.start = start;
+        start = piece.functionals().end;
+    }
+    firsts
+}
+
+#[test]
+fn control_pieces_that_do_not_end_at_the_nodes_of_the_second_body_are_noticed() {
+    let turn = Turn::by(0.0);
+    let (problem, exact) = compressed([1.0, 1.0], turn, Law::Contact);
+    let problem = problem.with("upper.top", along_normal(exact(1, [0.0, 2.0])[1]));
+    for degree in DEGREES {
+        let right = with_planted(&problem, &method(degree), |d| d.contact.clone()).unwrap();
+        assert!(off(&problem, &right, degree, &exact) <= ROUNDING);
+        let wrong = with_planted(&problem, &method(degree), unmerged);
+        assert!(wrong.is_err() || off(&problem, &wrong.unwrap(), degree, &exact) > 1e-4);
+    }
+}
+
+#[test]
+fn pieces_that_are_short_do_not_disturb_the_others() {
+    let lower = rectangle([0.0, 0.0], [1.0, 1.0]);
+    let force = |share: f64, degree: Degree| {
+        // The inner nodes of the upper body are off those of the lower one by this share of a cell.
+        let upper = move |[x, t]: [f64; 2]| {
+            let inner = x > 0.0 && x < 1.0;
+            [if inner { x + share / 8.0 } else { x }, 1.0 + t]
+        };
+        let block = |name, map| Block { name, cells: [8, 8], material: young(1.0, POISSON), map };
+        let problem = bodies(
+            &[block("lower", &lower), block("upper", &upper)],
+            &[Pair::new("lower.top", "upper.bottom")],
+        )
+        .with("lower.bottom", Condition::displacement(|_| 0.0, |[x, _]| 0.05 + 0.1 * (x - 0.5)))
+        .with("upper.top", Condition::clamped());
+        proved(&problem, &method(degree)).boundaries[0].force
+    };
+    for degree in DEGREES {
+        let matching = force(0.0, degree);
+        for share in [0.3, 0.1, 1e-2, 1e-4, 1e-6, 1e-9] {
+            let off = (force(share, degree) / matching - 1.0).abs();
+            println!("{degree:?}, nodes off by {share:e}: force off by {off:e}");
+            // Moving nodes by a cell's share moves the discrete force by about its own error, 2 % with these cells.
+            assert!(off <= 0.02 * share.max(1e-3) / 0.1, "{degree:?} {share:e}: {off:e}");
+        }
     }
 }
 

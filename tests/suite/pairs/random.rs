@@ -12,6 +12,8 @@ fn number_from(variable: &str, default: u64) -> u64 {
 
 struct Drawn {
     kind: &'static str,
+    /// Whether contact alone can carry the load; `None` if that is close.
+    held: Option<bool>,
     said: String,
     problem: Problem,
     method: Method,
@@ -78,11 +80,29 @@ fn drawn(seed: u64) -> Drawn {
             ("free", problem.with("upper.top", pressed))
         }
     };
+    // A block that is free on a foot y = bend X (1 - X) pushes across it in contact: with forces along its normals, which meet the axis X =
+    // 1/2 at nearly one point. Forces mu at X - 1/2 = x that balance a load without horizontal part have sum mu x = 0, and their
+    // moment is 2 bend^2 sum mu x^3 for each unit of load, at most bend^2 / 16 with |x| <= 1/2: that is how far from the axis the load may be.
+    let aside = (narrow[0] + narrow[1]) / 2.0 - 0.5 + tilt * (narrow[1] - narrow[0]) / 12.0;
+    let most = bend * bend / 16.0;
+    // Three nodes are on a circle, whose normals meet at one point.
+    let is_curved = n.min(m) > 2;
+    let is_pushed_aside = kind == "free" && law == Law::Contact && bend != 0.0;
+    let held = if !is_pushed_aside || (aside.abs() < most / 2.0 && is_curved) {
+        Some(true)
+    } else if aside.abs() > 2.0 * most {
+        Some(false)
+    } else {
+        None
+    };
     let said = format!(
         "{n}:{m} x {rows:?}, {degree:?}, {law:?}, E2/E1 = {ratio:.1e}, bend {bend:.2}, gap {gap:.3}, size {size:.1e}"
     );
-    Drawn { kind, said, problem, method: method(degree) }
+    Drawn { kind, held, said, problem, method: method(degree) }
 }
+
+/// What once took forever: the test of what holds the body went around.
+const REMEMBERED: [u64; 2] = [548, 602];
 
 #[test]
 fn ninety_nine_of_a_hundred_pairs_are_proved() {
@@ -90,8 +110,8 @@ fn ninety_nine_of_a_hundred_pairs_are_proved() {
         (number_from("SIGNORINI_PAIRS_FROM", 1), number_from("SIGNORINI_PAIRS", 100));
     let mut table: BTreeMap<(&str, &str), u64> = BTreeMap::new();
     let (mut steps, mut missed) = (Vec::new(), 0);
-    for seed in from..from + count {
-        let Drawn { kind, said, problem, method } = drawn(seed);
+    for seed in (from..from + count).chain(REMEMBERED) {
+        let Drawn { kind, held, said, problem, method } = drawn(seed);
         let outcome = match solve(&problem, &method, &Settings::default()) {
             Ok((s, _)) if s.verdict.name() == "proved" => {
                 steps.push(s.newton.iterations());
@@ -101,10 +121,14 @@ fn ninety_nine_of_a_hundred_pairs_are_proved() {
                 println!("seed {seed}: {kind}: {:?} [{said}]", s.verdict);
                 "not proved"
             }
-            // A body on the verge of tipping, or with a motion that nothing stops, is refused with its motion.
-            Err(SolveError::Data(error)) => {
-                println!("seed {seed}: {kind}: {error} [{said}]");
-                "refused"
+            // A motion that nothing stops, or next to nothing.
+            Err(error) if held != Some(true) => {
+                let error = error.to_string();
+                let is_said = ["nothing stops the rotation about", "too weakly held"]
+                    .iter()
+                    .any(|words| error.contains(words));
+                assert!(is_said, "seed {seed}: {error} [{said}]");
+                "rightly refused"
             }
             Err(error) => {
                 println!("seed {seed}: {kind}: {error} [{said}]");
@@ -112,6 +136,10 @@ fn ninety_nine_of_a_hundred_pairs_are_proved() {
             }
         };
         missed += u64::from(outcome == "not proved" || outcome == "not solved");
+        assert!(
+            held != Some(false) || outcome == "rightly refused",
+            "seed {seed}: {outcome} [{said}]"
+        );
         *table.entry((kind, outcome)).or_default() += 1;
     }
     for ((kind, outcome), number) in &table {
@@ -119,10 +147,7 @@ fn ninety_nine_of_a_hundred_pairs_are_proved() {
     }
     steps.sort_unstable();
     println!("steps: median {}, most {}", steps[steps.len() / 2], steps[steps.len() - 1]);
-    let refused: u64 = table.iter().filter(|((_, o), _)| *o == "refused").map(|(_, n)| n).sum();
     assert!(100 * missed <= count, "{missed} of {count} are not proved");
-    // What is drawn is meant to be a problem.
-    assert!(3 * refused <= count, "{refused} of {count} are refused");
 }
 
 #[test]
