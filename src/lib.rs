@@ -26,6 +26,24 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! A body of revolution has its meridian for a mesh: x is the distance from the axis x = 0 and y the place along it. Energies and forces
+//! along the axis are those of the whole revolution.
+//!
+//! ```
+//! use signorini::{Condition, Diagonal, Material, Method, Plane, Problem, Rectangle, Settings, solve};
+//!
+//! let (nx, ny, diagonal) = (8, 8, Diagonal::Right);
+//! let mesh = Rectangle { width: 1.0, height: 1.0, nx, ny, diagonal }.mesh()?;
+//! let cylinder = Problem::of(mesh, Material::young_poisson(2.0, 0.3, Plane::Axisymmetric))
+//!     .with("top", Condition::pressure(|_| 0.01))
+//!     .with("bottom", Condition::contact(|_| 0.0));
+//! let (solution, _) = solve(&cylinder, &Method::default(), &Settings::default())?;
+//! let force = 0.01 * std::f64::consts::PI;
+//! assert!((solution.quantities.contact_force - force).abs() < 1e-12);
+//! assert!(solution.largest_stresses(&cylinder).unwrap().hoop.is_some());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # The problem
 //!
 //! An elastic body is clamped (or moved) on Gamma_D, loaded in Omega and on Gamma_N, and may touch a rigid obstacle along
@@ -56,6 +74,7 @@
 //! | V^h: P1, and P2 of Remark 3.7; a(.,.) on a triangle | [`kernel::element`], [`fem::space`] |
 //! | P_gamma and sigma_n on an edge, the constant of (11) | [`kernel::contact_edge`] |
 //! | the integrals over Gamma_C in (8), without quadrature error | [`kernel::edge_integral`] |
+//! | the weight r and the hoop strain of bodies of revolution (not in the paper) | [`kernel::axial`] |
 //! | T^h and h_T | [`fem::mesh`] |
 //! | Gamma_D, L, Gamma_C with (7), kappa | [`fem::constraints`], [`fem::loads`], [`fem::contact_line`] |
 //! | (8) itself, J_h | [`fem::discretization`] |

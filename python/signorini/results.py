@@ -98,10 +98,15 @@ class StressPeak(_Peak, total=False):
     surface: str
 
 
-class Stress(TypedDict):
+class _Stress(TypedDict):
     von_mises: StressPeak
     principal_max: StressPeak
     principal_min: StressPeak
+
+
+class Stress(_Stress, total=False):
+    hoop_max: StressPeak
+    hoop_min: StressPeak
 
 
 class Balance(TypedDict):

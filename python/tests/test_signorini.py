@@ -78,6 +78,31 @@ def test_degree_2_has_nodes_on_the_edges():
         assert np.abs(middle - sum(ends) / 2).max() < 1e-15
 
 
+def test_a_body_of_revolution_has_forces_of_the_whole_and_hoop_stresses():
+    """A cylinder under a pressure of 0.01: u_r = nu p r / E, u_z = -p z / E, and the force pi p."""
+    case = {
+        "material": {"young": 2.0, "poisson": 0.3},
+        "body": {"plane": "axisymmetric"},
+        "boundary": {"top": {"pressure": 0.01}, "bottom": {"contact": {"gap": 0}}},
+    }
+    for degree in (1, 2):
+        solution = signorini.solve(*square(4), **case, method={"degree": degree})
+        r, z = solution.nodes.T
+        expected = np.stack([0.3 * 0.01 * r / 2, -0.01 * z / 2], axis=1)
+        assert np.abs(solution.displacement - expected).max() < 1e-13
+        assert solution.results["quantities"]["contact_force"] == pytest.approx(0.01 * np.pi, rel=1e-12)
+        assert solution.verdict == "proved" and solution.results["stress"]["hoop_max"]["value"] < 1e-13
+        # sigma_rr, sigma_zz, the hoop stress and sigma_rz.
+        assert np.abs(solution.stress - [0, -0.01, 0, 0]).max() < 1e-13
+        assert "scale(-1" in solution._repr_svg_() and "of the whole revolution" in repr(solution)
+    # The control: a plate of that section.
+    plate = signorini.solve(*square(4), **{**case, "body": {"plane": "strain"}})
+    assert plate.results["quantities"]["contact_force"] == pytest.approx(0.01, rel=1e-12)
+    beyond = square(4)[0] - [0.5, 0]
+    with pytest.raises(signorini.CaseError, match="the axis, which is x = 0"):
+        signorini.solve(beyond, *square(4)[1:], **case)
+
+
 def test_a_meshio_mesh_is_taken_as_it_is_with_physical_names():
     mesh = meshio.read(CASES / "disk.msh")
     solution = signorini.solve(
@@ -224,6 +249,7 @@ def missing(value, declared, path=""):
 def test_the_types_of_the_results_declare_every_key():
     for case, settings in [
         ("bracket", {"body.thickness": 2, "output.probes": [[20, 10]]}),
+        ("hub", {}),
         ("singular", {"mesh.rectangle.nx": 2, "mesh.rectangle.ny": 2}),
     ]:
         results = signorini.solve_case(CASES / f"{case}.toml", set=settings).results

@@ -1,6 +1,8 @@
 //! Method (8) on a mesh: all its parts in one place, and its [residual](super::residual) in doubles. On the free degrees of
 //! freedom the solution makes it zero; on the prescribed ones it is the reaction.
 
+use std::f64::consts::TAU;
+
 use nalgebra::Vector2;
 
 use super::constraints::{Constraints, in_frame};
@@ -115,7 +117,11 @@ impl<'a> Discretization<'a> {
         if !motions.is_empty() {
             let rounding = rounding_of_directions(&constraints, &space, &contact);
             let sliding = solvability::slides(&motions, &parts, &space, &load, &contact, rounding)
-                .map_err(|NotHeld { motions, drive }| DataError::RigidMotion { motions, drive })?;
+                .map_err(|NotHeld { motions, drive }| {
+                    // That of the whole body, where loads are those of a radian.
+                    let whole = if problem.material.are_of_revolution() { TAU } else { 1.0 };
+                    DataError::RigidMotion { motions, drive: drive.map(|drive| whole * drive) }
+                })?;
             constraints = constraints.pinned(&sliding.basis, &vec![[0.0; 2]; space.nodes().len()]);
             slides = Some(sliding);
         }

@@ -89,16 +89,22 @@ impl Korn {
         // The parts in the order in which they are held, each by the triangle where its paths begin.
         let mut roots: Vec<usize> = Vec::new();
         let all = supports(space, constraints).into_iter().chain(holds.iter().cloned());
-        let all: Vec<Hold> = all.chain(hoops(mesh, materials)).collect();
-        for Term { triangle, .. } in all.iter().flat_map(|hold| &hold.terms) {
-            if paths.part[*triangle] == NONE {
-                paths.explore(*triangle, roots.len());
-                roots.push(*triangle);
+        let mut all: Vec<Hold> = all.collect();
+        let held = all.iter().flat_map(|hold| &hold.terms).map(|term| term.triangle);
+        // The hoop strain holds every triangle.
+        let by_hoops = if materials.are_of_revolution() { 0..left.len() } else { 0..0 };
+        for triangle in held.chain(by_hoops) {
+            if paths.part[triangle] == NONE {
+                paths.explore(triangle, roots.len());
+                roots.push(triangle);
             }
         }
         let Paths { along, part, .. } = paths;
         if part.contains(&NONE) {
             return None;
+        }
+        if materials.are_of_revolution() {
+            all.extend(hoops(mesh, materials, &part, roots.len()));
         }
         let of = |t: usize| left[t].sqrt() + along[t].sqrt();
         // A hold of several parts holds them together.
@@ -226,8 +232,28 @@ fn mean_weight(materials: &Materials, t: usize, triangle: &Triangle<f64>) -> f64
     materials.of(t).radii(triangle).map_or(1.0, |[a, b, c]| (a + b + c) / 3.0)
 }
 
-/// What the hoop strain of a body of revolution holds on each triangle: the mean of v_r.
-fn hoops(mesh: &Mesh, materials: &Materials) -> Vec<Hold> {
+/// What the hoop strain of a body of revolution holds: the mean of v_r on each triangle. Two of each part are enough, one near either end
+/// along the axis, where the bound is least.
+fn hoops(mesh: &Mesh, materials: &Materials, part: &[usize], count: usize) -> Vec<Hold> {
+    let height = |t: usize| mesh.triangle(t).vertices.iter().map(|x| x[1]).sum::<f64>();
+    let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; count];
+    for (t, &of) in part.iter().enumerate() {
+        let [low, high] = &mut ranges[of];
+        (*low, *high) = (low.min(height(t)), high.max(height(t)));
+    }
+    let mut best = vec![[(f64::INFINITY, NONE); 2]; count];
+    for (t, &of) in part.iter().enumerate() {
+        let [low, high] = ranges[of];
+        let quarter = (high - low) / 4.0;
+        let triangle = mesh.triangle(t);
+        let bound = mean_weight(materials, t, &triangle) / triangle.double_area();
+        let is_at_end = [height(t) <= low + quarter, height(t) >= high - quarter];
+        for (best, _) in best[of].iter_mut().zip(is_at_end).filter(|(_, is_at_end)| *is_at_end) {
+            if bound < best.0 {
+                *best = (bound, t);
+            }
+        }
+    }
     let hold = |triangle: usize| {
         let at = mesh.triangle(triangle);
         let stiffness = least_eigenvalue(materials.of(triangle));
@@ -238,8 +264,7 @@ fn hoops(mesh: &Mesh, materials: &Materials) -> Vec<Hold> {
         let along = [Ball::from(1), Ball::from(0)];
         Hold { terms: vec![Term { triangle, at: middle.into(), along }], most }
     };
-    let count = if materials.are_of_revolution() { mesh.triangles().len() } else { 0 };
-    (0..count).map(hold).collect()
+    best.iter().flatten().filter(|(_, t)| *t != NONE).map(|(_, t)| hold(*t)).collect()
 }
 
 /// c_T^2

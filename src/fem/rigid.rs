@@ -279,9 +279,17 @@ where
         }
     }
     if of_revolution {
+        // The rows of a part are affine in the height: those of the lowest and of the highest triangle say what all of them say.
+        let mut ends: Vec<Option<[[f64; 2]; 2]>> = vec![None; parts.count()];
         for (t, &part) in parts.of_triangle.iter().enumerate() {
-            let middle = space.mesh().triangle(t).point([1.0 / 3.0; 3]).into();
-            rows[part].push(parts.row(part, middle, 0).to_vec());
+            let middle: [f64; 2] = space.mesh().triangle(t).point([1.0 / 3.0; 3]).into();
+            let [low, high] = ends[part].get_or_insert([middle; 2]);
+            *low = if middle[1] < low[1] { middle } else { *low };
+            *high = if middle[1] > high[1] { middle } else { *high };
+        }
+        for (part, ends) in ends.iter().enumerate() {
+            let ends = ends.iter().flatten();
+            rows[part].extend(ends.map(|&middle| parts.row(part, middle, 0).to_vec()));
         }
         if space.degree() == Degree::Two {
             rows.iter_mut().for_each(|rows| rows.push(vec![0.0, 0.0, 1.0]));

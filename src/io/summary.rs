@@ -87,8 +87,11 @@ pub(crate) fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
         if verbose {
             lines.line("proved", enclosed(discrete));
         }
-        let how_far =
-            if continuous.is_none() { "; how far the mesh is off: --certificate" } else { "" };
+        let is_plane = r.stress.as_ref().is_none_or(|stress| stress.hoop_max.is_none());
+        let how_far = match continuous {
+            None if is_plane => "; how far the mesh is off: --certificate",
+            _ => "",
+        };
         lines.line("solved", solved_exactly(discrete) + how_far);
     }
     lines.0

@@ -195,9 +195,10 @@ fn recover_between(
     for &(e, piece) in pieces {
         let stretch = &piece.geometry.stretches[side];
         let [start, end, _] = hat_integrals(piece, &p[e], &d.rule, Hats::Whole);
+        let [first, last, _] = Hats::Whole.integrals(piece.radii);
         let [from, to] = [stretch.positions[0], stretch.positions[1]];
-        let later = [from * start + to * end, (from + to) / 2.0];
-        let whole = [start + end, 1.0];
+        let later = [from * start + to * end, from * first + to * last];
+        let whole = [start + end, first + last];
         let earlier = [0, 1].map(|k| whole[k] - later[k]);
         for (vertex, [work, share]) in mesh.ends(stretch.edge).into_iter().zip([earlier, later]) {
             let sum = sums.entry(vertex).or_default();

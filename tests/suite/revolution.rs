@@ -1,8 +1,11 @@
 //! Bodies of revolution: exact solutions, Hertz's contact, orders of convergence, the limit of a large radius, bodies at random.
 //! docs/theory.md, section 11.
 
+mod anew;
 mod answers;
 mod half_space;
+mod measured;
+mod outputs;
 mod pairs;
 mod random;
 mod refused;

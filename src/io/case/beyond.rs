@@ -1,7 +1,8 @@
 //! The keys that other programs have and this one has not: what they ask for is not computed, or has another key.
 
 /// What is not computed, and the keys that ask for it, alone or as the first part of a longer key (`friction_coefficient`).
-const BEYOND: [(&str, &[&str]); 6] = [
+const BEYOND: [(&str, &[&str]); 7] = [
+    ("torsion", &["torsion", "torque", "twist"]),
     ("friction", &["friction", "coulomb", "tresca", "stick", "mu_friction"]),
     (
         "plasticity",
@@ -77,6 +78,7 @@ mod tests {
             ("Friction-Coefficient", "friction"),
             ("yield", "plasticity"),
             ("density", "dynamics"),
+            ("torque", "torsion"),
         ] {
             let said = not_here(key);
             assert_eq!(said, Some(format!("{what} is not computed by this program")), "{key}");

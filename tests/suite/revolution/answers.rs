@@ -86,14 +86,14 @@ fn an_orthotropic_cylinder_widens_by_its_own_ratio() {
 }
 
 /// A tube in a rigid sleeve, u_z = 0 at its ends: u_r = A r + B / r.
-fn sleeve(n: usize, degree: Degree) -> (f64, [f64; 2]) {
+pub(super) fn sleeve(n: usize, degree: Degree) -> (f64, [f64; 2]) {
     let (lambda, mu, pressure, gap) = (1.0, 0.8, 0.02, 0.005);
     // A b + B / b = g and 2 (lambda + mu) A - 2 mu B / a^2 = -p for a = 1, b = 2.
     let k = 2.0 * (lambda + mu);
     let b = (pressure + k * gap / 2.0) / (2.0 * mu + k / 4.0);
     let a = gap / 2.0 - b / 4.0;
     let problem = Problem::of(
-        meridian([1.0, 2.0], 1.0, [n, n], true),
+        meridian([1.0, 2.0], 1.0, [n, n], false),
         Material::lame(lambda, mu, Plane::Axisymmetric),
     )
     .with("left", Condition::pressure(move |_| pressure))
@@ -120,15 +120,14 @@ fn a_tube_in_a_sleeve_converges_as_it_should() {
         let p = degree.number() as f64;
         let ((_, coarse), (off, fine)) = (sleeve(8, degree), sleeve(16, degree));
         assert_abs_diff_eq!(order(coarse[0], fine[0]), p, epsilon = 0.1);
-        // The nodes are moved: the order in L^2 comes slowly.
-        assert!(order(coarse[1], fine[1]) > p + 0.8);
+        assert_abs_diff_eq!(order(coarse[1], fine[1]), p + 1.0, epsilon = 0.1);
         assert!(off.abs() < if p == 1.0 { 1e-3 } else { 1e-5 }, "{off:?}");
     }
 }
 
 /// The smooth solution with an end of contact at r = c: q = 8 [r - c]+^5, k = 3 [c^2 - r^2]+^3, (lambda + 2 mu) p = -k,
 /// u = (-z q', q + z p).
-fn with_an_end_of_contact(n: usize, degree: Degree) -> (f64, [f64; 2]) {
+pub(super) fn with_an_end_of_contact(n: usize, degree: Degree) -> (f64, [f64; 2]) {
     const C: f64 = 0.75;
     let (lambda, mu) = (1.0, 1.0);
     let stiffness = lambda + 2.0 * mu;
@@ -177,7 +176,7 @@ fn a_smooth_solution_with_an_end_of_contact_has_orders_1_2_and_2_3() {
             (with_an_end_of_contact(16, degree), with_an_end_of_contact(32, degree));
         for (k, expected) in [p, p + 1.0].into_iter().enumerate() {
             let found = order(coarse.1[k], fine.1[k]);
-            assert_abs_diff_eq!(found, expected, epsilon = 0.12);
+            assert_abs_diff_eq!(found, expected, epsilon = 0.1);
         }
         assert!(fine.0.abs() < if p == 1.0 { 0.03 } else { 1e-3 }, "{}", fine.0);
     }
@@ -201,8 +200,8 @@ fn far_from_the_axis_a_body_is_in_plane_strain() {
             let s = solve_at(radius, Plane::Axisymmetric);
             let per_length = s.quantities.contact_force / (TAU * radius);
             let off = (per_length / flat.quantities.contact_force - 1.0).abs();
-            // The mean radius is half a width further out, which is most of it.
-            assert!(off < 2.0 / radius, "{off:e} at {radius}");
+            // The mean radius is half a width further out: 5e-6 at 1e5, and as much again is allowed.
+            assert!(off < 1.0 / radius, "{off:e} at {radius}");
             assert!(off < last / 30.0);
             last = off;
         }
@@ -235,6 +234,7 @@ fn lengths_times_a_power_of_two_give_the_same_to_the_bit() {
 #[test]
 fn kappa_is_attained_by_p1_and_not_exceeded() {
     let mut random = Random(5);
+    let mut by_the_plane = 0.0_f64;
     for degree in DEGREES {
         for k in 0..50 {
             let inner = if k % 2 == 0 { 0.0 } else { random.decades(-2.0, 2.0) };
@@ -277,7 +277,135 @@ fn kappa_is_attained_by_p1_and_not_exceeded() {
                     })
                     .collect();
                 assert_abs_diff_eq!(quotient(&v), 1.0, epsilon = 1e-9);
+                // |E| / |T| in place of the constant with the weight would be exceeded by r_E / r_c.
+                let radii = problem.mesh.triangle(0).vertices.map(|x| x[0]);
+                let of_edge = (radii[0] + radii[1]) / 2.0;
+                by_the_plane =
+                    by_the_plane.max(quotient(&v) * 3.0 * of_edge / radii.iter().sum::<f64>());
             }
         }
+    }
+    // The corner opposite is on the axis: the control.
+    assert_abs_diff_eq!(by_the_plane, 1.5, epsilon = 1e-9);
+}
+
+/// The largest eigenvalue of int gamma s(v)^2 beside a(v, v) for gamma0 at its limit, over all v.
+fn largest_quotient(problem: &Problem, degree: Degree) -> f64 {
+    let space = Space::new(&problem.mesh, degree);
+    let gamma0 = Coercivity::new(problem, degree).unwrap().limit();
+    let pieces = contact_line::assemble(problem, &space, gamma0).unwrap();
+    let count = 2 * space.nodes().len();
+    let unit = |i: usize| {
+        let mut v = vec![[0.0; 2]; count / 2];
+        v[i / 2][i % 2] = 1.0;
+        v
+    };
+    let squared = |v: &[[f64; 2]]| pieces.iter().map(|piece| piece.squared_stress(v)).sum::<f64>();
+    let forces_of = |v: &[[f64; 2]]| {
+        let mut forces = vec![[0.0; 2]; count / 2];
+        add_internal_forces(&space, &problem.material, v, &mut forces);
+        forces.into_flattened()
+    };
+    let mut stiffness: Vec<Vec<f64>> = (0..count).map(|j| forces_of(&unit(j))).collect();
+    // The translation along the axis has neither stress nor energy: it is given one.
+    let scale = (0..count).map(|i| stiffness[i][i]).fold(0.0, f64::max);
+    for i in (1..count).step_by(2) {
+        (1..count).step_by(2).for_each(|j| stiffness[i][j] += scale / count as f64);
+    }
+    let factor = cholesky(stiffness);
+    let felt: Vec<usize> = (0..count).filter(|&i| squared(&unit(i)) > 0.0).collect();
+    let product = |a: usize, b: usize| {
+        let (mut sum, mut difference) = (unit(a), unit(a));
+        sum[b / 2][b % 2] += 1.0;
+        difference[b / 2][b % 2] -= 1.0;
+        (squared(&sum) - squared(&difference)) / 4.0
+    };
+    let stress: Vec<Vec<f64>> =
+        felt.iter().map(|&a| felt.iter().map(|&b| product(a, b)).collect()).collect();
+    // v -> K^-1 S v tends to the largest; the quotient of v is one of the numbers below it.
+    let mut random = Random(1);
+    let mut v = random.field(count / 2).into_flattened();
+    let mut largest = 0.0_f64;
+    for _ in 0..100 {
+        let mut image = vec![0.0; count];
+        for (row, &a) in stress.iter().zip(&felt) {
+            image[a] = row.iter().zip(&felt).map(|(entry, &b)| entry * v[b]).sum();
+        }
+        solve_by(&factor, &mut image);
+        let size = image.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        v = image.into_iter().map(|x| x / size).collect();
+        let nodal: Vec<[f64; 2]> = v.chunks_exact(2).map(|u| [u[0], u[1]]).collect();
+        let energy: f64 = forces_of(&nodal).iter().zip(&v).map(|(f, u)| f * u).sum();
+        largest = largest.max(squared(&nodal) / energy);
+    }
+    largest
+}
+
+/// L with L L' = `matrix`, which is symmetric and positive definite.
+fn cholesky(mut matrix: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    for i in 0..matrix.len() {
+        for j in 0..=i {
+            let known: f64 = (0..j).map(|k| matrix[i][k] * matrix[j][k]).sum();
+            let rest = matrix[i][j] - known;
+            matrix[i][j] = if i == j { rest.sqrt() } else { rest / matrix[j][j] };
+            assert!(matrix[i][j].is_finite(), "no positive pivot at {i}");
+        }
+    }
+    matrix
+}
+
+/// Solves L L' x = b in place of b.
+fn solve_by(l: &[Vec<f64>], b: &mut [f64]) {
+    for i in 0..b.len() {
+        let known: f64 = (0..i).map(|k| l[i][k] * b[k]).sum();
+        b[i] = (b[i] - known) / l[i][i];
+    }
+    for i in (0..b.len()).rev() {
+        let known: f64 = (i + 1..b.len()).map(|k| l[k][i] * b[k]).sum();
+        b[i] = (b[i] - known) / l[i][i];
+    }
+}
+
+#[test]
+fn no_mesh_has_an_eigenvalue_above_kappa() {
+    let mut random = Random(11);
+    let mut most = 0.0_f64;
+    for k in 0..100 {
+        let degree = DEGREES[k % 2];
+        let inner = if k % 4 < 2 { 0.0 } else { random.decades(-2.0, 1.0) };
+        let cells = [random.whole(1, 3), random.whole(2, 3)];
+        let mesh = meridian([inner, inner + 1.0], random.decades(-0.5, 0.5), cells, true);
+        let problem = Problem::of(mesh, elastic(1.0, random.between(-0.3, 0.45)))
+            .with("bottom", Condition::contact(|_| 0.0))
+            .with("right", Condition::contact(|_| 0.0));
+        let found = largest_quotient(&problem, degree);
+        // The eigenvalue is off by rounding times the condition of these small matrices.
+        assert!(found <= 1.0 + 1e-9, "{degree:?} {k}: {found}");
+        most = most.max(found);
+    }
+    assert!(most > 0.5, "{most}");
+}
+
+/// The unit square as Gmsh has it is the meridian of a cylinder.
+#[test]
+fn a_cylinder_on_a_mesh_of_gmsh_is_exact() {
+    for degree in ["1", "2"] {
+        let case = case_of(
+            r#"
+            mesh.gmsh = "../reference/cases/square.msh"
+            material = { young = 2.0, poisson = 0.3 }
+            body.plane = "axisymmetric"
+            boundary.top.pressure = 0.01
+            boundary.bottom.contact.gap = 0
+            "#,
+            &[&format!("method.degree={degree}")],
+        );
+        let settings = Settings { proof: ENCLOSED, ..case.settings };
+        let (s, _) = solve(&case.problem, &case.method, &settings).unwrap();
+        for (&[r, z], u) in s.nodes.iter().zip(&s.displacement) {
+            let expected = [0.3 * 0.01 * r / 2.0, -0.01 * z / 2.0];
+            assert_abs_diff_eq!(u[..], expected[..], epsilon = PATCH);
+        }
+        assert!(s.enclosure.unwrap().relative.unwrap() <= ENCLOSED);
     }
 }
