@@ -14,6 +14,7 @@ pub mod discretization;
 pub mod element;
 #[doc(hidden)]
 pub mod embedding;
+pub mod friction;
 mod function;
 #[doc(hidden)]
 pub mod graded_quadrature;
@@ -54,6 +55,7 @@ pub use contact_face::{ContactFace, EdgeRule};
 pub use data::DataError;
 pub use discretization::Discretization;
 pub use element::Degree;
+pub use friction::Friction;
 pub use function::{Function, SharedFunction};
 pub use material::Materials;
 pub use mesh::bisection::Refinement;

@@ -121,7 +121,7 @@ fn known_to(file: &str, text: &str, settings: &[&str], table: &str) -> BTreeSet<
 }
 
 /// The tables of a case, each with a case that has it and with its name on the page.
-const TABLES: [(&str, &[&str], &str, &str); 21] = [
+const TABLES: [(&str, &[&str], &str, &str); 22] = [
     ("cases/block.toml", &[], "", ""),
     ("cases/block.toml", &["body.thickness=2"], "body", "body"),
     ("cases/block.toml", &[], "mesh", "mesh"),
@@ -133,6 +133,12 @@ const TABLES: [(&str, &[&str], &str, &str); 21] = [
     ("cases/block.toml", &[], "load", "load"),
     ("cases/block.toml", &[], "boundary.left", "boundary.NAME"),
     ("cases/block.toml", &[], "boundary.bottom.contact", "boundary.NAME.contact"),
+    (
+        "cases/block.toml",
+        &["boundary.bottom.contact.friction={coulomb=0.1}"],
+        "boundary.bottom.contact.friction",
+        "boundary.NAME.contact.friction",
+    ),
     ("cases/block.toml", &["method.degree=1"], "method", "method"),
     ("cases/block.toml", &["solver.tolerance=1e-9"], "solver", "solver"),
     ("cases/block.toml", &["method.degree=1", "adapt.target=\"1 %\""], "adapt", "adapt"),

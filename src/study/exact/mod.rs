@@ -36,7 +36,7 @@ use nalgebra::Matrix2;
 use crate::fem::graded_quadrature::Features;
 use crate::fem::mesh::Mesh;
 use crate::fem::problem::{Condition, Problem};
-use crate::fem::{Function, SharedFunction};
+use crate::fem::{Friction, Function, SharedFunction};
 use crate::kernel::{Material, Scalar, Stress};
 
 /// A displacement field that solves (1)-(2), with its data.
@@ -118,7 +118,14 @@ pub fn body_force(solution: &Exact) -> [SharedFunction; 2] {
 /// The problem that `solution` solves on a mesh of its body.
 pub fn problem(solution: &Exact, mesh: Mesh, kinds: &BTreeMap<String, Kind>) -> Problem {
     let conditions = kinds.iter().map(|(name, kind)| (name.clone(), kind.condition(solution)));
-    Problem::new(mesh, *solution.material(), body_force(solution), conditions.collect())
+    let body_force = body_force(solution);
+    let mut problem = Problem::new(mesh, *solution.material(), body_force, conditions.collect());
+    if let Some(bound) = solution.slip_bound() {
+        for (name, _) in kinds.iter().filter(|(_, kind)| **kind == Kind::Contact) {
+            problem = problem.with_friction(name, Friction::tresca(move |_| bound));
+        }
+    }
+    problem
 }
 
 /// One number of an exact solution as a function of the place.
