@@ -15,6 +15,7 @@
 //! | [`triangle`] | T, its area, normals and barycentric gradients |
 //! | [`element`] | V^h: P1, and P2 of Remark 3.7; a(.,.) on one triangle |
 //! | [`contact`] | conditions (2), equation (5), P_gamma, lambda^h |
+//! | [`law`] | (5) as an equation for contact, and for interfaces that also pull |
 //! | [`contact_edge`] | P_gamma and sigma_n as functionals on one edge of Gamma_C |
 //! | [`edge_integral`] | the integrals over one edge in (8) and in J_h |
 //! | [`friction`] | not in the paper: Tresca's and Coulomb's friction at a point and over one edge |
@@ -34,6 +35,7 @@ pub mod edge_integral;
 pub mod element;
 pub mod enclosing;
 pub mod friction;
+pub mod law;
 pub mod material;
 pub mod positive_part;
 pub mod scalar;
@@ -48,6 +50,7 @@ pub use double_double::DoubleDouble;
 pub use edge_integral::EdgeIntegrals;
 pub use element::{Element, P1, P2};
 pub use enclosing::Enclosing;
+pub use law::Response;
 pub use material::{Material, Plane, Stress};
 pub use positive_part::{positive_part, positive_part_slope};
 pub use scalar::Scalar;
