@@ -16,18 +16,19 @@ impl Slides {
     pub fn around(d: &Discretization, u: &[[f64; 2]]) -> Option<Slides> {
         let idle = &d.slides.as_ref()?.idle;
         let size = |v: &[f64]| v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        let p: Vec<Vec<f64>> = d.contact.iter().map(|edge| edge.p(u)).collect();
+        let all: Vec<Vec<f64>> = d.contact.iter().map(|edge| edge.p(u)).collect();
+        let p: Vec<&[f64]> = d.contact.iter().zip(&all).map(|(edge, p)| edge.along(p)).collect();
         let degree = d.space.degree();
         let most = |p: &[f64]| degree.bernstein(p).into_iter().fold(0.0, f64::max);
         let largest = p.iter().map(|p| most(p)).fold(0.0, f64::max);
         let far = size(u.as_flattened());
-        let presses = |(p, piece): (&Vec<f64>, &Piece)| {
+        let presses = |((p, all), piece): ((&&[f64], &Vec<f64>), &Piece)| {
             let gap = piece.geometry.gaps().fold(0.0, |m: f64, g| m.max(g.abs()));
             let rounding = 8.0 * f64::EPSILON * (far + gap);
-            let active = piece.contribution(&d.rule, p).active;
+            let active = piece.contribution(&d.rule, all).active;
             most(p) > rounding.max(PRESSES * largest) && active > 0.0
         };
-        let pressing = p.iter().zip(&d.contact).map(presses);
+        let pressing = p.iter().zip(&all).zip(&d.contact).map(presses);
         let pressing: Vec<bool> = pressing.zip(idle).map(|(yes, idle)| yes && !idle).collect();
         let parts = Parts::new(d.space.mesh());
         let slides = Slides::new(free_where(d, &parts, &pressing), &parts, &d.space);

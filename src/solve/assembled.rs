@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
 use super::accuracy::{Pass, Route};
-use super::body::{Body, ContactEnergy, Derivatives, Residual, Step, blocks, derivatives};
+use super::body::{Body, ContactEnergy, Derivatives, Residual, Step, all_springs, blocks, derivatives, no_springs};
 use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};
@@ -59,7 +59,7 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
 
     /// The Hessian with a little of the springs of all edges.
     fn supported(&self, at: &Derivatives) -> Vec<DMatrix<f64>> {
-        let all = derivatives(self.system.d, &vec![1.0; at.gradient.len()]).times(at.stiffness);
+        let all = all_springs(self.system.d, at.stiffness);
         at.hessian.iter().zip(&all.hessian).map(|(h, all)| h + SUPPORT * all).collect()
     }
 
@@ -192,26 +192,25 @@ impl Body for Full<'_, '_, '_, '_, '_> {
     /// The body without contact, or, where it does not hold without, on springs of all edges, which pull as well as push.
     fn start(&mut self, edges: &impl ContactEnergy) -> Result<Option<f64>, SolveError> {
         if let Some(p) = self.route.system.course.p(self.route.system.d) {
-            let frozen = derivatives(edges, &p).pulling(&self.y());
+            let frozen = derivatives(edges, 1.0, &p).pulling(&self.y());
             let step = self.step(&frozen)?;
             self.advance(1.0, &step);
             return Ok(None);
         }
-        let none = derivatives(edges, &vec![-1.0; self.at.p.len()]);
+        let none = no_springs(edges);
         if self.route.system.d.slides.is_none() {
             match self.step(&none) {
                 Ok(step) => {
                     self.advance(1.0, &step);
-                    let at = derivatives(edges, &self.y());
+                    let at = derivatives(edges, 1.0, &self.y());
                     return Ok(Some(self.stiffness(&at)?));
                 }
                 Err(SolveError::Singular) => {}
                 Err(error) => return Err(error),
             }
         }
-        let all = derivatives(edges, &vec![1.0; self.at.p.len()]);
         let springs = self.springs();
-        let pulling = all.times(1.0 / springs).pulling(&self.at.p);
+        let pulling = all_springs(edges, 1.0 / springs).pulling(&self.at.p);
         let step = self.step(&pulling)?;
         self.advance(1.0, &step);
         Ok(Some(springs))
