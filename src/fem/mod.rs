@@ -15,6 +15,7 @@ pub mod element;
 pub mod embedding;
 pub mod friction;
 mod function;
+mod grip;
 #[doc(hidden)]
 pub mod graded_quadrature;
 mod groups;

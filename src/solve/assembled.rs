@@ -51,8 +51,12 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
     fn is_loose(&self, at: &Derivatives) -> bool {
         let d = self.system.d;
         let Some(slides) = &d.slides else { return false };
-        let springs = at.hessian.iter();
-        let pressing: Vec<bool> = springs.map(|h| h.iter().any(|h| *h != 0.0)).collect();
+        let nodes = d.space.degree().nodes_per_edge();
+        let springs = |h: &DMatrix<f64>| {
+            let acts = |range: std::ops::Range<usize>| range.into_iter().any(|i| h[(i, i)] != 0.0);
+            [acts(0..nodes.min(h.nrows())), acts(nodes.min(h.nrows())..h.nrows())]
+        };
+        let pressing: Vec<[bool; 2]> = at.hessian.iter().map(springs).collect();
         let parts = Parts::new(d.space.mesh());
         clearance::free_where(d, &parts, &pressing).len() > slides.basis.len()
     }

@@ -371,7 +371,7 @@ fn stays_off(
     stopping.iter().map(|&e| &lines[e]).all(|line| {
         let on_edge = d.space.edge_nodes(line.edge());
         let far = on_edge.into_iter().map(|node| nodes[node]).fold(0.0, f64::max);
-        pressed::greatest(line.degree, &line.p(u)) + pressed::change(line, far, radius) <= 0.0
+        pressed::greatest(line.degree, line.along(&line.p(u))) + pressed::change(line, far, radius) <= 0.0
     })
 }
 
