@@ -412,6 +412,13 @@ fn enclosed(certificate: &DiscreteCertificate) -> String {
         None => format!("{} of it (in the energy norm)", short(radius)),
     };
     let of = certificate.problem.as_deref().map_or(String::new(), |what| format!(", with {what}"));
+    if let Some(within) = certificate.isolated {
+        let near = format!("1e{}", within.log10().floor());
+        let elsewhere = if certificate.unique { ", and no other anywhere" } else { "" };
+        return format!(
+            "with Coulomb's friction, exactly one solution of the discrete equations within {near} of this one (relative, in the energy norm){elsewhere}; this is within {size}, rounding included{of}"
+        );
+    }
     format!("{solutions}; this is within {size}, rounding included{of}")
 }
 

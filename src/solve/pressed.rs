@@ -28,10 +28,10 @@ const INSET: f64 = 1.0 / 64.0;
 const SAFETY: f64 = 1.001;
 
 /// Values at the nodes of an edge, or what is multiplied by them.
-type Row = Vec<PreciseBall>;
+pub(super) type Row = Vec<PreciseBall>;
 
 /// A piece of an edge.
-struct EdgePiece {
+pub(super) struct EdgePiece {
     /// Where it starts and ends; a point does both at once.
     ends: [f64; 2],
     /// The coefficients on it, of a polynomial with given values at the nodes, that enclose the polynomial there (Bernstein's):
@@ -40,7 +40,9 @@ struct EdgePiece {
     /// The most that the square of a polynomial is on it whose square has the integral 1 over it; attained at the ends.
     square: PreciseBall,
     /// The integrals of N_a N_b over it.
-    mass: Vec<Row>,
+    pub(super) mass: Vec<Row>,
+    /// Its share of the edge: its length, or the weight of the point.
+    pub(super) share: PreciseBall,
 }
 
 /// The pieces of an edge of which one component of P is surely in the range where it is integrated itself: pressed, or stuck.
@@ -63,10 +65,11 @@ pub struct Pressed {
 }
 
 impl EdgePiece {
-    /// The pieces of an edge on which all of these polynomials are positive.
-    fn positive(degree: Degree, rule: &EdgeRule, all: &[Row]) -> Vec<Self> {
+    /// The pieces of an edge on which all of these polynomials are positive; `inset` is the share of a stretch that is left out at a
+    /// root.
+    pub(super) fn positive(degree: Degree, rule: &EdgeRule, all: &[Row], inset: f64) -> Vec<Self> {
         let EdgeRule::Gauss(points) = rule else {
-            return Self::between_roots(degree, all);
+            return Self::between_roots(degree, all, inset);
         };
         let at = |&(s, weight): &(f64, f64)| {
             let (shapes, weight) =
@@ -77,19 +80,20 @@ impl EdgePiece {
                 coefficients: vec![shapes],
                 square: PreciseBall::from(1) / weight,
                 mass,
+                share: weight,
             }
         };
         points.iter().map(at).filter(|piece| piece.least(all) > 0.0).collect()
     }
 
     /// Those in the stretches between their roots.
-    fn between_roots(degree: Degree, all: &[Row]) -> Vec<Self> {
+    fn between_roots(degree: Degree, all: &[Row], inset: f64) -> Vec<Self> {
         let roots = |p: &Row| degree.roots(&p.iter().map(|p| p.head()).collect::<Vec<_>>());
         let mut cuts: Vec<f64> = all.iter().flat_map(roots).collect();
         cuts.extend([0.0, 1.0]);
         cuts.sort_unstable_by(f64::total_cmp);
         let stretch = |cut: &[f64]| {
-            let inset = INSET * (cut[1] - cut[0]);
+            let inset = inset * (cut[1] - cut[0]);
             let start = if cut[0] > 0.0 { cut[0] + inset } else { 0.0 };
             let end = if cut[1] < 1.0 { cut[1] - inset } else { 1.0 };
             Self::between(degree, [start, end])
@@ -122,7 +126,7 @@ impl EdgePiece {
             let weight = length * PreciseBall::from(weight) / PreciseBall::from(90);
             add(&mut mass, &products(weight, &at(i)));
         }
-        EdgePiece { ends, coefficients, square, mass }
+        EdgePiece { ends, coefficients, square, mass, share: length }
     }
 
     /// The least coefficient of these polynomials, or less.
@@ -186,7 +190,7 @@ impl Pressed {
             if all.is_empty() {
                 return (all, Vec::new());
             }
-            let pieces = EdgePiece::positive(d.space.degree(), &d.rule, &all).into_iter();
+            let pieces = EdgePiece::positive(d.space.degree(), &d.rule, &all, INSET).into_iter();
             let pieces = pieces.map(|piece| (piece.least(&all), piece)).collect();
             (all, pieces)
         };

@@ -62,6 +62,14 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
             ][..],
         ),
         ("cases/singular.toml", &["mesh.rectangle.nx=2", "mesh.rectangle.ny=2"]),
+        (
+            "cases/block.toml",
+            &[
+                "mesh.rectangle.nx=4",
+                "method.gamma0=auto",
+                "boundary.bottom.contact.friction={coulomb=0.3}",
+            ],
+        ),
         ("cases/singular.toml", &["method.degree=1", "adapt.target=\"20 %\""]),
         ("cases/singular.toml", &["adapt.target=\"1 %\"", "adapt.max_unknowns=10"]),
         (

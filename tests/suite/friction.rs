@@ -1,4 +1,5 @@
-//! Friction with a given slip bound: exact solutions, the law at the nodes, limits, what is refused, and bodies at random.
+//! Friction, Tresca's and Coulomb's: exact solutions, the law at the nodes, limits, what is proved and what is refused, and bodies at
+//! random.
 
 use std::collections::BTreeMap;
 
@@ -329,6 +330,83 @@ fn forty_nine_of_fifty_bodies_with_friction_are_proved_or_ill_conditioned() {
     };
     assert!(50 * of(&FAILURES) <= count, "{} of {count} bodies, shown above", of(&FAILURES));
     assert!(4 * of(&[PROVED]) >= 3 * count, "{} of {count} are proved", of(&[PROVED]));
+}
+
+fn with_coefficient(problem: Problem, mu: f64) -> Problem {
+    problem.with_friction("bottom", Friction::Coulomb(mu))
+}
+
+#[test]
+fn coulombs_friction_of_a_uniform_pressure_is_as_accurate_as_trescas() {
+    for degree in DEGREES {
+        let ladder = with_friction(&stick_slip(), degree, 8);
+        let (level, problem, _) = ladder.solve(1).unwrap();
+        // sigma_n is -p all along, and s = 0.1 p.
+        let (solution, _) =
+            solve(&with_coefficient(problem.clone(), 0.1), &ladder.method, &ladder.settings).unwrap();
+        let error = error_of(&problem, &ladder.solution, &solution.displacement);
+        assert!((error / level.errors.energy - 1.0).abs() < 1e-3, "{degree:?}: {error}");
+        assert_eq!(solution.verdict, Verdict::Proved);
+        // The control.
+        let (other, _) =
+            solve(&with_coefficient(problem.clone(), 0.05), &ladder.method, &ladder.settings).unwrap();
+        assert!(error_of(&problem, &ladder.solution, &other.displacement) > 1.5 * error);
+    }
+}
+
+#[test]
+fn a_solution_with_coulombs_friction_satisfies_the_law_and_is_isolated() {
+    for degree in DEGREES {
+        for mu in [0.01, 0.1, 0.3, 0.6, 1.0, 1.5] {
+            let problem = with_coefficient(block_on_floor(10, Diagonal::Crossed), mu);
+            let solution = solved(&problem, degree);
+            let mut slides = 0;
+            for point in solution.contact.iter().flat_map(|edge| &edge.points) {
+                let most = -mu * point.lambda;
+                assert!(point.shear.abs() <= most * (1.0 + 1e-12) + 1e-15, "{mu}: {point:?}");
+                if most > 0.0 && point.shear.abs() >= most * (1.0 - 1e-12) {
+                    slides += 1;
+                    assert!(point.shear * point.u_t <= 0.0, "{mu}: {point:?}");
+                }
+            }
+            assert!(slides > 0 || mu > 0.3, "{mu}");
+            let enclosure = solution.enclosure.as_ref().unwrap();
+            let isolation = enclosure.isolation.unwrap();
+            println!(
+                "{degree:?} mu {mu}: within {:.1e}, only one within {:.1e}, anywhere {}; {} factorisations, {} steps",
+                enclosure.relative.unwrap(),
+                isolation.relative.unwrap(),
+                isolation.everywhere,
+                solution.newton.factorizations,
+                solution.newton.iterations(),
+            );
+            assert!(enclosure.relative.unwrap() < 1e-11 && isolation.relative.unwrap() > 1e-8);
+            assert_eq!(isolation.everywhere, mu < 0.05, "{mu}");
+            assert!(solution.newton.factorizations <= 40);
+        }
+    }
+}
+
+#[test]
+fn a_block_with_coulombs_friction_is_held_up_to_its_coefficient_or_until_it_tips() {
+    let is_held = |push: f64, height: f64, mu: f64| {
+        let mesh = unit_square(4).mesh().unwrap();
+        // A force (push, -1) in all, at this height: body forces, and a couple that moves the first one up or down.
+        let couple = 12.0 * push * (height - 0.5);
+        let problem = Problem::of(mesh, unit_material())
+            .with_body_force(move |[_, y]| push + couple * (y - 0.5), |_| -1.0)
+            .with("bottom", Condition::contact(|_| 0.0));
+        discretize(&with_coefficient(problem, mu), &method(Degree::One, EXACT)).is_ok()
+    };
+    for mu in [0.3, 0.8] {
+        for height in [0.5, 1.0] {
+            let limit = if height == 1.0 { f64::min(mu, 0.5) } else { mu };
+            for sign in [-1.0, 1.0] {
+                assert!(is_held(sign * (limit - 1e-5), height, mu), "{mu} {height}");
+                assert!(!is_held(sign * (limit + 1e-5), height, mu), "{mu} {height}");
+            }
+        }
+    }
 }
 
 #[test]
