@@ -166,7 +166,8 @@ fn certify_near(
     (start, field): (&[[f64; 2]], &[[f64; 2]]),
     asked: &Asked,
 ) -> Result<Continuous, CertifyError> {
-    if let Some(piece) = solution.pieces.iter().find(|p| matches!(p.geometry.law, Law::Friction(_))) {
+    if let Some(piece) = solution.pieces.iter().find(|p| matches!(p.geometry.law, Law::Friction(_)))
+    {
         return Err(CertifyError::Unsupported(format!(
             "the boundary {} has friction; certificates are for contact without friction",
             quoted(piece.boundary(), '\'')

@@ -242,10 +242,7 @@ pub fn assemble(
 ///
 /// # Errors
 /// Friction on a boundary without contact.
-fn without_idle_friction(
-    problem: &Problem,
-    pieces: &mut [PieceGeometry],
-) -> Result<(), DataError> {
+fn without_idle_friction(problem: &Problem, pieces: &mut [PieceGeometry]) -> Result<(), DataError> {
     for name in problem.friction.keys() {
         if !problem.conditions.get(name).is_some_and(Condition::is_contact) {
             let what = format!("[boundary.{}]", key(name));

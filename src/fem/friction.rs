@@ -125,9 +125,7 @@ where
     Across { itself, by_normal, measures: [of.sticks, of.slides] }
 }
 
-fn rounded<const M: usize>(
-    fine: &FrictionIntegrals<DoubleDouble, M>,
-) -> FrictionIntegrals<f64, M> {
+fn rounded<const M: usize>(fine: &FrictionIntegrals<DoubleDouble, M>) -> FrictionIntegrals<f64, M> {
     FrictionIntegrals {
         energy: fine.energy.head(),
         gradient: fine.gradient.map(DoubleDouble::head),
@@ -161,9 +159,7 @@ fn bregman_of<E: Element<N, M>, const N: usize, const M: usize>(
     p: &[DoubleDouble],
     q: &[DoubleDouble],
 ) -> f64 {
-    let values = |v: &[DoubleDouble]| -> [DoubleDouble; M] {
-        std::array::from_fn(|a| v[a])
-    };
+    let values = |v: &[DoubleDouble]| -> [DoubleDouble; M] { std::array::from_fn(|a| v[a]) };
     let (p, q) = (values(p), values(q));
     let m = values(m).map(crate::kernel::positive_part);
     match rule {

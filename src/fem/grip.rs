@@ -1,4 +1,4 @@
-//! What friction holds of a body that supports leave free to move (docs/theory.md, 11.4).
+//! What friction holds of a body that supports leave free to move (docs/theory.md, 11.3).
 //!
 //! Let R be the rigid motions of a part of the body that the supports leave free, L the loads on R, c_i(r) = r_n at the nodes of
 //! Gamma_C. With Tresca's friction J_h has a minimiser if L and all functionals near it are
@@ -38,7 +38,8 @@ pub(super) fn across(motions: &[FreeMotion], space: &Space, piece: &Piece) -> Ve
     let nodes = space.edge_nodes(piece.edge()).into_iter().zip(piece.geometry.directions());
     let row = |(node, d): (usize, Vector2<f64>)| {
         let place = space.nodes()[node];
-        let along = |motion: &FreeMotion| Vector2::from(motion.at(place)).dot(&Vector2::new(-d[1], d[0]));
+        let along =
+            |motion: &FreeMotion| Vector2::from(motion.at(place)).dot(&Vector2::new(-d[1], d[0]));
         motions.iter().map(along).collect()
     };
     nodes.map(row).collect()
@@ -156,6 +157,9 @@ impl Grip {
             target.extend(vec![1.0; grips]);
             let mut motion = nnls_residual(&rows, &target, NEGLIGIBLE * norm(&target).max(1.0))?;
             motion.truncate(count);
+            // What is left of a component beside the largest is rounding.
+            let most = motion.iter().fold(0.0, |most: f64, w| most.max(w.abs()));
+            motion.iter_mut().filter(|w| w.abs() < MARGIN * most).for_each(|w| *w = 0.0);
             Some(motion)
         };
         if let Some(motion) = left(loads) {
@@ -166,7 +170,8 @@ impl Grip {
         let directions = singular_vectors(&all, count);
         directions.into_iter().filter(|(value, _)| *value > none).find_map(|(_, direction)| {
             [-MARGIN, MARGIN].into_iter().find_map(|by| {
-                let changed: Vec<f64> = loads.iter().zip(&direction).map(|(l, d)| l + by * d).collect();
+                let changed: Vec<f64> =
+                    loads.iter().zip(&direction).map(|(l, d)| l + by * d).collect();
                 left(&changed).map(|motion| (motion, false))
             })
         })

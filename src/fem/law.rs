@@ -67,7 +67,13 @@ impl Law {
         match self {
             Law::Friction(bound) => {
                 let (normal, across) = p.split_at(degree.nodes_per_edge().min(p.len()));
-                first.with_friction(friction::integrals(bound, rule, (degree, gamma), normal, across))
+                first.with_friction(friction::integrals(
+                    bound,
+                    rule,
+                    (degree, gamma),
+                    normal,
+                    across,
+                ))
             }
             _ => each.fold(first, Integrals::beside),
         }
@@ -91,7 +97,8 @@ impl Law {
                 bilateral(degree, &step).energy
             }
         };
-        let own: f64 = self.responses().iter().zip(p.chunks(nodes)).zip(q.chunks(nodes)).map(of).sum();
+        let own: f64 =
+            self.responses().iter().zip(p.chunks(nodes)).zip(q.chunks(nodes)).map(of).sum();
         match self {
             Law::Friction(bound) => own + friction::bregman(bound, rule, (degree, gamma), p, q),
             _ => own,
@@ -231,7 +238,9 @@ impl EdgeRule {
 }
 
 /// Points and weights, exactly.
-pub(super) fn in_double_doubles(rule: &[(f64, f64)]) -> impl Iterator<Item = (DoubleDouble, DoubleDouble)> {
+pub(super) fn in_double_doubles(
+    rule: &[(f64, f64)],
+) -> impl Iterator<Item = (DoubleDouble, DoubleDouble)> {
     rule.iter().map(|&(s, weight)| (s.into(), weight.into()))
 }
 

@@ -15,9 +15,9 @@ pub mod element;
 pub mod embedding;
 pub mod friction;
 mod function;
-mod grip;
 #[doc(hidden)]
 pub mod graded_quadrature;
+mod grip;
 mod groups;
 #[doc(hidden)]
 pub mod korn;

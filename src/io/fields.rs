@@ -122,9 +122,8 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
         .collect();
     let places: Vec<[f64; 2]> = points.iter().map(|p| s.nodes[p.node]).collect();
     let displacement: Vec<[f64; 2]> = points.iter().map(|p| s.displacement[p.node]).collect();
-    let of_points = |(name, of): ContactNumber| {
-        (name, points.iter().map(|p| of(p)).collect::<Vec<f64>>())
-    };
+    let of_points =
+        |(name, of): ContactNumber| (name, points.iter().map(|p| of(p)).collect::<Vec<f64>>());
     let numbers: Vec<(&str, Vec<f64>)> = contact_numbers(s).into_iter().map(of_points).collect();
     let direction: Vec<[f64; 2]> = points.iter().map(|p| p.direction).collect();
     let mut point_data = vec![DataArray::vectors("displacement", &displacement)];

@@ -73,8 +73,12 @@ fn friction(solution: &Solution) -> Vec<String> {
             ));
         }
     }
-    if solution.boundaries.iter().any(|b| b.friction.is_some_and(|friction| friction.slides > 0.0)) {
-        remarks.push("one step: friction is as if the loads grew in proportion, with slip in one direction".to_owned());
+    if solution.boundaries.iter().any(|b| b.friction.is_some_and(|friction| friction.slides > 0.0))
+    {
+        remarks.push(
+            "one step: friction is as if the loads grew in proportion, with slip in one direction"
+                .to_owned(),
+        );
     }
     remarks
 }

@@ -27,9 +27,9 @@ use nalgebra::Vector2;
 
 use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
-use crate::fem::mesh::{NO_ANGLE, length};
 use crate::fem::friction::Bound;
 use crate::fem::law::Law;
+use crate::fem::mesh::{NO_ANGLE, length};
 use crate::fem::piece::Contribution;
 use crate::fem::{Degree, EdgeRule, Piece};
 use crate::kernel::DoubleDouble;
@@ -358,7 +358,8 @@ impl ContactBoundary {
         let places: Vec<[f64; 2]> = nodes.iter().map(|&node| d.space.nodes()[node]).collect();
         let contact = edge.contribution(&d.rule, p);
         if let Law::Friction(bound) = edge.geometry.law {
-            let at: Vec<(usize, [f64; 2])> = nodes.iter().copied().zip(places.iter().copied()).collect();
+            let at: Vec<(usize, [f64; 2])> =
+                nodes.iter().copied().zip(places.iter().copied()).collect();
             self.add_friction((edge, bound), &contact, u, &at);
             for (i, force) in edge.across(&contact.force).iter().enumerate() {
                 let ([x, y], force) = (places[i], edge.direction_of(nodes.len() + i) * -force);

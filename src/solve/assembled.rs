@@ -9,7 +9,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
 use super::accuracy::{Pass, Route};
-use super::body::{Body, ContactEnergy, Derivatives, Residual, Step, all_springs, blocks, derivatives, no_springs};
+use super::body::{
+    Body, ContactEnergy, Derivatives, Residual, Step, all_springs, blocks, derivatives, no_springs,
+};
 use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};

@@ -51,7 +51,9 @@ pub(super) fn kappa(d: &Discretization, pieces: &[Piece<PreciseBall>]) -> f64 {
                 } else {
                     let least = PreciseBall::from((cosine - off).lower());
                     PreciseBall::from(
-                        degree.turning_factor_of_both(least, |x| PreciseBall::from(root(x))).upper(),
+                        degree
+                            .turning_factor_of_both(least, |x| PreciseBall::from(root(x)))
+                            .upper(),
                     )
                 };
                 turning * (PreciseBall::from(1) + off) + off

@@ -17,7 +17,8 @@ pub trait ContactEnergy {
     /// The numbers of the values of P on piece `e`, among those of all pieces.
     fn values(&self, e: usize) -> Range<usize>;
     /// The gradient and the Hessian of Psi on piece `e`, with springs of this `stiffness`, where P has the values `p`.
-    fn derivatives(&self, e: usize, stiffness: f64, p: &[DoubleDouble]) -> (Vec<f64>, DMatrix<f64>);
+    fn derivatives(&self, e: usize, stiffness: f64, p: &[DoubleDouble])
+    -> (Vec<f64>, DMatrix<f64>);
     /// The Bregman distance of this Psi on piece `e` from `p` to `q`.
     fn bregman(&self, e: usize, stiffness: f64, p: &[DoubleDouble], q: &[DoubleDouble]) -> f64;
     /// Values of P on piece `e` at which all of its springs act.
@@ -36,7 +37,12 @@ impl ContactEnergy for Discretization<'_> {
         self.contact[e].functionals()
     }
 
-    fn derivatives(&self, e: usize, stiffness: f64, p: &[DoubleDouble]) -> (Vec<f64>, DMatrix<f64>) {
+    fn derivatives(
+        &self,
+        e: usize,
+        stiffness: f64,
+        p: &[DoubleDouble],
+    ) -> (Vec<f64>, DMatrix<f64>) {
         if self.is_idle(e) {
             return (vec![0.0; p.len()], DMatrix::zeros(p.len(), p.len()));
         }
@@ -135,7 +141,6 @@ pub fn no_springs(edges: &impl ContactEnergy) -> Derivatives {
 }
 
 impl Derivatives {
-
     /// The blocks of the Hessian, each with the numbers of its values.
     pub(super) fn blocks(&self) -> impl Iterator<Item = (Range<usize>, &DMatrix<f64>)> {
         blocks(&self.hessian)

@@ -32,13 +32,16 @@ use crate::kernel::DoubleDouble;
 /// A step is taken where the residual falls to this share of what it was.
 const FALLS: f64 = 0.9;
 
+/// The shares of a step that are tried, one after the other: evaluations, no factorisations.
+const SHARES_OF_A_STEP: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
+
 /// Where the residual is below this share of |u|_a it is rounding.
 const ROUNDING: f64 = 3e-14;
 
 /// Below this it may be: of 12,000 unknowns the level of rounding is some 1e-13.
 const NEAR_ROUNDING: f64 = 1e-12;
 
-/// No more factorisations than these: of 45 problems none took more than 24.
+/// No more factorisations than these after the start: of 45 problems none took more than 24.
 const MOST_FACTORIZATIONS: usize = 40;
 
 /// The share of the springs of all pieces that is added to a tangent without a factor.
@@ -68,6 +71,8 @@ pub struct Coulomb<'a, 'd, 'p> {
     metric: Option<Arc<Factor>>,
     of_a: Option<Arc<Factor>>,
     factorizations: usize,
+    /// Those of the problems with Tresca's friction at the start.
+    at_start: usize,
     first: bool,
 }
 
@@ -80,6 +85,7 @@ impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
             metric: None,
             of_a: None,
             factorizations: 0,
+            at_start: 0,
             first: true,
         }
     }
@@ -96,7 +102,9 @@ impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
         };
         let metric = match own {
             Ok(factor) => Arc::clone(self.of_a.insert(factor)),
-            Err(SolveError::NotPositiveDefinite) => self.system.factor(&all_springs(d, 1.0).hessian)?,
+            Err(SolveError::NotPositiveDefinite) => {
+                self.system.factor(&all_springs(d, 1.0).hessian)?
+            }
             Err(error) => return Err(error),
         };
         Ok(Arc::clone(self.metric.insert(metric)))
@@ -225,7 +233,7 @@ impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
     }
 
     fn gives_up(&self, residual: f64) -> Result<(), SolveError> {
-        if self.factorizations < MOST_FACTORIZATIONS {
+        if self.factorizations < self.at_start + MOST_FACTORIZATIONS {
             return Ok(());
         }
         Err(SolveError::NoFrictionSolution { residual, factorizations: self.factorizations })
@@ -255,9 +263,10 @@ impl Route for Coulomb<'_, '_, '_> {
         if let Some(given) = given {
             // With the prescribed components as they are.
             let lift = iterate.u.iter().zip(system.d.constraints.values()).zip(given);
-            let kept = |((lift, held), given): ((&[DoubleDouble; 2], &[Option<f64>; 2]), &[f64; 2])| {
-                [0, 1].map(|c| if held[c].is_some() { lift[c] } else { given[c].into() })
-            };
+            let kept =
+                |((lift, held), given): ((&[DoubleDouble; 2], &[Option<f64>; 2]), &[f64; 2])| {
+                    [0, 1].map(|c| if held[c].is_some() { lift[c] } else { given[c].into() })
+                };
             iterate.u = lift.map(kept).collect();
             *at = iterate.evaluate(system, precisely);
         } else if is_first {
@@ -273,9 +282,12 @@ impl Route for Coulomb<'_, '_, '_> {
             }
             *at = iterate.evaluate(system, precisely);
         }
+        if is_first {
+            self.at_start = self.factorizations;
+        }
         let (mut r, mut terms) = self.residual(at);
         let mut size = self.dual(&r)?;
-        let (mut smallest, mut largest_square, mut moved) = (size, 0.0_f64, 0.0_f64);
+        let (mut largest_square, mut moved, mut halved) = (0.0_f64, 0.0_f64, true);
         residuals.push(norm(&r) / self.reference);
         let mut taken = 0;
         loop {
@@ -289,27 +301,39 @@ impl Route for Coulomb<'_, '_, '_> {
             }
             self.gives_up(norm(&r) / self.reference)?;
             let d = self.step(&r, &terms)?;
-            let mut trial = Iterate { u: iterate.u.clone() };
-            trial.add(system, 1.0, &d);
-            let next = trial.evaluate(system, precisely);
-            let (next_r, next_terms) = self.residual(&next);
-            let next_size = self.dual(&next_r)?;
             let is_near = size <= NEAR_ROUNDING * scale || !is_first;
-            if next_size <= FALLS * size || (is_near && next_size <= size) {
-                let halved = next_size <= size / 2.0;
-                moved = moved.max(size * size);
-                largest_square = largest_square.max(d.iter().map(|d| d * d).sum::<f64>() / (size * size));
-                *iterate = trial;
-                *at = next;
-                (r, terms, size) = (next_r, next_terms, next_size);
-                smallest = smallest.min(size);
-                residuals.push(norm(&r) / self.reference);
-                taken += 1;
+            let mut rejected = None;
+            for t in SHARES_OF_A_STEP {
+                let mut trial = Iterate { u: iterate.u.clone() };
+                trial.add(system, t, &d);
+                let next = trial.evaluate(system, precisely);
+                let (next_r, next_terms) = self.residual(&next);
+                let next_size = self.dual(&next_r)?;
+                let falls = next_size <= (1.0 - (1.0 - FALLS) * t) * size;
+                if falls || (is_near && next_size <= size) {
+                    let square = d.iter().map(|d| d * d).sum::<f64>();
+                    halved = next_size <= size / 2.0;
+                    moved = moved.max(size * size);
+                    largest_square = largest_square.max(square / (size * size));
+                    *iterate = trial;
+                    *at = next;
+                    (r, terms, size) = (next_r, next_terms, next_size);
+                    residuals.push(norm(&r) / self.reference);
+                    taken += 1;
+                    rejected = None;
+                    break;
+                }
+                rejected.get_or_insert(next);
+                if is_near {
+                    break;
+                }
+            }
+            let Some(next) = rejected else {
                 if is_near && !halved {
                     break;
                 }
                 continue;
-            }
+            };
             if is_near {
                 break;
             }
@@ -320,7 +344,11 @@ impl Route for Coulomb<'_, '_, '_> {
             size = self.dual(&r)?;
             residuals.push(norm(&r) / self.reference);
         }
-        Ok(Pass { energy: if taken > 0 { moved } else { size * size }, left: 0.0, softness: largest_square })
+        Ok(Pass {
+            energy: if taken > 0 { moved } else { size * size },
+            left: 0.0,
+            softness: largest_square,
+        })
     }
 }
 
@@ -350,7 +378,8 @@ fn gmres(times: impl Fn(&[f64]) -> Vec<f64>, b: &[f64]) -> Vec<f64> {
             (column[j], column[j + 1]) = (c * a + s * b, c * b - s * a);
         }
         let length = column[k].hypot(column[k + 1]);
-        let rotation = if length > 0.0 { [column[k] / length, column[k + 1] / length] } else { [1.0, 0.0] };
+        let rotation =
+            if length > 0.0 { [column[k] / length, column[k + 1] / length] } else { [1.0, 0.0] };
         let [c, s] = rotation;
         rotations.push(rotation);
         (column[k], column[k + 1]) = (length, 0.0);

@@ -108,7 +108,8 @@ pub enum Unproved {
 impl Unproved {
     /// Returns whether a displacement that is nearer, or better arithmetic, may tell more.
     pub(crate) fn may_be_rounding(&self) -> bool {
-        let by_nature = matches!(self, Unproved::TooManyFunctionals { .. } | Unproved::FrictionHolds);
+        let by_nature =
+            matches!(self, Unproved::TooManyFunctionals { .. } | Unproved::FrictionHolds);
         let by_method =
             matches!(self, Unproved::NotCoercive { .. } | Unproved::NoKappa | Unproved::NotHeld);
         !(by_nature || by_method)
@@ -350,6 +351,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         }
         let mut isolated = None;
         if let (true, Some(factor)) = (coulomb, factor) {
+            let arithmetic = Arithmetic::Balls;
             let product = Product { system, lines: &self.lines, pressed, arithmetic };
             let times = |z: &[PreciseBall]| product.times(z);
             let body = isolated::Body { system, factor, times: &times, crude: &crude, coercivity };
@@ -437,7 +439,8 @@ fn stays_off(
     stopping.iter().map(|&e| &lines[e]).all(|line| {
         let on_edge = d.space.edge_nodes(line.edge());
         let far = on_edge.into_iter().map(|node| nodes[node]).fold(0.0, f64::max);
-        pressed::greatest(line.degree, line.along(&line.p(u))) + pressed::change(line, far, radius) <= 0.0
+        pressed::greatest(line.degree, line.along(&line.p(u))) + pressed::change(line, far, radius)
+            <= 0.0
     })
 }
 

@@ -42,7 +42,7 @@ pub enum SolveError {
     )]
     OutOfRange,
     #[error(
-        "no solution with Coulomb's friction was found: the smallest relative residual is {residual:.1e} after {factorizations} factorisations; one exists, for every coefficient (docs/theory.md, 11.5). Try a smaller coefficient, a finer mesh, or friction = {{ tresca = .. }} with the shear stress that you expect"
+        "no solution with Coulomb's friction was found: the smallest relative residual is {residual:.1e} after {factorizations} factorisations; one exists, for every coefficient (docs/theory.md, 11.4). Try a smaller coefficient, a finer mesh, or friction = {{ tresca = .. }} with the shear stress that you expect"
     )]
     NoFrictionSolution { residual: f64, factorizations: usize },
     #[error(transparent)]

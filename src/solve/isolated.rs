@@ -25,12 +25,12 @@ use crate::fem::friction::Bound;
 use crate::fem::law::Law;
 use crate::fem::{Degree, Discretization, Piece};
 use crate::kernel::Response;
-use crate::kernel::ball::{PreciseBall, up};
+use crate::kernel::ball::{PreciseBall, larger, up};
 
 /// Beyond this number of functionals, and of products of their number and that of the unknowns, nothing is tried: the time grows with
 /// the cube of the first and with the second.
 const MOST_FUNCTIONALS: usize = 2_000;
-const MOST_ENTRIES: usize = 200_000_000;
+const MOST_ENTRIES: usize = 40_000_000;
 
 /// The share of a stretch that is left out at a root, where nothing is certain: so little that it bounds no radius.
 const INSET: f64 = 1e-9;
@@ -71,7 +71,7 @@ pub(super) struct Body<'a, 'd, 'p> {
 struct Compliance {
     /// Its middle.
     g: Mat<f64>,
-    /// The Frobenius norm of what it is off.
+    /// The norm of what it is off, at most.
     off: f64,
     /// The largest entry that it is off by.
     entry: f64,
@@ -130,17 +130,14 @@ impl Body<'_, '_, '_> {
                 radii[(i, j)] = up(entry.radius() + (entry.head() * f64::EPSILON).abs());
             }
         }
-        let (mut off, mut most) = (0.0_f64, 0.0_f64);
-        for i in 0..count {
-            for j in 0..count {
-                let by = up(radii[(i, j)] + sizes[i] * rests[j]);
-                most = most.max(by);
-                off += by * by;
-            }
-        }
         // Symmetric as G is: the mean of two entries is off by no more than the larger one.
         let mean = Mat::from_fn(count, count, |i, j| (g[(i, j)] + g[(j, i)]) / 2.0);
-        Ok(Compliance { g: mean, off: up(2.0 * off.sqrt()), entry: up(2.0 * most) })
+        let by = |i: usize, j: usize| up(radii[(i, j)] + sizes[i] * rests[j]);
+        let by = Mat::from_fn(count, count, |i, j| {
+            by(i, j).max(by(j, i)) + f64::EPSILON * mean[(i, j)].abs()
+        });
+        let (off, entry) = (row_sum(&by), largest(&by));
+        Ok(Compliance { g: mean, off, entry })
     }
 }
 
@@ -153,9 +150,8 @@ struct State {
 
 /// The states of a piece that a change of P by `d` in length does not end.
 fn states(piece: &Piece<PreciseBall>, p: &[PreciseBall], d: f64) -> Vec<State> {
-    let less = |row: Row, by: f64| -> Row {
-        row.into_iter().map(|v| v - PreciseBall::from(by)).collect()
-    };
+    let less =
+        |row: Row, by: f64| -> Row { row.into_iter().map(|v| v - PreciseBall::from(by)).collect() };
     let [normal, across] = [piece.along(p), piece.across(p)].map(<[PreciseBall]>::to_vec);
     let minus = |row: &Row| -> Row { row.iter().map(|&v| -v).collect() };
     let sum = |a: &Row, b: &Row| -> Row { a.iter().zip(b).map(|(&a, &b)| a + b).collect() };
@@ -169,7 +165,10 @@ fn states(piece: &Piece<PreciseBall>, p: &[PreciseBall], d: f64) -> Vec<State> {
             let [below, above] = [sum(&m, &minus(&across)), sum(&m, &across)];
             vec![
                 state(vec![open()], [0.0; 3]),
-                state(vec![pressed(), less(below.clone(), far), less(above.clone(), far)], [1.0, 0.0, 1.0]),
+                state(
+                    vec![pressed(), less(below.clone(), far), less(above.clone(), far)],
+                    [1.0, 0.0, 1.0],
+                ),
                 state(vec![pressed(), less(minus(&below), far)], [1.0, mu, 0.0]),
                 state(vec![pressed(), less(minus(&above), far)], [1.0, -mu, 0.0]),
             ]
@@ -237,7 +236,9 @@ impl OnPiece<'_> {
         let (count, nodes) = (self.piece.p0.len(), self.piece.degree.nodes_per_edge());
         let mut block = DMatrix::zeros(count, count);
         let weight = self.piece.weight().head();
-        for (part, [normal, by_normal, across]) in certain(d, self.piece, &self.p, up(self.reach * r)) {
+        for (part, [normal, by_normal, across]) in
+            certain(d, self.piece, &self.p, up(self.reach * r))
+        {
             for a in 0..nodes {
                 for b in 0..nodes {
                     let mass = weight * part.mass[a][b].head();
@@ -285,6 +286,17 @@ fn is_positive_definite(matrix: &Mat<f64>, off: f64) -> bool {
     shift.is_finite() && shifted.llt(Side::Lower).is_ok()
 }
 
+/// The largest sum of magnitudes in a row: for a symmetric matrix a bound of its norm.
+fn row_sum(matrix: &Mat<f64>) -> f64 {
+    let row = |i: usize| (0..matrix.ncols()).map(|j| matrix[(i, j)].abs()).sum::<f64>();
+    up((0..matrix.nrows()).map(row).fold(0.0, larger) * (1.0 + 1e-9))
+}
+
+fn largest(matrix: &Mat<f64>) -> f64 {
+    let entries = (0..matrix.ncols()).flat_map(|j| (0..matrix.nrows()).map(move |i| (i, j)));
+    entries.map(|at| matrix[at].abs()).fold(0.0, larger)
+}
+
 fn frobenius(matrix: &Mat<f64>) -> f64 {
     let entries = (0..matrix.ncols()).flat_map(|j| (0..matrix.nrows()).map(move |i| (i, j)));
     up(entries.map(|at| matrix[at] * matrix[at]).sum::<f64>().sqrt() * (1.0 + 1e-9))
@@ -296,6 +308,8 @@ struct Root {
     /// |G^(1/2) - (C C^T)^(1/2)| at most: the root of |G - C C^T|.
     off: f64,
     norm: f64,
+    /// The Frobenius norm of C.
+    size: f64,
 }
 
 impl Root {
@@ -304,15 +318,16 @@ impl Root {
         let largest = (0..n).map(|i| of.g[(i, i)]).fold(0.0, f64::max);
         let mut shift = (1e-15 * largest * n as f64).max(f64::MIN_POSITIVE);
         for _ in 0..8 {
-            let shifted = Mat::from_fn(n, n, |i, j| of.g[(i, j)] + if i == j { shift } else { 0.0 });
+            let shifted =
+                Mat::from_fn(n, n, |i, j| of.g[(i, j)] + if i == j { shift } else { 0.0 });
             if let Ok(llt) = shifted.llt(Side::Lower) {
                 let c = llt.L().to_owned();
                 let product = &c * c.transpose();
                 let rest = Mat::from_fn(n, n, |i, j| of.g[(i, j)] - product[(i, j)]);
                 let size = frobenius(&c);
                 let rounding = 2.0 * n as f64 * f64::EPSILON * size * size;
-                let off = up((frobenius(&rest) + rounding + of.off).sqrt());
-                return Some(Root { c, off, norm: up(size + off) });
+                let off = up((row_sum(&rest) + rounding + of.off).sqrt());
+                return Some(Root { c, off, norm: up((row_sum(&of.g) + of.off).sqrt()), size });
             }
             shift *= 100.0;
         }
@@ -339,7 +354,9 @@ impl Root {
         }
         let product = self.c.transpose() * &hc;
         let rounding = 4.0 * (n + 16) as f64 * f64::EPSILON;
-        let off = most * (1.0 + 1e-9) * (2.0 * self.off * self.norm + rounding * self.norm * self.norm);
+        let (turned, rounded) =
+            (2.0 * self.off * (self.norm + self.off), rounding * self.size * self.size);
+        let off = most * (1.0 + 1e-9) * (turned + rounded);
         (product, up(off))
     }
 }
@@ -403,12 +420,12 @@ pub(super) fn isolate(
     let length = frobenius(&k);
     let of_square = 2.0 * count as f64 * f64::EPSILON * length * length;
     let at_least = |s: f64| {
-        let less = Mat::from_fn(count, count, |i, j| {
-            square[(i, j)] - if i == j { s * s } else { 0.0 }
-        });
+        let less =
+            Mat::from_fn(count, count, |i, j| square[(i, j)] - if i == j { s * s } else { 0.0 });
         is_positive_definite(&less, of_square)
     };
-    let smallest = SINGULAR_VALUES.into_iter().find(|&s| at_least(s)).ok_or(Unproved::NotIsolated)?;
+    let smallest =
+        SINGULAR_VALUES.into_iter().find(|&s| at_least(s)).ok_or(Unproved::NotIsolated)?;
     let smallest = (smallest - off).min(1.0) * (1.0 - 1e-12);
     if !(smallest > 0.0) {
         return Err(Unproved::NotIsolated);
@@ -418,7 +435,8 @@ pub(super) fn isolate(
         let eta = eta(r, rounding);
         (up(beta * (rho + eta * r)) <= r && up(beta * eta) < 1.0).then_some(eta)
     };
-    let radii = (0..80).map(|k| start * 2.0_f64.powi(k)).take_while(|&r| r <= 1e3 * size.max(start));
+    let radii =
+        (0..80).map(|k| start * 2.0_f64.powi(k)).take_while(|&r| r <= 1e3 * size.max(start));
     let mut found: Option<(f64, f64)> = None;
     for r in radii {
         match (holds(r), &mut found) {

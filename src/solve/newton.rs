@@ -141,8 +141,7 @@ fn line_search(
         (first, second)
     };
     let falls = |t: f64| {
-        let distance: f64 =
-            (0..edges.count())
+        let distance: f64 = (0..edges.count())
             .map(|e| edges.bregman(e, stiffness, &y[edges.values(e)], &point(e, t)))
             .sum();
         t * t / 2.0 * step.curvature + distance <= (SLIGHT - 1.0) * t * step.slope
