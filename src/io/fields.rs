@@ -101,13 +101,20 @@ struct ContactPoint<'s> {
     place: [f64; 2],
     displacement: [f64; 2],
     direction: [f64; 2],
-    numbers: [f64; 5],
+    numbers: [f64; 7],
     boundary: &'s str,
 }
 
 /// The numbers at it: u . n~ (between two bodies the jump of that), the gap g, n~ . sigma(u) n (negative in compression), the contact
-/// pressure lambda^h (never positive), and the recovered pressure (never negative).
-const CONTACT_NUMBERS: [&str; 5] = ["u_n", "gap", "sigma_n", "lambda", "pressure"];
+/// pressure lambda^h (never positive), and the recovered pressure (never negative); where there is friction also the slip u_t and the
+/// shear stress of friction along t, n~ turned to the left.
+const CONTACT_NUMBERS: [&str; 7] = ["u_n", "gap", "sigma_n", "lambda", "pressure", "u_t", "shear"];
+
+/// The names of those of a solution.
+fn contact_numbers(s: &Solution) -> &'static [&'static str] {
+    let friction = s.boundaries.iter().any(|boundary| boundary.friction.is_some());
+    if friction { &CONTACT_NUMBERS } else { &CONTACT_NUMBERS[..5] }
+}
 
 /// The edges of all contact boundaries, each with points of its own in order along it, for sigma_n and lambda^h jump from edge to
 /// edge. The two sides of a pair of bodies have the same numbers at their places.
@@ -118,7 +125,7 @@ fn contact_edges(s: &Solution) -> Vec<Vec<ContactPoint<'_>>> {
             place: s.nodes[p.node],
             displacement: s.displacement[p.node],
             direction: p.direction,
-            numbers: [p.u_n, p.gap, p.sigma_n, p.lambda, p.pressure],
+            numbers: [p.u_n, p.gap, p.sigma_n, p.lambda, p.pressure, p.u_t, p.shear],
             boundary: &edge.boundary,
         };
         edge.points.iter().map(point).collect()
@@ -131,7 +138,7 @@ fn contact_edges(s: &Solution) -> Vec<Vec<ContactPoint<'_>>> {
                 place: p.at[i],
                 displacement: p.displacement[i],
                 direction: if i == 0 { p.direction } else { p.direction.map(|c| -c) },
-                numbers: [p.u_n, p.gap, p.sigma_n, p.lambda, p.pressure],
+                numbers: [p.u_n, p.gap, p.sigma_n, p.lambda, p.pressure, 0.0, 0.0],
                 boundary: &piece.boundaries[i],
             };
             piece.points.iter().map(point).collect()
@@ -156,10 +163,11 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
     let places: Vec<[f64; 2]> = points().map(|p| p.place).collect();
     let displacement: Vec<[f64; 2]> = points().map(|p| p.displacement).collect();
     let direction: Vec<[f64; 2]> = points().map(|p| p.direction).collect();
+    let names = contact_numbers(s);
     let numbers: Vec<Vec<f64>> =
-        (0..CONTACT_NUMBERS.len()).map(|k| points().map(|p| p.numbers[k]).collect()).collect();
+        (0..names.len()).map(|k| points().map(|p| p.numbers[k]).collect()).collect();
     let mut point_data = vec![DataArray::vectors("displacement", &displacement)];
-    let named = CONTACT_NUMBERS.iter().zip(&numbers);
+    let named = names.iter().zip(&numbers);
     point_data.extend(named.map(|(name, numbers)| DataArray::scalars(name, numbers)));
     point_data.push(DataArray::vectors("direction", &direction));
     vtu(&Grid {
@@ -174,12 +182,16 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
 /// A row for each node of each contact edge: arc length from the start of the boundary, place in the undeformed body, the
 /// numbers there.
 fn contact_csv(s: &Solution) -> Result<String, NotFinite> {
+    let names = contact_numbers(s);
     let row = |p: &ContactPoint<'_>| {
         let [x, y] = p.place;
-        [p.arc, x, y].into_iter().chain(p.numbers).collect::<Vec<f64>>()
+        [p.arc, x, y]
+            .into_iter()
+            .chain(p.numbers.into_iter().take(names.len()))
+            .collect::<Vec<f64>>()
     };
     let edges = contact_edges(s);
     let rows: Vec<(Vec<f64>, &str)> =
         edges.iter().flatten().map(|p| (row(p), p.boundary)).collect();
-    csv::table(&[&["arc", "x", "y"], &CONTACT_NUMBERS[..], &["boundary"]].concat(), &rows)
+    csv::table(&[&["arc", "x", "y"], names, &["boundary"]].concat(), &rows)
 }

@@ -117,6 +117,10 @@ pub struct ContactValues {
     pub lambda: f64,
     /// The recovered pressure ([`super::answers`]), the one to report.
     pub pressure: f64,
+    /// u_t = u . t, t being n~ turned to the left.
+    pub u_t: f64,
+    /// The shear stress of friction along t.
+    pub shear: f64,
 }
 
 /// A piece of Gamma_C between two bodies.
@@ -306,6 +310,8 @@ fn contact_values(
                     sigma_n: (1.0 - positions[a]) * sigma_n[0] + positions[a] * sigma_n[1],
                     lambda: pressure(p[a].head(), edge.gamma) + 0.0,
                     pressure: recovered[a],
+                    u_t: y * direction[0] - x * direction[1],
+                    shear: edge.shear_at(p, a) + 0.0,
                 }
             })
             .collect();
@@ -380,7 +386,7 @@ fn quantities(d: &Discretization, Evaluated { u, p, residual }: &Evaluated) -> Q
         let contact = edge.contribution(&d.rule, p);
         q.contact_force += contact.resultant;
         for (i, force) in contact.force.iter().enumerate().filter(|_| edge.partner().is_none()) {
-            let n = edge.geometry.nodes[i].direction;
+            let n = edge.direction_of(i);
             for c in 0..2 {
                 q.contact_resultant[c] -= force * n[c];
             }

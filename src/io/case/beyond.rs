@@ -1,8 +1,7 @@
 //! The keys that other programs have and this one has not, because it does not compute what they ask for.
 
 /// What is not computed, and the keys that ask for it, alone or as the first part of a longer key (`friction_coefficient`).
-const BEYOND: [(&str, &[&str]); 8] = [
-    ("friction", &["friction", "coulomb", "tresca", "stick", "mu_friction"]),
+const BEYOND: [(&str, &[&str]); 7] = [
     ("contact between two bodies", &["master", "slave", "tie", "tied", "self_contact", "bodies"]),
     (
         "plasticity",
@@ -61,8 +60,7 @@ mod tests {
     #[test]
     fn keys_that_ask_for_what_is_not_computed_are_told_from_others() {
         for (key, what) in [
-            ("friction", "friction"),
-            ("Friction-Coefficient", "friction"),
+            ("Yield-Stress", "plasticity"),
             ("yield", "plasticity"),
             ("density", "dynamics"),
             ("axisymmetric", "axisymmetry"),

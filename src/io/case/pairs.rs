@@ -24,6 +24,10 @@ pub(super) fn read_pairs<'s>(root: &Table<'s>) -> Result<Vec<ReadPair<'s>>, File
 }
 
 fn read_pair(table: Table) -> Result<ReadPair, FileError> {
+    if let Some(friction) = table.get("friction") {
+        return Err(friction
+            .wrong("no friction between two bodies, where it is not computed by this program"));
+    }
     table.only(&["boundaries", "surfaces", "clearance", "reach", "law"])?;
     let sides = ["boundaries", "surfaces"];
     let (boundaries, surfaces) = match table.given(&sides)[..] {
