@@ -16,7 +16,7 @@ use std::sync::Arc;
 use signorini::certify::{Target, adapt, certify};
 use signorini::fem::{
     Condition, Diagonal, Function, Mesh, Perturbation, Problem, Rectangle, SharedFunction, Space,
-    Structured, Trapezoid, contact_line,
+    Structured, Trapezoid,
 };
 use signorini::io::Case;
 use signorini::io::convergence::{self, NORMS, Study};
@@ -554,8 +554,7 @@ fn energy_error(
     exact: &Exact,
 ) -> Result<f64> {
     let space = Space::new(&problem.mesh, Degree::One);
-    let contact = contact_line::assemble(problem, &space, solution.gamma.gamma0)?;
-    Ok(Errors::new(&space, &contact, v, &**exact).energy)
+    Ok(Errors::new(&space, &solution.pieces, v, &**exact).energy)
 }
 
 fn adapted(ladder: &Ladder, max_unknowns: usize) -> Result<(Measured, usize)> {

@@ -234,6 +234,6 @@ pub fn matrix(
     order: &[usize],
 ) -> (Numbering, LowerTriangle) {
     let numbering = Numbering::new(order, d.constraints.values());
-    let matrix = matrix::assemble(d, &numbering, neighbours);
+    let matrix = matrix::assemble(d, &numbering, neighbours).expect("the pattern is that of d");
     (numbering, matrix)
 }

@@ -2,9 +2,8 @@
 //! the loads and the points of a rule are the solver's doubles, taken for the rational numbers that they are. The solver's own
 //! loops ([`residual`]) compute with them: forces, stresses and P are its code, and exact. The tangent is the kernel's.
 
-use signorini::fem::element::value_at;
 use signorini::fem::residual;
-use signorini::fem::{ContactFace, Discretization, EdgeRule};
+use signorini::fem::{Degree, Discretization, EdgeRule, Piece};
 use signorini::kernel::edge_integral::{self, ExactEdge};
 use signorini::kernel::{EdgeIntegrals, Material, P1, P2, Plane};
 use signorini::nalgebra::{Matrix2, Vector2};
@@ -30,7 +29,7 @@ pub struct Discrete<'a> {
     /// The number of each free component.
     numbers: Vec<[Option<usize>; 2]>,
     count: usize,
-    edges: Vec<ContactFace<Exact>>,
+    edges: Vec<Piece<Exact>>,
     /// Points and weights; none for exact integration.
     rule: Option<Vec<[Exact; 2]>>,
 }
@@ -38,11 +37,11 @@ pub struct Discrete<'a> {
 impl<'a> Discrete<'a> {
     /// The solver's discrete problem.
     pub fn new(d: &'a Discretization<'a>) -> Self {
-        Discrete::on(d, d.contact.iter().map(|edge| residual::on_edge(d, edge)).collect())
+        Discrete::on(d, d.contact.iter().map(|edge| residual::exact_piece(d, edge)).collect())
     }
 
     /// The same with these contact edges.
-    pub fn on(d: &'a Discretization<'a>, edges: Vec<ContactFace<Exact>>) -> Self {
+    pub fn on(d: &'a Discretization<'a>, edges: Vec<Piece<Exact>>) -> Self {
         let mut count = 0;
         let mut number = |prescribed: &Option<f64>| {
             prescribed.is_none().then(|| {
@@ -169,16 +168,16 @@ impl<'a> Discrete<'a> {
 
     /// |E| / gamma
     fn weight(&self, e: usize) -> Exact {
-        self.edges[e].length / self.edges[e].gamma
+        self.edges[e].weight()
     }
 
     /// int \[P\]+ N_a and int_{P > 0} N_a N_b. Where there is no rule and P is quadratic they are no rational numbers.
     fn integrals(&self, p: &[Exact]) -> (Vec<Exact>, Matrix) {
         let points = self.rule.iter().flatten().map(|&[s, weight]| (s, weight));
-        match *p {
-            [start, end] if self.rule.is_none() => lists(P1::exact([start, end])),
-            [start, end] => lists(edge_integral::gauss::<P1, Exact, 3, 2>([start, end], points)),
-            _ => {
+        match self.d.space.degree() {
+            Degree::One if self.rule.is_none() => lists(P1::exact([p[0], p[1]])),
+            Degree::One => lists(edge_integral::gauss::<P1, Exact, 3, 2>([p[0], p[1]], points)),
+            Degree::Two => {
                 assert!(self.rule.is_some(), "the roots of a quadratic P are no rational numbers");
                 lists(edge_integral::gauss::<P2, Exact, 6, 3>([p[0], p[1], p[2]], points))
             }
@@ -219,8 +218,8 @@ impl<'a> Discrete<'a> {
         let mut matrix = combined(one, &self.stiffness(), -one, &stresses);
         for (e, edge) in self.edges.iter().enumerate() {
             let hessian = self.integrals(&self.p(e, u)).1;
-            let p0 = edge.functionals.p0();
-            self.add(&mut matrix, self.d.contact[e].edge.triangle, |i, j| {
+            let p0 = &edge.p0;
+            self.add(&mut matrix, edge.edge().triangle, |i, j| {
                 Matrix2::from_fn(|c, d| {
                     let left: Vec<Exact> = p0.iter().map(|row| row[i][c]).collect();
                     let right: Vec<Exact> = p0.iter().map(|row| row[j][d]).collect();
@@ -241,7 +240,7 @@ impl<'a> Discrete<'a> {
             let part = |value: Exact| if value > zero { value } else { zero };
             let square = match &self.rule {
                 Some(points) => points.iter().fold(zero, |sum, &[s, weight]| {
-                    let [p, q] = [&p, &q].map(|p| value_at(p, s));
+                    let [p, q] = [&p, &q].map(|p| self.d.space.degree().value_at(p, s));
                     let d = part(p) - part(q);
                     sum + weight * d * d
                 }),
@@ -282,7 +281,7 @@ impl<'a> Discrete<'a> {
         let material = Material::lame(lambda, mu, Plane::Strain);
         let stiffness = material.normal_stiffness(Vector2::y());
         let mesh = self.d.space.mesh();
-        let owner = |e: usize| self.d.contact[e].edge.triangle;
+        let owner = |e: usize| self.d.contact[e].edge().triangle;
         (0..self.edges.len()).fold(Exact::from(0), |kappa, e| {
             let t = owner(e);
             let area = residual::exactly::<Exact>(mesh.triangle(t)).double_area() / Exact::from(2);

@@ -168,11 +168,11 @@ impl Order {
     fn stress_rows(&self, d: &Discretization, size: Size) -> Vec<Vec<f64>> {
         let mut rows = Vec::new();
         for edge in &d.contact {
-            let h = size(d.space.mesh().diameter(edge.edge.triangle), edge.length);
+            let h = size(d.space.mesh().diameter(edge.edge().triangle), edge.length);
             let weight = (h * edge.length).sqrt();
             for [start, end] in [[0.5, 0.5], [-1.0, 1.0].map(|c| c / 12.0_f64.sqrt())] {
                 let mut row = vec![0.0; self.numbering.count];
-                let [at_start, at_end] = edge.functionals.sigma_n();
+                let (at_start, at_end) = (&edge.sigma_n[0], &edge.sigma_n[1]);
                 for (k, &node) in edge.nodes.iter().enumerate() {
                     for (c, number) in self.numbering.of[node].iter().enumerate() {
                         if let Some(number) = *number {
@@ -238,7 +238,7 @@ pub fn limits(problem: &Problem, degree: Degree, size: Size) -> Result<Limits> {
     let method = Method { degree, ..Method::default() };
     let d = discretize(problem, &method).map_err(text)?;
     let order = Order::new(&d);
-    let k = matrix::assemble_stiffness(&d, &order.numbering, &order.neighbours);
+    let k = matrix::assemble_stiffness(&d, &order.numbering, &order.neighbours).map_err(text)?;
     let mu = largest(&k, &order.stress_rows(&d, size))?;
     Ok(Limits { proved: d.coercivity.limit(), sharp: 1.0 / mu })
 }
@@ -250,7 +250,7 @@ pub fn limits(problem: &Problem, degree: Degree, size: Size) -> Result<Limits> {
 pub fn smallest_eigenvalue(problem: &Problem, degree: Degree, kappa: f64) -> Result<f64> {
     let d = discretize(problem, &at_kappa(problem, degree, kappa)?).map_err(text)?;
     let order = Order::new(&d);
-    let a = matrix::assemble(&d, &order.numbering, &order.neighbours);
+    let a = matrix::assemble(&d, &order.numbering, &order.neighbours).map_err(text)?;
     let mu = largest(&a, &order.stress_rows(&d, DIAMETER))?;
     Ok(1.0 / (1.0 + d.gamma0 * mu))
 }

@@ -17,8 +17,8 @@ use thiserror::Error;
 use super::errors::CertifyError;
 use super::quantities::Name;
 use super::{Asked, Continuous, certify_with};
-use crate::fem::contact_line;
-use crate::fem::{Condition, Mesh, Problem, Space};
+use crate::fem::piece::PieceGeometry;
+use crate::fem::{Condition, ContactLine, Mesh, Problem, Space};
 use crate::solve::{
     Course, Degree, Method, Phase, Settings, Solution, SolveError, Times, solve_along,
 };
@@ -282,17 +282,15 @@ fn unknowns(mesh: &Mesh, degree: Degree) -> usize {
 /// Where contact acts along normals, these are those of straight edges.
 fn check_straight(problem: &Problem) -> Result<(), AdaptError> {
     let space = Space::new(&problem.mesh, Degree::One);
-    // The direction of contact does not depend on gamma.
-    let contact = contact_line::assemble(problem, &space, 1.0).map_err(CertifyError::Data)?;
+    let line = ContactLine::new(problem, &space).map_err(CertifyError::Data)?;
     let along_its_normal = |name: &str| {
         let condition = problem.conditions.get(name);
         matches!(condition, Some(Condition::Contact { .. }))
     };
-    let curved = contact
-        .iter()
-        .find(|edge| along_its_normal(&edge.boundary) && edge.directions != [edge.normal; 2]);
+    let boundary = |piece: &PieceGeometry| piece.first().boundary.to_string();
+    let curved = line.pieces().find(|p| !p.along_normal && along_its_normal(&boundary(p)));
     match curved {
-        Some(edge) => Err(AdaptError::Curved { boundary: edge.boundary.to_string() }),
+        Some(piece) => Err(AdaptError::Curved { boundary: boundary(piece) }),
         None => Ok(()),
     }
 }

@@ -15,7 +15,7 @@ use super::forces::Evidence;
 use super::oscillation::{self, Oscillation};
 use super::parts::{Boundary, ProblemParts};
 use crate::fem::mesh::bisection::Refinement;
-use crate::fem::{BoundaryEdge, Degree, Mesh, MeshError, Problem};
+use crate::fem::{BoundaryEdge, Degree, Mesh, MeshError, Problem, Space, contact_line};
 use crate::kernel::{Material, Triangle};
 
 /// Numbers that differ by this, in units of the largest of their kind, are the same.
@@ -62,7 +62,9 @@ pub fn compare(
         (Degree::One, vertices)
     };
     // The data don't depend on gamma0.
-    let parts = ProblemParts::new(&problem, degree, 1.0.into(), &vec![[0.0; 2]; nodes])?;
+    let space = Space::new(&problem.mesh, degree);
+    let pieces = contact_line::assemble(&problem, &space, 1.0).map_err(CertifyError::Data)?;
+    let parts = ProblemParts::new(&problem, degree, &pieces, &vec![[0.0; 2]; nodes])?;
     let (lengths, loads) = sizes(certificate);
     let sides = sides(&problem.mesh);
     let comparison = Comparison { certificate, parts: &parts, sides, lengths, loads };

@@ -11,9 +11,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use super::data::bulge_of;
-use crate::fem::element::roots;
-use crate::fem::{BoundaryEdge, Condition, ContactFace, EdgeRule, Problem};
+use crate::fem::{BoundaryEdge, EdgeRule, Piece, Problem};
 use crate::kernel::contact_edge::integral_of_product;
 use crate::kernel::edge_integral::positive_interval;
 
@@ -99,22 +97,23 @@ impl Profile {
 }
 
 impl Contact {
-    pub fn new(problem: &Problem, edge: &ContactFace, u: &[[f64; 2]]) -> Contact {
-        let p = edge.p(u);
+    pub fn new(problem: &Problem, edge: &Piece, u: &[[f64; 2]]) -> Contact {
+        let (geometry, degree, p) = (&edge.geometry, edge.degree, edge.p(u));
         // int \[P\]+ N_a; a hat function is N_a and half of that of the middle.
-        let nodal = |p: &[f64]| EdgeRule::Exact.integrals(p).gradient;
+        let nodal = |p: &[f64]| EdgeRule::Exact.integrals(degree, p).gradient;
         let with_hats = |p: &[f64]| {
             let nodal = nodal(p);
             let middle = nodal.get(2).copied();
             [0, 1].map(|a| middle.map_or(nodal[a], |m| nodal[a] + m / 2.0))
         };
         let positive = with_hats(&p);
-        let directions = [edge.directions[0], edge.directions[1]];
-        let mesh = &problem.mesh;
+        let all_directions: Vec<Vector2<f64>> = geometry.directions().collect();
+        let directions = [all_directions[0], all_directions[1]];
         // On a part of the edge, `share` of its length, with P and the directions at its nodes.
-        let normal = mesh.triangle(edge.edge.triangle).scaled_normal(edge.edge.local);
+        let BoundaryEdge { triangle, local } = edge.edge();
+        let normal = problem.mesh.triangle(triangle).scaled_normal(local);
         let moments = |p: &[f64], directions: &[Vector2<f64>], share: f64| {
-            if edge.along_normal {
+            if geometry.along_normal {
                 return with_hats(p).map(|p| normal * -(share * p / edge.gamma));
             }
             let nodal = nodal(p);
@@ -124,25 +123,20 @@ impl Contact {
                 nodal.get(2).map_or(own, |m| own + along(2, m / 2.0))
             })
         };
-        let sigma_n = edge.sigma_n(|node| u[node]);
+        let sigma_n = edge.sigma_n(u);
         let excess = Vector2::from([0, 1].map(|c| {
             let stress = integral_of_product(sigma_n, directions.map(|d| d[c]));
             -(positive[0] * directions[0][c] + positive[1] * directions[1][c]) - edge.gamma * stress
         }));
-        let gap = [edge.gap[0], edge.gap[1]];
-        let turns = directions[0] != directions[1];
-        let condition = problem.conditions.get(&*edge.boundary);
-        let gap_bulge = match (condition, edge.directions.get(2), edge.gap.get(2)) {
+        let gap = [geometry.nodes[0].gap, geometry.nodes[1].gap];
+        let turns = geometry.turns();
+        let gap_bulge = match geometry.nodes.get(2) {
             // The direction in the middle is the mean of those at the ends, a little shorter than 1.
-            (_, Some(d), Some(gap_there)) if turns => {
+            Some(middle) if turns => {
                 let mean = (directions[0] + directions[1]) / 2.0;
-                gap_there * mean.dot(d) - (gap[0] + gap[1]) / 2.0
+                middle.gap * mean.dot(&middle.direction) - (gap[0] + gap[1]) / 2.0
             }
-            (Some(Condition::Contact { gap }), ..) if !turns => {
-                bulge_of(gap, mesh.ends(edge.edge).map(|vertex| mesh.vertices()[vertex]))
-            }
-            // The distance to a plane.
-            _ => 0.0,
+            _ => geometry.bulge,
         };
         let profile = |p: &[f64]| {
             let positive = with_hats(p);
@@ -152,7 +146,7 @@ impl Contact {
             } else if let &[start, end] = p {
                 Profile::of_affine([start, end], edge.gamma)
             } else {
-                let end = match roots(p)[..] {
+                let end = match degree.roots(p)[..] {
                     [root] => Some(root),
                     _ => None,
                 };
@@ -160,26 +154,24 @@ impl Contact {
             }
         };
         let on_halves = [0.0, 0.5].map(|start| {
-            let degree = edge.functionals.degree();
             let shapes: Vec<Vec<f64>> = (degree.edge_positions().into_iter())
                 .map(|s| degree.edge_values(start + s / 2.0))
                 .collect();
             let here = |n: &Vec<f64>| n.iter().zip(&p).map(|(n, p)| n * p).sum::<f64>();
             let here: Vec<f64> = shapes.iter().map(here).collect();
-            let direction =
-                |n: &Vec<f64>| n.iter().zip(&edge.directions).map(|(n, d)| d * *n).sum();
+            let direction = |n: &Vec<f64>| n.iter().zip(&all_directions).map(|(n, d)| d * *n).sum();
             let directions: Vec<Vector2<f64>> = shapes.iter().map(direction).collect();
             (profile(&here), moments(&here, &directions, 0.5))
         });
         Contact {
-            edge: edge.edge,
-            boundary: Arc::clone(&edge.boundary),
+            edge: edge.edge(),
+            boundary: Arc::clone(edge.boundary()),
             length: edge.length,
-            normal: edge.normal,
+            normal: edge.normal(),
             directions,
             gap,
             gap_bulge,
-            moments: moments(&p, &edge.directions, 1.0),
+            moments: moments(&p, &all_directions, 1.0),
             excess,
             pressure: profile(&p),
             on_halves,

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 
 use super::certificate::Role;
+pub(super) use crate::fem::contact_line::bulge_of;
 use crate::fem::graded_quadrature::{Features, Rule};
 use crate::fem::mesh::length;
 use crate::fem::{Function, Problem, SharedFunction};
@@ -196,11 +197,4 @@ pub(super) fn cancellation(
         size = size.max(value.abs());
     }
     (off > KNOWN * size).then_some(off)
-}
-
-/// The value of `f` in the middle of an edge less the mean of its ends; 0 where it is known to be affine.
-pub(super) fn bulge_of(f: &SharedFunction, ends: [[f64; 2]; 2]) -> f64 {
-    let [a, b] = ends;
-    let middle = [0, 1].map(|c| (a[c] + b[c]) / 2.0);
-    if is_within(f, 1) { 0.0 } else { f.at(middle) - (f.at(a) + f.at(b)) / 2.0 }
 }

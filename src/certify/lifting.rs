@@ -19,6 +19,7 @@ use crate::fem::matrix::{LowerTriangle, Neighbours, Numbering};
 use crate::fem::mesh::length;
 use crate::fem::residual::add_internal_forces;
 use crate::fem::{BoundaryEdge, Degree, Problem, Space};
+use crate::solve::SolveError;
 use crate::solve::factor::Factor;
 use crate::solve::ordering::nested_dissection;
 
@@ -123,8 +124,9 @@ impl<'a> Lifter<'a> {
         let order = nested_dissection(space.nodes(), &neighbours);
         let numbering = Numbering::in_frames(&order, &prescribed, frames);
         let mut matrix = LowerTriangle::zero(&numbering, &neighbours);
-        matrix.add_stiffness(&space, &parts.problem.material, &numbering);
-        let factor = Factor::new(&matrix).map_err(|error| {
+        let assembled = matrix.add_stiffness(&space, &parts.problem.material, &numbering);
+        let factor = assembled.map_err(SolveError::from).and_then(|()| Factor::new(&matrix));
+        let factor = factor.map_err(|error| {
             CertifyError::Unsupported(format!(
                 "no displacement of least energy for the forces: {error}"
             ))

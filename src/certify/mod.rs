@@ -169,7 +169,7 @@ fn certify_near(
     let quarters = if quadratic { 4 } else { 1 };
     memory::check(quarters * PER_TRIANGLE * problem.mesh.triangles().len() as u64)?;
     let parts =
-        ProblemParts::new(problem, solution.degree, solution.gamma.gamma, &solution.displacement)?;
+        ProblemParts::new(problem, solution.degree, &solution.pieces, &solution.displacement)?;
     let mesh = &problem.mesh;
     let [u, start, w] = [&solution.displacement, start, field].map(|nodal| Field::new(mesh, nodal));
     let missed = parts.missed(&w?);

@@ -11,10 +11,7 @@ use super::errors::CertifyError;
 use super::field::Field;
 use crate::fem::boundary_normals::SmoothBoundary;
 use crate::fem::constraints::Constraints;
-use crate::fem::contact_line::Gamma;
-use crate::fem::{
-    BoundaryEdge, Condition, Degree, Mesh, Problem, SharedFunction, Space, contact_line,
-};
+use crate::fem::{BoundaryEdge, Condition, Degree, Mesh, Piece, Problem, SharedFunction, Space};
 use crate::kernel::Material;
 
 /// The condition on a boundary edge.
@@ -55,14 +52,13 @@ impl<'a> ProblemParts<'a> {
     pub fn new(
         problem: &'a Problem,
         degree: Degree,
-        gamma: Gamma,
+        pieces: &[Piece],
         displacement: &[[f64; 2]],
     ) -> Result<Self, CertifyError> {
         let space = Space::new(&problem.mesh, degree);
         let constraints = Constraints::new(problem, &space)?;
-        let contact = contact_line::assemble(problem, &space, gamma)?;
         let contact: Vec<Contact> =
-            contact.iter().map(|edge| Contact::new(problem, edge, displacement)).collect();
+            pieces.iter().map(|edge| Contact::new(problem, edge, displacement)).collect();
         let unsupported = |why: String| Err(CertifyError::Unsupported(why));
         if let Some(point) = problem.points.first() {
             return unsupported(format!(

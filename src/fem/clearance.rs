@@ -1,9 +1,8 @@
 //! The motions that nothing stops at a solution of (8), within the clearance of the contact edges that do not press.
 
-use super::contact_face::ContactFace;
 use super::dense::{dot, norm};
 use super::discretization::Discretization;
-use super::element::bernstein;
+use super::piece::Piece;
 use super::rigid::{FreeMotion, NEGLIGIBLE, Parts, null_space};
 use super::solvability::{Slides, all, negligible, rows};
 
@@ -18,12 +17,15 @@ impl Slides {
         let idle = &d.slides.as_ref()?.idle;
         let size = |v: &[f64]| v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
         let p: Vec<Vec<f64>> = d.contact.iter().map(|edge| edge.p(u)).collect();
-        let most = |p: &[f64]| bernstein(p).into_iter().fold(0.0, f64::max);
+        let degree = d.space.degree();
+        let most = |p: &[f64]| degree.bernstein(p).into_iter().fold(0.0, f64::max);
         let largest = p.iter().map(|p| most(p)).fold(0.0, f64::max);
         let far = size(u.as_flattened());
-        let presses = |(p, edge): (&Vec<f64>, &ContactFace)| {
-            let rounding = 8.0 * f64::EPSILON * (far + size(&edge.gap));
-            most(p) > rounding.max(PRESSES * largest) && d.rule.integrals(p).active > 0.0
+        let presses = |(p, piece): (&Vec<f64>, &Piece)| {
+            let gap = piece.geometry.gaps().fold(0.0, |m: f64, g| m.max(g.abs()));
+            let rounding = 8.0 * f64::EPSILON * (far + gap);
+            let active = piece.contribution(&d.rule, p).active;
+            most(p) > rounding.max(PRESSES * largest) && active > 0.0
         };
         let pressing = p.iter().zip(&d.contact).map(presses);
         let pressing: Vec<bool> = pressing.zip(idle).map(|(yes, idle)| yes && !idle).collect();
@@ -34,20 +36,21 @@ impl Slides {
         let (mut bounds, mut stopping) = (Vec::new(), Vec::new());
         let edges = d.contact.iter().zip(&p).zip(pressing).zip(idle);
         for (e, (((edge, p), pressing), idle)) in edges.enumerate() {
-            let nodes = d.space.edge_nodes(edge.edge);
+            let nodes = d.space.edge_nodes(edge.edge());
             let lengths = basis.iter().flat_map(|b| nodes.iter().map(|&node| b[node]));
             let none = rounding * lengths.fold(0.0, |m: f64, [x, y]| m.max(x.hypot(y)));
             let row = |a: usize| {
-                let along = |b: &Vec<[f64; 2]>| dot(&b[nodes[a]], edge.directions[a].as_slice());
+                let direction = edge.geometry.nodes[a].direction;
+                let along = |b: &Vec<[f64; 2]>| dot(&b[nodes[a]], direction.as_slice());
                 basis.iter().map(along).collect::<Vec<f64>>()
             };
             let rows: Vec<Vec<f64>> = (0..nodes.len()).map(row).collect();
-            let coefficients = bernstein(p);
+            let coefficients = degree.bernstein(p);
             // Not a step towards an edge of which a coefficient is positive although P is not.
             let open = *idle || coefficients.iter().all(|p| *p <= 0.0);
             for (a, coefficient) in coefficients.into_iter().enumerate() {
                 let row: Vec<f64> = (0..basis.len())
-                    .map(|j| bernstein(&rows.iter().map(|row| row[j]).collect::<Vec<f64>>())[a])
+                    .map(|j| degree.bernstein(&rows.iter().map(|r| r[j]).collect::<Vec<f64>>())[a])
                     .collect();
                 if !pressing && norm(&row) > none {
                     let bound = if open { -coefficient } else { 0.0 } + dot(&row, &at);

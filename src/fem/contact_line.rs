@@ -1,4 +1,4 @@
-//! Gamma_C on the mesh: its edges with their functionals and gamma = gamma0 h_T of (7), the coercivity number kappa.
+//! Gamma_C on the mesh: its pieces with their directions and gaps, gamma = gamma0 h_T of (7), the coercivity number kappa.
 //!
 //! The direction of contact is a field n~, given at the nodes: by the obstacle's closest point where there is an obstacle, else
 //! by the normal of the smooth boundary (`boundary_normals`), on which the nodes are placed when the gap is measured. On a
@@ -7,14 +7,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use nalgebra::Vector2;
-
 use super::boundary_normals::{SmoothBoundary, SmoothPoint};
-use super::contact_face::{ContactFace, Functionals};
 use super::data::{DataError, finite};
 use super::element::Degree;
+use super::function::SharedFunction;
+use super::law::Law;
 use super::mesh::{BoundaryEdge, ROUNDED};
 use super::obstacle::Closest;
+use super::piece::{Piece, PieceGeometry, PieceNode, SideData, Stretch};
 use super::problem::{Condition, Problem};
 use super::space::Space;
 use crate::kernel::contact_edge::traction_stiffness;
@@ -52,26 +52,9 @@ impl Coercivity {
     /// The constant of a problem for a degree of V^h.
     ///
     /// # Errors
-    /// [`DataError::NoContact`], and unknown boundary names.
+    /// As [`ContactLine::new`].
     pub fn new(problem: &Problem, degree: Degree) -> Result<Self, DataError> {
-        let mesh = &problem.mesh;
-        let edges = contact_edges(problem)?;
-        let constants = constants(problem, degree, &edges, &ContactGeometry::new(problem))?;
-        let mut sorted: Vec<f64> = constants.values().copied().collect();
-        sorted.sort_unstable_by(f64::total_cmp);
-        let typical = sorted.get(sorted.len() / 2).copied().ok_or(DataError::NoContact)?;
-        let constant = sorted.last().copied().ok_or(DataError::NoContact)?;
-        // Equal edges differ by rounding: the choice must not.
-        let equal =
-            edges.iter().filter(|(e, _)| constants[&e.triangle] >= constant * (1.0 - ROUNDED));
-        let ends = |(edge, _): &(BoundaryEdge, &str)| {
-            let mut ends = mesh.places_of_ends(*edge);
-            ends.sort_by(order);
-            ends
-        };
-        let first = equal.map(ends).min_by(|[a, b], [c, d]| order(a, c).then(order(b, d)));
-        let limiting_edge = first.ok_or(DataError::NoContact)?;
-        Ok(Coercivity { constant, typical, limiting_edge })
+        ContactLine::new(problem, &Space::new(&problem.mesh, degree))?.coercivity(problem)
     }
 
     /// The gamma0 at which kappa = 1: below it, J_h is strictly convex.
@@ -86,30 +69,6 @@ impl Coercivity {
             Gamma::Local(kappa) => kappa * self.limit(),
         }
     }
-}
-
-/// kappa / gamma0 on each triangle with an edge on Gamma_C.
-fn constants(
-    problem: &Problem,
-    degree: Degree,
-    edges: &[(BoundaryEdge, &str)],
-    geometry: &ContactGeometry,
-) -> Result<BTreeMap<usize, f64>, DataError> {
-    let mesh = &problem.mesh;
-    let mut constants: BTreeMap<usize, f64> = BTreeMap::new();
-    for &(edge, name) in edges {
-        let [start, end] = [geometry.direction(edge, name, 0)?, geometry.direction(edge, name, 1)?];
-        let (length, normal) = mesh.length_and_normal(edge);
-        let counted =
-            if start == end { length } else { degree.turning_factor(start.dot(&end)) * length };
-        let t = edge.triangle;
-        let (area, material) = (mesh.triangle(t).double_area() / 2.0, problem.material.of(t));
-        let stiffness =
-            traction_stiffness(material, normal, (start == end).then_some(start), f64::sqrt);
-        *constants.entry(t).or_default() +=
-            degree.coercivity_constant(stiffness, mesh.diameter(t), counted, area);
-    }
-    Ok(constants)
 }
 
 /// Points by x, then by y.
@@ -149,112 +108,201 @@ fn chains(problem: &Problem, edges: &[BoundaryEdge]) -> Vec<BoundaryEdge> {
     chained
 }
 
-/// All edges of Gamma_C.
+/// Gamma_C without gamma: where its pieces lie, their directions and gaps.
+#[derive(Clone, Debug)]
+pub struct ContactLine {
+    degree: Degree,
+    pieces: Vec<Arc<PieceGeometry>>,
+}
+
+impl ContactLine {
+    /// Gamma_C of a problem, with the nodes that a space has along it.
+    ///
+    /// # Errors
+    /// [`DataError::NoContact`], a gap that is not finite, an obstacle on the other side of the body, and unknown boundary names.
+    pub fn new(problem: &Problem, space: &Space) -> Result<Self, DataError> {
+        let obstacles = Obstacles { problem, smooth: SmoothBoundary::new(&problem.mesh) };
+        let mut pieces: Vec<Arc<PieceGeometry>> = Vec::new();
+        for (edge, name) in contact_edges(problem)? {
+            let boundary = match pieces.last() {
+                Some(last) if &*last.first().boundary == name => Arc::clone(&last.first().boundary),
+                _ => Arc::from(name),
+            };
+            pieces.push(Arc::new(obstacles.piece(space, edge, boundary)?));
+        }
+        check_sides(problem, &pieces)?;
+        Ok(ContactLine { degree: space.degree(), pieces })
+    }
+
+    /// Its pieces, each boundary in chains along the boundary.
+    pub fn pieces(&self) -> impl Iterator<Item = &PieceGeometry> {
+        self.pieces.iter().map(|piece| &**piece)
+    }
+
+    /// C_h of kappa = gamma0 C_h.
+    ///
+    /// # Errors
+    /// [`DataError::NoContact`].
+    pub fn coercivity(&self, problem: &Problem) -> Result<Coercivity, DataError> {
+        let mesh = &problem.mesh;
+        let constants = self.constants(problem);
+        let mut sorted: Vec<f64> = constants.values().copied().collect();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let typical = sorted.get(sorted.len() / 2).copied().ok_or(DataError::NoContact)?;
+        let constant = sorted.last().copied().ok_or(DataError::NoContact)?;
+        // Equal edges differ by rounding: the choice must not.
+        let stretches = self.pieces.iter().flat_map(|piece| &piece.stretches);
+        let equal = stretches.filter(|s| constants[&s.edge.triangle] >= constant * (1.0 - ROUNDED));
+        let ends = |stretch: &Stretch| {
+            let mut ends = mesh.places_of_ends(stretch.edge);
+            ends.sort_by(order);
+            ends
+        };
+        let first = equal.map(ends).min_by(|[a, b], [c, d]| order(a, c).then(order(b, d)));
+        let limiting_edge = first.ok_or(DataError::NoContact)?;
+        Ok(Coercivity { constant, typical, limiting_edge })
+    }
+
+    /// kappa / gamma0 on each triangle with an edge on Gamma_C.
+    fn constants(&self, problem: &Problem) -> BTreeMap<usize, f64> {
+        let mesh = &problem.mesh;
+        let mut constants: BTreeMap<usize, f64> = BTreeMap::new();
+        for piece in &self.pieces {
+            let [start, end] = [0, 1].map(|a| piece.nodes[a].direction);
+            for &Stretch { edge, .. } in &piece.stretches {
+                let (length, normal) = mesh.length_and_normal(edge);
+                let counted = if start == end {
+                    length
+                } else {
+                    self.degree.turning_factor(start.dot(&end)) * length
+                };
+                let t = edge.triangle;
+                let (area, material) =
+                    (mesh.triangle(t).double_area() / 2.0, problem.material.of(t));
+                let stiffness = traction_stiffness(
+                    material,
+                    normal,
+                    (start == end).then_some(start),
+                    f64::sqrt,
+                );
+                *constants.entry(t).or_default() +=
+                    self.degree.coercivity_constant(stiffness, mesh.diameter(t), counted, area);
+            }
+        }
+        constants
+    }
+
+    /// The pieces of method (8).
+    pub fn with_gamma(&self, problem: &Problem, space: &Space, gamma: Gamma) -> Vec<Piece> {
+        let mesh = space.mesh();
+        let gamma0: Box<dyn Fn(usize) -> f64> = match gamma {
+            Gamma::Uniform(gamma0) => Box::new(move |_| gamma0),
+            Gamma::Local(kappa) => {
+                let constants = self.constants(problem);
+                Box::new(move |t| kappa / constants[&t])
+            }
+        };
+        let side = |stretch: &Stretch| {
+            let t = stretch.edge.triangle;
+            let (length, normal) = mesh.length_and_normal(stretch.edge);
+            let gamma = gamma0(t) * mesh.diameter(t);
+            let (triangle, material) = (mesh.triangle(t), *problem.material.of(t));
+            SideData { triangle, material, length, normal, gamma }
+        };
+        let mut start = 0;
+        let piece = |geometry: &Arc<PieceGeometry>| {
+            let sides: Vec<SideData<f64>> = geometry.stretches.iter().map(side).collect();
+            let piece = Piece::new(geometry, space, start, &sides);
+            start = piece.functionals().end;
+            piece
+        };
+        self.pieces.iter().map(piece).collect()
+    }
+}
+
+/// All pieces of Gamma_C.
 ///
 /// # Errors
-/// [`DataError::NoContact`], a gap that is not finite, an obstacle on the other side of the body, and unknown boundary names.
+/// As [`ContactLine::new`].
 pub fn assemble(
     problem: &Problem,
     space: &Space,
     gamma: impl Into<Gamma>,
-) -> Result<Vec<ContactFace>, DataError> {
-    let mesh = space.mesh();
-    let geometry = ContactGeometry::new(problem);
-    let edges = contact_edges(problem)?;
-    let gamma0: Box<dyn Fn(usize) -> f64> = match gamma.into() {
-        Gamma::Uniform(gamma0) => Box::new(move |_| gamma0),
-        Gamma::Local(kappa) => {
-            let constants = constants(problem, space.degree(), &edges, &geometry)?;
-            Box::new(move |t| kappa / constants[&t])
-        }
-    };
-    let (degree, count) = (space.degree(), space.degree().nodes_per_edge());
-    let mut line: Vec<ContactFace> = Vec::new();
-    for (edge, name) in edges {
-        let (length, normal) = mesh.length_and_normal(edge);
-        let gamma = gamma0(edge.triangle) * mesh.diameter(edge.triangle);
-        let (mut gap, mut directions) = (vec![0.0; count], vec![normal; count]);
-        let mut places = vec![[0.0; 2]; count];
-        for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
-            let on_facet = SmoothPoint { place: space.nodes()[node], normal };
-            let point = geometry.point(edge, a).unwrap_or(on_facet);
-            places[a] = point.place;
-            Closest { gap: gap[a], direction: directions[a] } = geometry.closest(name, point)?;
-        }
-        let triangle = mesh.triangle(edge.triangle);
-        let material = problem.material.of(edge.triangle);
-        let along_normal = directions.iter().all(|direction| *direction == normal);
-        let along = (!along_normal).then_some(&directions[..]);
-        let functionals =
-            Functionals::new(degree, (&triangle, edge.local), normal, along, material, gamma);
-        let boundary = match line.last() {
-            Some(last) if &*last.boundary == name => Arc::clone(&last.boundary),
-            _ => Arc::from(name),
-        };
-        line.push(ContactFace {
-            edge,
-            boundary,
-            nodes: space.nodes_of(edge.triangle).to_vec(),
-            length,
-            normal,
-            gamma,
-            directions,
-            along_normal,
-            places,
-            curved: geometry.is_curved(edge),
-            gap,
-            functionals,
-        });
-    }
-    check_sides(problem, &line)?;
-    Ok(line)
+) -> Result<Vec<Piece>, DataError> {
+    Ok(ContactLine::new(problem, space)?.with_gamma(problem, space, gamma.into()))
 }
 
 /// No edge that faces away from its obstacle lies inside it, and no boundary faces away as a whole: else the obstacle is on the
 /// other side of the body. Other edges may face away, as those of the upper half of a disk on a floor.
-fn check_sides(problem: &Problem, line: &[ContactFace]) -> Result<(), DataError> {
-    let is_away = |edge: &&ContactFace| {
-        edge.directions.iter().all(|direction| direction.dot(&edge.normal) <= 0.0)
+fn check_sides(problem: &Problem, line: &[Arc<PieceGeometry>]) -> Result<(), DataError> {
+    let is_away = |piece: &&Arc<PieceGeometry>| {
+        let (_, normal) = problem.mesh.length_and_normal(piece.first().edge);
+        piece.directions().all(|direction| direction.dot(&normal) <= 0.0)
     };
-    let is_inside = |edge: &&ContactFace| edge.gap.iter().all(|&gap| gap <= 0.0);
-    let faces = |edge: &&ContactFace| !is_away(edge);
-    let facing: BTreeSet<&str> = line.iter().filter(faces).map(|edge| &*edge.boundary).collect();
-    let is_wrong = |edge: &&ContactFace| {
-        is_away(edge) && (is_inside(edge) || !facing.contains(&*edge.boundary))
+    let is_inside = |piece: &&Arc<PieceGeometry>| piece.gaps().all(|gap| gap <= 0.0);
+    let faces = |piece: &&Arc<PieceGeometry>| !is_away(piece);
+    let facing: BTreeSet<&str> =
+        line.iter().filter(faces).map(|piece| &*piece.first().boundary).collect();
+    let is_wrong = |piece: &&Arc<PieceGeometry>| {
+        is_away(piece) && (is_inside(piece) || !facing.contains(&*piece.first().boundary))
     };
     match line.iter().find(is_wrong) {
         None => Ok(()),
-        Some(edge) => {
-            let [x, y] = edge.places[0];
+        Some(piece) => {
+            let PieceNode { place: [x, y], direction, .. } = piece.nodes[0];
+            let boundary = &piece.first().boundary;
             Err(DataError::WrongSide {
-                obstacle: problem.obstacle_of(&edge.boundary).unwrap_or_default().to_owned(),
-                boundary: edge.boundary.to_string(),
+                obstacle: problem.obstacle_of(boundary).unwrap_or_default().to_owned(),
+                boundary: boundary.to_string(),
                 x,
                 y,
-                direction: edge.directions[0].into(),
+                direction: direction.into(),
             })
         }
     }
 }
 
 /// The obstacles as seen from the contact line.
-struct ContactGeometry<'a> {
+struct Obstacles<'a> {
     problem: &'a Problem,
     smooth: SmoothBoundary,
 }
 
-impl<'a> ContactGeometry<'a> {
-    fn new(problem: &'a Problem) -> Self {
-        ContactGeometry { problem, smooth: SmoothBoundary::new(&problem.mesh) }
-    }
-
-    /// Start (0), end (1) or middle (2) of the smooth boundary along an edge, if it is not straight there.
-    fn point(&self, edge: BoundaryEdge, a: usize) -> Option<SmoothPoint> {
-        self.smooth.along(&self.problem.mesh, edge).map(|points| points[a])
-    }
-
-    fn is_curved(&self, edge: BoundaryEdge) -> bool {
-        self.smooth.at_ends(edge).is_some()
+impl Obstacles<'_> {
+    /// The piece that a whole edge is.
+    fn piece(
+        &self,
+        space: &Space,
+        edge: BoundaryEdge,
+        boundary: Arc<str>,
+    ) -> Result<PieceGeometry, DataError> {
+        let mesh = &self.problem.mesh;
+        let (_, normal) = mesh.length_and_normal(edge);
+        let curve = self.smooth.along(mesh, edge);
+        let mut nodes = Vec::with_capacity(space.degree().nodes_per_edge());
+        for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
+            let on_facet = SmoothPoint { place: space.nodes()[node], normal };
+            let point = curve.map_or(on_facet, |points| points[a]);
+            let Closest { gap, direction } = self.closest(&boundary, point)?;
+            nodes.push(PieceNode { place: point.place, direction, gap });
+        }
+        let along_normal = nodes.iter().all(|node| node.direction == normal);
+        let bulge = match self.problem.conditions.get(&*boundary) {
+            Some(Condition::Contact { gap }) if nodes[0].direction == nodes[1].direction => {
+                bulge_of(gap, mesh.places_of_ends(edge))
+            }
+            // The distance to a plane.
+            _ => 0.0,
+        };
+        let positions = space.degree().edge_positions();
+        Ok(PieceGeometry {
+            stretches: vec![Stretch { edge, boundary, positions }],
+            nodes,
+            law: Law::Contact,
+            curved: self.smooth.at_ends(edge).is_some(),
+            along_normal,
+            bulge,
+        })
     }
 
     /// Gap and direction at a point of the boundary `name`.
@@ -272,23 +320,12 @@ impl<'a> ContactGeometry<'a> {
             _ => Err(DataError::NoContact),
         }
     }
+}
 
-    /// n~ at the start or at the end of an edge.
-    fn direction(
-        &self,
-        edge: BoundaryEdge,
-        name: &str,
-        a: usize,
-    ) -> Result<Vector2<f64>, DataError> {
-        let mesh = &self.problem.mesh;
-        let on_facet = SmoothPoint {
-            place: mesh.vertices()[mesh.ends(edge)[a]],
-            normal: mesh.length_and_normal(edge).1,
-        };
-        let point = self.point(edge, a).unwrap_or(on_facet);
-        match self.problem.conditions.get(name) {
-            Some(Condition::Obstacle(..)) => Ok(self.closest(name, point)?.direction),
-            _ => Ok(point.normal),
-        }
-    }
+/// The value of `f` in the middle of an edge less the mean of its ends; 0 where it is known to be affine.
+pub(crate) fn bulge_of(f: &SharedFunction, ends: [[f64; 2]; 2]) -> f64 {
+    let [a, b] = ends;
+    let middle = [0, 1].map(|c| (a[c] + b[c]) / 2.0);
+    let is_affine = f.degree().is_some_and(|degree| degree <= 1);
+    if is_affine { 0.0 } else { f.at(middle) - (f.at(a) + f.at(b)) / 2.0 }
 }

@@ -4,20 +4,20 @@
 use nalgebra::Vector2;
 
 use super::constraints::{Constraints, in_frame};
-use super::contact_face::{ContactFace, EdgeRule};
-use super::contact_line::{self, Coercivity, Gamma};
+use super::contact_line::{Coercivity, ContactLine, Gamma};
 use super::data::DataError;
 use super::dense::inner;
 use super::element::Degree;
+use super::law::EdgeRule;
 use super::loads::{self, LoadVector};
 use super::material;
+use super::piece::Piece;
 use super::problem::Problem;
 use super::rigid::FreeMotion;
 use super::solvability::{self, NotHeld, Slides};
 use super::space::Space;
 use super::stress_points::{StressPoint, each_stress};
 use crate::kernel::PreciseBall;
-use crate::kernel::contact_edge::integral_of_product;
 
 /// Method (8) with everything that it needs.
 pub struct Discretization<'a> {
@@ -38,7 +38,7 @@ pub struct Discretization<'a> {
     /// gamma0 of (7), or the smallest where each triangle has its own.
     pub gamma0: f64,
     /// Gamma_C.
-    pub contact: Vec<ContactFace>,
+    pub contact: Vec<Piece>,
     /// The rule for the contact terms.
     pub rule: EdgeRule,
     /// The rigid motions that supports leave free, part by part.
@@ -94,7 +94,9 @@ impl<'a> Discretization<'a> {
         for &material in problem.material.distinct() {
             material::stable(material)?;
         }
-        let coercivity = Coercivity::new(problem, degree)?;
+        let space = Space::new(&problem.mesh, degree);
+        let line = ContactLine::new(problem, &space)?;
+        let coercivity = line.coercivity(problem)?;
         let gamma = gamma(&coercivity).into();
         let gamma0 = coercivity.gamma0(gamma);
         if !(gamma0 > 0.0 && gamma0.is_finite()) {
@@ -105,11 +107,10 @@ impl<'a> Discretization<'a> {
             let (what, expected) = ("the rule for contact edges", "one with points");
             return Err(DataError::Value { what, found: "empty".to_owned(), expected });
         }
-        let space = Space::new(&problem.mesh, degree);
         let mut constraints = Constraints::new(problem, &space)?;
         let LoadVector { in_doubles: load, in_balls: enclosed_load } =
             loads::assemble_twice(problem, &space)?;
-        let contact = contact_line::assemble(problem, &space, gamma)?;
+        let contact = line.with_gamma(problem, &space, gamma);
         let (parts, motions) = constraints.free_motions(&space);
         let mut slides = None;
         if !motions.is_empty() {
@@ -151,7 +152,7 @@ impl<'a> Discretization<'a> {
         }
     }
 
-    /// Returns whether contact edge `e` presses in no solution, because the loads drive the body away from it or not towards it.
+    /// Returns whether piece `e` of Gamma_C presses in no solution, because the loads drive the body away from it or not towards it.
     pub(crate) fn is_idle(&self, e: usize) -> bool {
         self.slides.as_ref().is_some_and(|slides| slides.is_idle(e))
     }
@@ -169,11 +170,9 @@ impl<'a> Discretization<'a> {
     /// R(u; v) for every basis function v.
     pub fn residual(&self, u: &[[f64; 2]]) -> Functional {
         let mut r = self.linear_residual(u);
-        for edge in &self.contact {
-            let pressure = self.rule.integrals(&edge.p(u)).gradient;
-            let pressure: Vec<f64> =
-                pressure.iter().map(|g| edge.length / edge.gamma * g).collect();
-            edge.each_force(&edge.functionals.p0(), &pressure, |node, f| r.add(node, f, norm_1(f)));
+        for piece in &self.contact {
+            let force = piece.contribution(&self.rule, &piece.p(u)).force;
+            piece.each_force(&piece.p0, &force, |node, f| r.add(node, f, norm_1(f)));
         }
         r
     }
@@ -190,12 +189,10 @@ impl<'a> Discretization<'a> {
         difference: impl Fn(usize, usize) -> Vector2<f64>,
     ) -> Functional {
         let mut r = self.internal_forces_by(&difference);
-        for edge in &self.contact {
-            let stress = edge.sigma_n(|node| difference(node, edge.nodes[0]).into());
-            let factors = edge.stress_factors(stress);
-            edge.each_force(&edge.functionals.sigma_n(), &factors, |node, f| {
-                r.add(node, f, norm_1(f));
-            });
+        for piece in &self.contact {
+            let stress = piece.stress(|node, from| difference(node, from).into());
+            let factors = piece.stress_factors(&stress);
+            piece.each_force(&piece.sigma_n, &factors, |node, f| r.add(node, f, norm_1(f)));
         }
         for (node, load) in self.load.iter().enumerate() {
             r.add(node, -Vector2::from(*load), load[0].abs().max(load[1].abs()));
@@ -242,22 +239,17 @@ impl<'a> Discretization<'a> {
     /// J_h(u) = 1/2 A(u, u) + 1/2 int (1/gamma) \[P(u)\]+^2 - L(u), whose derivative is the residual.
     pub fn energy(&self, u: &[[f64; 2]]) -> f64 {
         let mut energy = self.strain_energy(u) / 2.0 - inner(&self.load, u);
-        for edge in &self.contact {
-            let sigma_n = edge.sigma_n(|node| u[node]);
-            let stress = integral_of_product(sigma_n, sigma_n);
-            let positive = self.rule.integrals(&edge.p(u)).energy;
-            energy += edge.length * (positive / edge.gamma - edge.gamma * stress / 2.0);
+        for piece in &self.contact {
+            let contact = piece.contribution(&self.rule, &piece.p(u)).energy;
+            energy += contact - piece.squared_stress(u) / 2.0;
         }
         energy
     }
 }
 
-fn rounding_of_directions(
-    constraints: &Constraints,
-    space: &Space,
-    contact: &[ContactFace],
-) -> f64 {
-    let edges = contact.iter().map(|edge| edge.edge);
+fn rounding_of_directions(constraints: &Constraints, space: &Space, contact: &[Piece]) -> f64 {
+    let stretches = contact.iter().flat_map(|piece| &piece.geometry.stretches);
+    let edges = stretches.map(|stretch| stretch.edge);
     constraints.rounding().max(space.mesh().turned_by_rounding(edges))
 }
 

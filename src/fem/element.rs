@@ -6,7 +6,7 @@ use nalgebra::{SMatrix, SVector};
 use crate::kernel::contact_edge;
 use crate::kernel::edge_integral;
 use crate::kernel::element::displacement_gradient;
-use crate::kernel::{Element, P1, P2, Scalar};
+use crate::kernel::{Element, Scalar};
 
 /// The polynomial degree of V^h.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,37 +105,32 @@ impl Degree {
     pub fn at_stiffness_points<S: Scalar>(self, f: impl FnMut([S; 3], S)) {
         with_element!(self, E => E::at_stiffness_points(f));
     }
-}
 
-/// The value at `s` of the polynomial on an edge with these values at its nodes, two or three.
-pub fn value_at<S: Scalar>(p: &[S], s: S) -> S {
-    match *p {
-        [start, end] => edge_integral::value_at::<P1, _, _, _>([start, end], s),
-        _ => edge_integral::value_at::<P2, _, _, _>([p[0], p[1], p[2]], s),
+    /// The value at `s` of the polynomial on an edge with the values `p` at its nodes.
+    pub fn value_at<S: Scalar>(self, p: &[S], s: S) -> S {
+        with_element!(self, E => {
+            edge_integral::value_at::<E, _, _, _>(std::array::from_fn(|a| p[a]), s)
+        })
     }
-}
 
-/// The places inside (0, 1) where it changes its sign, in no particular order.
-pub fn roots(p: &[f64]) -> Vec<f64> {
-    match *p {
-        [start, end] => edge_integral::roots::<P1, _, _>([start, end]).collect(),
-        _ => edge_integral::roots::<P2, _, _>([p[0], p[1], p[2]]).collect(),
+    /// The places inside (0, 1) where that polynomial changes its sign, in no particular order.
+    pub fn roots(self, p: &[f64]) -> Vec<f64> {
+        with_element!(self, E => {
+            edge_integral::roots::<E, _, _>(std::array::from_fn(|a| p[a])).collect()
+        })
     }
-}
 
-/// Its largest value on the edge.
-pub fn maximum(p: &[f64]) -> f64 {
-    match *p {
-        [start, end] => edge_integral::maximum::<P1, _, _>([start, end]),
-        _ => edge_integral::maximum::<P2, _, _>([p[0], p[1], p[2]]),
+    /// The largest value of that polynomial on the edge.
+    pub fn maximum(self, p: &[f64]) -> f64 {
+        with_element!(self, E => edge_integral::maximum::<E, _, _>(std::array::from_fn(|a| p[a])))
     }
-}
 
-/// Its Bernstein coefficients: it lies between the least and the largest.
-pub fn bernstein<S: Scalar>(p: &[S]) -> Vec<S> {
-    let mut coefficients = p.to_vec();
-    if let [start, end, middle] = &mut coefficients[..] {
-        *middle = S::from(2) * *middle - (*start + *end) / S::from(2);
+    /// The Bernstein coefficients of that polynomial, which lies between the least and the largest of them.
+    pub fn bernstein<S: Scalar>(self, p: &[S]) -> Vec<S> {
+        let mut coefficients = p.to_vec();
+        if self == Degree::Two {
+            coefficients[2] = S::from(2) * p[2] - (p[0] + p[1]) / S::from(2);
+        }
+        coefficients
     }
-    coefficients
 }

@@ -1,19 +1,20 @@
 //! The matrix of A(u, v) = a(u, v) - int gamma sigma_n(u) sigma_n(v) on the free degrees of freedom, in a given order of
 //! elimination.
 //!
-//! Two numbers have an entry if their nodes share a triangle. The places of all entries are read off the mesh first, node by
+//! Two numbers have an entry if their nodes share a triangle or a piece of Gamma_C. The places of all entries are read off the mesh first, node by
 //! node; then the element matrices are added into them, so that all matrices over the same numbers have one pattern. A list of
 //! all element entries, sorted by faer (`SymbolicSparseColMat::try_new_from_indices`), took two to four times as long.
 
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, Matrix2};
+use thiserror::Error;
 
 use super::constraints::{Constraints, from_frame, in_frame};
-use super::contact_face::ContactFace;
 use super::discretization::Discretization;
 use super::element::with_element;
 use super::material::Materials;
+use super::piece::Piece;
 use super::space::Space;
 use crate::kernel::element::stiffness;
 use crate::kernel::{Element, Scalar};
@@ -116,7 +117,20 @@ impl Numbering {
     }
 }
 
-/// The nodes around each node: those that share a triangle with it, itself included.
+/// An entry that has no place in the pattern of its matrix, or a functional that the elimination does not reach: a mistake of the
+/// program. Left out, the entry would make a wrong matrix.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[error(
+    "this program made a mistake: entry ({row}, {column}) of a matrix has no place in its pattern; please report the case"
+)]
+pub struct OutsidePattern {
+    /// The row.
+    pub row: usize,
+    /// The column.
+    pub column: usize,
+}
+
+/// The nodes around each node: those that share a triangle or a piece of Gamma_C with it, itself included.
 #[derive(Clone, Debug)]
 pub struct Neighbours {
     of: Vec<Vec<usize>>,
@@ -125,17 +139,29 @@ pub struct Neighbours {
 impl Neighbours {
     /// The neighbours in a space.
     pub fn new(space: &Space) -> Self {
-        let mut of: Vec<Vec<usize>> = (0..space.nodes().len()).map(|node| vec![node]).collect();
-        for nodes in space.elements() {
-            for &node in nodes {
-                for other in nodes {
-                    if !of[node].contains(other) {
-                        of[node].push(*other);
-                    }
+        let of = (0..space.nodes().len()).map(|node| vec![node]).collect();
+        let mut neighbours = Neighbours { of };
+        space.elements().for_each(|nodes| neighbours.join(nodes));
+        neighbours
+    }
+
+    /// The neighbours in a space with these pieces of Gamma_C.
+    pub fn across(space: &Space, pieces: &[Piece]) -> Self {
+        let mut neighbours = Neighbours::new(space);
+        for piece in pieces.iter().filter(|piece| piece.sides.len() > 1) {
+            neighbours.join(&piece.nodes);
+        }
+        neighbours
+    }
+
+    fn join(&mut self, nodes: &[usize]) {
+        for &node in nodes {
+            for other in nodes {
+                if !self.of[node].contains(other) {
+                    self.of[node].push(*other);
                 }
             }
         }
-        Neighbours { of }
     }
 
     /// The nodes around `node`, each once.
@@ -171,12 +197,15 @@ impl LowerTriangle {
     }
 
     /// Adds the blocks of an element matrix: `block(i, j)` has the rows of `nodes[i]` and the columns of `nodes[j]`.
+    ///
+    /// # Errors
+    /// Nodes that are no neighbours.
     pub fn add(
         &mut self,
         numbering: &Numbering,
         nodes: &[usize],
         block: impl Fn(usize, usize) -> Matrix2<f64>,
-    ) {
+    ) -> Result<(), OutsidePattern> {
         let turned = nodes.iter().any(|node| numbering.frames.contains_key(node));
         for (j, &column_node) in nodes.iter().enumerate() {
             for (i, &row_node) in nodes.iter().enumerate() {
@@ -190,51 +219,64 @@ impl LowerTriangle {
                 }
                 for (d, column) in numbering.of[column_node].into_iter().enumerate() {
                     if let Some(column) = column {
-                        self.add_to_column(column, numbering.of[row_node], block.column(d).into());
+                        self.add_to_column(column, numbering.of[row_node], block.column(d).into())?;
                     }
                 }
             }
         }
+        Ok(())
     }
 
     /// Adds to the entries of a column in increasing rows; what is above the diagonal is left out.
-    fn add_to_column(&mut self, column: usize, rows: [Option<usize>; 2], entries: [f64; 2]) {
+    fn add_to_column(
+        &mut self,
+        column: usize,
+        rows: [Option<usize>; 2],
+        entries: [f64; 2],
+    ) -> Result<(), OutsidePattern> {
         let (mut place, end) = (self.starts[column], self.starts[column + 1]);
         for (row, entry) in rows.into_iter().zip(entries) {
-            // A column has few rows: to look at one after the other is quicker than a binary search.
             if let Some(row) = row
                 && row >= column
-                && let Some(step) = self.rows[place..end].iter().position(|&other| other == row)
             {
-                place += step;
+                // A column has few rows: to look at one after the other is quicker than a binary search.
+                let step = self.rows[place..end].iter().position(|&other| other == row);
+                place += step.ok_or(OutsidePattern { row, column })?;
                 self.values[place] += entry;
             }
         }
+        Ok(())
     }
 }
 
 /// The matrix of A over the free degrees of freedom in the order of `numbering`.
+///
+/// # Errors
+/// `neighbours` of another space, or without the pieces that join two bodies.
 pub fn assemble(
     d: &Discretization,
     numbering: &Numbering,
     neighbours: &Neighbours,
-) -> LowerTriangle {
-    let mut matrix = assemble_stiffness(d, numbering, neighbours);
-    for edge in &d.contact {
-        matrix.add_contact_stress(numbering, edge);
+) -> Result<LowerTriangle, OutsidePattern> {
+    let mut matrix = assemble_stiffness(d, numbering, neighbours)?;
+    for piece in &d.contact {
+        matrix.add_contact_stress(numbering, piece)?;
     }
-    matrix
+    Ok(matrix)
 }
 
 /// The matrix of a(.,.) likewise.
+///
+/// # Errors
+/// `neighbours` of another space.
 pub fn assemble_stiffness(
     d: &Discretization,
     numbering: &Numbering,
     neighbours: &Neighbours,
-) -> LowerTriangle {
+) -> Result<LowerTriangle, OutsidePattern> {
     let mut matrix = LowerTriangle::zero(numbering, neighbours);
-    matrix.add_stiffness(&d.space, &d.problem.material, numbering);
-    matrix
+    matrix.add_stiffness(&d.space, &d.problem.material, numbering)?;
+    Ok(matrix)
 }
 
 fn add_stiffness<E: Element<N, M>, const N: usize, const M: usize>(
@@ -242,40 +284,53 @@ fn add_stiffness<E: Element<N, M>, const N: usize, const M: usize>(
     space: &Space,
     materials: &Materials,
     numbering: &Numbering,
-) {
+) -> Result<(), OutsidePattern> {
     for (t, (triangle, nodes)) in space.triangles::<N>().enumerate() {
         let k = stiffness::<E, _, _, _>(&triangle, materials.of(t));
-        matrix.add(numbering, nodes, |i, j| k[i][j]);
+        matrix.add(numbering, nodes, |i, j| k[i][j])?;
     }
+    Ok(())
 }
 
 impl LowerTriangle {
     /// Adds a(.,.).
+    ///
+    /// # Errors
+    /// The pattern of another space.
     pub(crate) fn add_stiffness(
         &mut self,
         space: &Space,
         materials: &Materials,
         numbering: &Numbering,
-    ) {
-        with_element!(space.degree(), E => add_stiffness::<E, _, _>(self, space, materials, numbering));
+    ) -> Result<(), OutsidePattern> {
+        with_element!(space.degree(), E => add_stiffness::<E, _, _>(self, space, materials, numbering))
     }
 
-    /// Adds -int gamma sigma_n(.) sigma_n(.) on a contact edge.
-    pub fn add_contact_stress(&mut self, numbering: &Numbering, edge: &ContactFace) {
-        let weight = -(edge.gamma * edge.length);
-        let block = |i, j| edge.functionals.stress_product(weight, i, j);
-        self.add(numbering, &edge.nodes, block);
+    /// Adds -int gamma sigma_n(.) sigma_n(.) on a piece.
+    ///
+    /// # Errors
+    /// A pattern that does not join the sides of the piece.
+    pub fn add_contact_stress(
+        &mut self,
+        numbering: &Numbering,
+        piece: &Piece,
+    ) -> Result<(), OutsidePattern> {
+        let weight = -(piece.gamma * piece.length);
+        self.add(numbering, &piece.nodes, |i, j| piece.stress_product(weight, i, j))
     }
 
-    /// Adds P0^T h P0 of a contact edge: what is in contact holds the body.
+    /// Adds P0^T h P0 of a piece: what is in contact holds the body.
+    ///
+    /// # Errors
+    /// A pattern that does not join the sides of the piece.
     pub fn add_contact_springs(
         &mut self,
         numbering: &Numbering,
-        edge: &ContactFace,
+        piece: &Piece,
         h: &DMatrix<f64>,
-    ) {
-        let p0 = edge.functionals.p0();
-        self.add(numbering, &edge.nodes, |i, j| {
+    ) -> Result<(), OutsidePattern> {
+        let p0 = &piece.p0;
+        self.add(numbering, &piece.nodes, |i, j| {
             Matrix2::from_fn(|c, k| {
                 let mut sum = 0.0;
                 for a in 0..h.nrows() {
@@ -285,6 +340,38 @@ impl LowerTriangle {
                 }
                 sum
             })
-        });
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fem::{Degree, Diagonal, Rectangle, Space};
+
+    /// A spring between two nodes of a square, added to the matrix of the square.
+    fn spring(between: [usize; 2], joined: bool) -> Result<Vec<f64>, OutsidePattern> {
+        let square = Rectangle { width: 1.0, height: 1.0, nx: 4, ny: 4, diagonal: Diagonal::Right };
+        let mesh = square.mesh().unwrap();
+        let space = Space::new(&mesh, Degree::One);
+        let nodes = space.nodes().len();
+        let numbering = Numbering::new(&(0..nodes).collect::<Vec<_>>(), &vec![[None; 2]; nodes]);
+        let mut neighbours = Neighbours::new(&space);
+        if joined {
+            neighbours.join(&between);
+        }
+        let mut matrix = LowerTriangle::zero(&numbering, &neighbours);
+        let block = |i: usize, j: usize| Matrix2::identity() * if i == j { 1.0 } else { -1.0 };
+        matrix.add(&numbering, &between, block)?;
+        Ok(matrix.values)
+    }
+
+    #[test]
+    fn an_entry_without_a_place_is_an_error() {
+        let whole = |values: Vec<f64>| values.iter().sum::<f64>();
+        // The corners share no triangle; four ones on the diagonal, two -1 below.
+        assert_eq!(spring([0, 24], false), Err(OutsidePattern { row: 48, column: 0 }));
+        assert_eq!(spring([0, 24], true).map(whole), Ok(2.0));
+        assert_eq!(spring([0, 1], false).map(whole), Ok(2.0));
     }
 }

@@ -4,7 +4,6 @@
 pub mod boundary_normals;
 pub(crate) mod clearance;
 pub mod constraints;
-pub mod contact_face;
 pub mod contact_line;
 #[doc(hidden)]
 pub mod data;
@@ -20,6 +19,7 @@ pub mod graded_quadrature;
 mod groups;
 #[doc(hidden)]
 pub mod korn;
+pub mod law;
 pub mod loads;
 #[doc(hidden)]
 pub mod material;
@@ -31,6 +31,7 @@ pub mod mesh;
 pub mod moments;
 #[doc(hidden)]
 pub mod obstacle;
+pub mod piece;
 #[doc(hidden)]
 pub mod problem;
 #[doc(hidden)]
@@ -50,15 +51,17 @@ pub mod structured;
 #[doc(hidden)]
 pub mod tree;
 
-pub use contact_face::{ContactFace, EdgeRule};
+pub use contact_line::ContactLine;
 pub use data::DataError;
 pub use discretization::Discretization;
 pub use element::Degree;
 pub use function::{Function, SharedFunction};
+pub use law::{EdgeRule, Law};
 pub use material::Materials;
 pub use mesh::bisection::Refinement;
 pub use mesh::{BoundaryEdge, Mesh, MeshError};
 pub use obstacle::{Closest, Distance, Obstacle, Side};
+pub use piece::Piece;
 pub use problem::{Condition, PointSupport, Problem, SurfaceForce};
 pub use rigid::{FreeMotion, Parts};
 pub use space::Space;

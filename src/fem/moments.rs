@@ -1,25 +1,42 @@
-//! The contact terms of (8) on one edge, int \[P\]+ N_a over s in \[0, 1\], enclosed in [balls](crate::kernel::ball).
+//! The contact terms of (8) on one piece, int \[P\]+ N_a over s in \[0, 1\], enclosed in [balls](crate::kernel::ball).
 //!
 //! The integral is Lipschitz in P: where P is known to within a radius, so is it. For the centre of P, a polynomial of degree
 //! 1 or 2, the edge is cut near its roots, and on each piece either P or nothing is integrated. No cut need be right: where
 //! the sign on a piece is not the one that was taken, |P| is bounded, and the piece's length times that bound is added to the
 //! radius. A cut that is off by e leaves |P| = O(e) there, and Newton's method in balls makes e some 2^-100.
 
-use super::contact_face::EdgeRule;
-use super::element::bernstein;
+use super::element::{Degree, with_element};
+use super::law::EdgeRule;
+use super::piece::Piece;
 use crate::kernel::ball::{PreciseBall, larger};
-use crate::kernel::edge_integral::{gauss, roots, value_at};
-use crate::kernel::{Element, P1, P2};
+use crate::kernel::edge_integral::{bilateral, gauss, roots, value_at};
+use crate::kernel::{Element, Response};
 
-/// int \[P\]+ N_a for P with the nodal values `p`, two or three, by the rule of the method.
-pub fn moments(rule: &EdgeRule, p: &[PreciseBall]) -> Vec<PreciseBall> {
-    match *p {
-        [start, end] => moments_of::<P1, _, _>(rule, [start, end]).into(),
-        _ => moments_of::<P2, _, _>(rule, [p[0], p[1], p[2]]).into(),
+impl Piece<PreciseBall> {
+    /// The force of [`contribution`](Piece::contribution), enclosed.
+    pub fn force(&self, rule: &EdgeRule, p: &[PreciseBall]) -> Vec<PreciseBall> {
+        let weight = self.weight();
+        let of = |(response, p): (&Response, &[PreciseBall])| match response {
+            Response::Unilateral => moments(rule, self.degree, p),
+            Response::Bilateral => with_element!(self.degree, E => {
+                bilateral::<E, _, _, _>(std::array::from_fn(|a| p[a])).gradient.into()
+            }),
+        };
+        let responses = self.geometry.law.responses().iter();
+        let moments = responses.zip(p.chunks(self.degree.nodes_per_edge())).flat_map(of);
+        moments.map(|moment| weight * moment).collect()
     }
 }
 
+/// int \[P\]+ N_a for P of this degree with the nodal values `p`, by the rule of the method.
+pub fn moments(rule: &EdgeRule, degree: Degree, p: &[PreciseBall]) -> Vec<PreciseBall> {
+    with_element!(degree, E => {
+        moments_of::<E, _, _>(degree, rule, std::array::from_fn(|a| p[a])).into()
+    })
+}
+
 fn moments_of<E: Element<N, M>, const N: usize, const M: usize>(
+    degree: Degree,
     rule: &EdgeRule,
     p: [PreciseBall; M],
 ) -> [PreciseBall; M] {
@@ -29,13 +46,13 @@ fn moments_of<E: Element<N, M>, const N: usize, const M: usize>(
             gauss::<E, _, _, _>(p, points).gradient
         }
         // Bernstein's coefficients bound P.
-        EdgeRule::Exact if bernstein(&p).iter().all(|c| c.upper() <= 0.0) => {
+        EdgeRule::Exact if degree.bernstein(&p).iter().all(|c| c.upper() <= 0.0) => {
             [PreciseBall::from(0); M]
         }
         EdgeRule::Exact => {
             // |N_a| <= 1, and so |int ([P]+ - [Q]+) N_a| <= max |P - Q| <= the sum of the radii.
             let spread = p.iter().map(|p| p.radius()).sum::<f64>();
-            by_pieces::<E, _, _>(p.map(|p| PreciseBall::point(p.centre())))
+            by_pieces::<E, _, _>(degree, p.map(|p| PreciseBall::point(p.centre())))
                 .map(|moment| moment.widened(2.0 * spread))
         }
     }
@@ -45,11 +62,11 @@ fn moments_of<E: Element<N, M>, const N: usize, const M: usize>(
 struct Parabola([PreciseBall; 3]);
 
 impl Parabola {
-    fn new(p: &[PreciseBall]) -> Self {
+    fn new(degree: Degree, p: &[PreciseBall]) -> Self {
         let [zero, two, three, four] = [0, 2, 3, 4].map(PreciseBall::from);
-        Parabola(match *p {
-            [start, end] => [start, end - start, zero],
-            _ => {
+        Parabola(match degree {
+            Degree::One => [p[0], p[1] - p[0], zero],
+            Degree::Two => {
                 let (start, end, middle) = (p[0], p[1], p[2]);
                 let slope = four * middle - three * start - end;
                 [start, slope, two * (start + end) - four * middle]
@@ -100,9 +117,10 @@ impl Parabola {
 }
 
 fn by_pieces<E: Element<N, M>, const N: usize, const M: usize>(
+    degree: Degree,
     p: [PreciseBall; M],
 ) -> [PreciseBall; M] {
-    let parabola = Parabola::new(&p);
+    let parabola = Parabola::new(degree, &p);
     let mut cuts = vec![PreciseBall::from(0), PreciseBall::from(1)];
     let heads = p.map(PreciseBall::head);
     cuts.extend(roots::<E, _, _>(heads).map(|root| parabola.refined(root)));
@@ -138,6 +156,7 @@ fn by_pieces<E: Element<N, M>, const N: usize, const M: usize>(
 mod tests {
     use super::*;
     use crate::kernel::edge_integral::ExactEdge;
+    use crate::kernel::{P1, P2};
 
     fn values() -> Vec<[f64; 3]> {
         let mut all = vec![
@@ -164,11 +183,11 @@ mod tests {
     }
 
     /// The doubles of the kernel lie in the enclosure, to their own rounding, and the enclosure is narrow.
-    fn encloses<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>() {
+    fn encloses<E: ExactEdge<f64, N, M>, const N: usize, const M: usize>(degree: Degree) {
         for p in values() {
             let p: [f64; M] = std::array::from_fn(|a| p[a]);
             let exact = E::exact(p).gradient;
-            let enclosed = moments(&EdgeRule::Exact, &p.map(PreciseBall::from));
+            let enclosed = moments(&EdgeRule::Exact, degree, &p.map(PreciseBall::from));
             let size = p.iter().fold(0.0, |m: f64, p| m.max(p.abs()));
             for (exact, ball) in exact.into_iter().zip(enclosed) {
                 let off = (ball - PreciseBall::from(exact)).magnitude();
@@ -184,14 +203,14 @@ mod tests {
 
     #[test]
     fn what_the_kernel_integrates_is_enclosed_to_a_hundred_bits() {
-        encloses::<P1, _, _>();
-        encloses::<P2, _, _>();
+        encloses::<P1, _, _>(Degree::One);
+        encloses::<P2, _, _>(Degree::Two);
     }
 
     #[test]
     fn control_a_wrong_cut_costs_width() {
         // Positive on the left of 1/2, cut at 0.6: the part between is integrated with the wrong sign, and counted.
-        let parabola = Parabola::new(&[0.5, -0.5].map(PreciseBall::from));
+        let parabola = Parabola::new(Degree::One, &[0.5, -0.5].map(PreciseBall::from));
         let cut = PreciseBall::from(0.6);
         assert!(parabola.largest(-1, PreciseBall::from(0), cut) >= cut.lower() - 0.5);
         assert!(parabola.largest(1, cut, PreciseBall::from(1)) <= 0.0);

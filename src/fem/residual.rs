@@ -9,9 +9,9 @@
 
 use nalgebra::Vector2;
 
-use super::contact_face::ContactFace;
 use super::discretization::Discretization;
 use super::material::Materials;
+use super::piece::{Piece, Side, SideData, Stretch};
 use super::space::Space;
 use super::stress_points::each_stress;
 use crate::kernel::DoubleDouble;
@@ -33,48 +33,53 @@ pub fn add_internal_forces<S: Scalar + From<f64>>(
     });
 }
 
-/// A(u, v) - L(v) for every basis function v, with these contact edges.
+/// A(u, v) - L(v) for every basis function v, with these pieces of Gamma_C.
 pub fn linear_residual<S: Scalar + From<f64>>(
     d: &Discretization,
-    edges: &[ContactFace<S>],
+    pieces: &[Piece<S>],
     u: &[[S; 2]],
 ) -> Vec<[S; 2]> {
     let minus = |l: f64| -<S as From<f64>>::from(l);
     let mut forces: Vec<[S; 2]> = d.load.iter().map(|l| l.map(minus)).collect();
     add_internal_forces(&d.space, &d.problem.material, u, &mut forces);
-    edges.iter().for_each(|edge| edge.add_stresses(u, &mut forces));
+    pieces.iter().for_each(|piece| piece.add_stresses(u, &mut forces));
     forces
 }
 
-/// A(u, v) - L(v) for every basis function v, and the values of P(u) at the nodes of each contact edge, by double-doubles.
+/// A(u, v) - L(v) for every basis function v, and the values of P(u) at the nodes of each piece, by double-doubles.
 pub fn evaluate(d: &Discretization, u: &[[DoubleDouble; 2]]) -> (Vec<[f64; 2]>, Vec<DoubleDouble>) {
-    let edges: Vec<ContactFace<DoubleDouble>> = d.contact.iter().map(|e| on_edge(d, e)).collect();
-    let forces = linear_residual(d, &edges, u);
-    let p = edges.iter().flat_map(|edge| edge.p(u)).collect();
+    let pieces: Vec<Piece<DoubleDouble>> = d.contact.iter().map(|e| exact_piece(d, e)).collect();
+    let forces = linear_residual(d, &pieces, u);
+    let p = pieces.iter().flat_map(|piece| piece.p(u)).collect();
     (forces.into_iter().map(|f| f.map(DoubleDouble::head)).collect(), p)
 }
 
-/// The values of P(u) at the nodes of each contact edge, by double-doubles.
+/// The values of P(u) at the nodes of each piece, by double-doubles.
 pub fn p(d: &Discretization, u: &[[DoubleDouble; 2]]) -> impl Iterator<Item = DoubleDouble> {
-    d.contact.iter().flat_map(move |edge| on_edge(d, edge).p(u))
+    d.contact.iter().flat_map(move |piece| exact_piece(d, piece).p(u))
 }
 
-/// A contact edge with the doubles that it has, in other numbers.
-pub fn on_edge<S: Scalar + From<f64>>(d: &Discretization, edge: &ContactFace) -> ContactFace<S> {
+/// A piece with the doubles that it has, in other numbers.
+pub fn exact_piece<S: Scalar + From<f64>>(d: &Discretization, piece: &Piece) -> Piece<S> {
     let exact = <S as From<f64>>::from;
-    with_numbers(d, edge, (exact(edge.length), edge.normal.map(exact), exact(edge.gamma)))
+    piece_with(d, piece, |side, _| (exact(side.length), side.normal.map(exact), exact(side.gamma)))
 }
 
-/// A contact edge with this length, normal and gamma.
-pub fn with_numbers<S: Scalar + From<f64>>(
+/// A piece whose sides have these lengths of their edges, normals and gammas.
+pub fn piece_with<S: Scalar + From<f64>>(
     d: &Discretization,
-    edge: &ContactFace,
-    numbers: (S, Vector2<S>, S),
-) -> ContactFace<S> {
-    let t = edge.edge.triangle;
-    let triangle = exactly(d.space.mesh().triangle(t));
-    let material = d.problem.material.of(t).map(<S as From<f64>>::from);
-    edge.in_numbers((&triangle, &material), numbers)
+    piece: &Piece,
+    numbers: impl Fn(&Side, &Stretch) -> (S, Vector2<S>, S),
+) -> Piece<S> {
+    let data = |(side, stretch): (&Side, &Stretch)| {
+        let (length, normal, gamma) = numbers(side, stretch);
+        let t = stretch.edge.triangle;
+        let material = d.problem.material.of(t).map(<S as From<f64>>::from);
+        SideData { triangle: exactly(d.space.mesh().triangle(t)), material, length, normal, gamma }
+    };
+    let sides: Vec<SideData<S>> =
+        piece.sides.iter().zip(&piece.geometry.stretches).map(data).collect();
+    Piece::new(&piece.geometry, &d.space, piece.start, &sides)
 }
 
 /// A triangle of doubles in other numbers, moved so that its first vertex is the origin: far from there sides lose digits.

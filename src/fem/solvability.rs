@@ -12,9 +12,9 @@ use nalgebra::Vector2;
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
-use super::contact_face::ContactFace;
 use super::dense::{dot, inner, least_squares, norm, singular_vectors};
 use super::mesh::NO_ANGLE;
+use super::piece::Piece;
 use super::rigid::{FreeMotion, NEGLIGIBLE, Parts, null_space, subtract};
 use super::space::Space;
 
@@ -72,18 +72,19 @@ pub(super) fn rows(
     motions: &[FreeMotion],
     parts: &Parts,
     space: &Space,
-    contact: &[ContactFace],
+    contact: &[Piece],
     taken: impl Fn(usize) -> bool,
 ) -> Vec<EdgeRows> {
-    let of_part = |(e, edge): &(usize, &ContactFace)| {
-        taken(*e) && parts.of_triangle()[edge.edge.triangle] == motions[0].part
+    let of_part = |(e, piece): &(usize, &Piece)| {
+        taken(*e) && parts.of_triangle()[piece.edge().triangle] == motions[0].part
     };
-    let of_edge = |(e, edge): (usize, &ContactFace)| {
-        let row = |(node, direction): (usize, &Vector2<f64>)| {
+    let of_edge = |(e, piece): (usize, &Piece)| {
+        let row = |(node, direction): (usize, Vector2<f64>)| {
             let at = |motion: &FreeMotion| Vector2::from(motion.at(space.nodes()[node]));
-            motions.iter().map(|motion| at(motion).dot(direction)).collect()
+            motions.iter().map(|motion| at(motion).dot(&direction)).collect()
         };
-        (e, space.edge_nodes(edge.edge).into_iter().zip(&edge.directions).map(row).collect())
+        let nodes = space.edge_nodes(piece.edge()).into_iter();
+        (e, nodes.zip(piece.geometry.directions()).map(row).collect())
     };
     contact.iter().enumerate().filter(of_part).map(of_edge).collect()
 }
@@ -109,7 +110,7 @@ pub fn slides(
     parts: &Parts,
     space: &Space,
     load: &[[f64; 2]],
-    contact: &[ContactFace],
+    contact: &[Piece],
     rounding: f64,
 ) -> Result<Slides, NotHeld> {
     let mut sliding = Vec::new();

@@ -2,7 +2,8 @@
 
 use super::case::Case;
 use super::numbers::short;
-use crate::fem::contact_line::{self, Gamma};
+use crate::fem::ContactLine;
+use crate::fem::contact_line::Gamma;
 use crate::fem::tree::Bounds;
 use crate::fem::{Degree, Space};
 use crate::quote;
@@ -68,17 +69,18 @@ fn named_obstacle(case: &Case, boundary: &str) -> Option<String> {
 /// Says where the body is deepest in its obstacle before it is loaded, if it is.
 pub(super) fn overlap(case: &Case) -> Option<String> {
     let space = Space::new(&case.problem.mesh, Degree::One);
-    let line = contact_line::assemble(&case.problem, &space, 1.0).ok()?;
+    let line = ContactLine::new(&case.problem, &space).ok()?;
     let points =
-        line.iter().flat_map(|e| e.gap.iter().zip(&e.places).map(move |(g, x)| (*g, *x, e)));
+        line.pieces().flat_map(|piece| piece.nodes.iter().map(move |n| (n.gap, n.place, piece)));
     let least = points.min_by(|a, b| a.0.total_cmp(&b.0));
-    let (gap, [x, y], edge) = least.filter(|p| p.0 < -NO_OVERLAP * size(case))?;
+    let (gap, [x, y], piece) = least.filter(|p| p.0 < -NO_OVERLAP * size(case))?;
     let length = length_unit(case);
-    let (obstacle, question) = match named_obstacle(case, &edge.boundary) {
+    let boundary = &piece.first().boundary;
+    let (obstacle, question) = match named_obstacle(case, boundary) {
         Some(obstacle) => {
             (obstacle, ": is it in the right place, and is the body on the right side of it?")
         }
-        None => (format!("the obstacle of {}", quote::quoted(&edge.boundary, '\'')), ""),
+        None => (format!("the obstacle of {}", quote::quoted(boundary, '\'')), ""),
     };
     Some(format!(
         "the body overlaps {obstacle} by {}{length} at ({}, {}) before loading{question}",

@@ -51,9 +51,45 @@ impl<S: Scalar, const N: usize, const M: usize> ContactEdge<S, N, M> {
         material: &Material<S>,
         gamma: S,
     ) -> Self {
+        let trace = |row: &mut [Vector2<S>; N], a: usize| row[E::edge_nodes(i)[a]] += directions[a];
+        let ends = [S::from(0), S::from(1)];
+        Self::with_traces::<E>((triangle, i), ends, n, directions, (material, gamma), trace)
+    }
+
+    /// [`ContactEdge::along`] on a part of the edge, on which the nodes of a piece lie at `places`: P0 and s are the polynomials of
+    /// degree p and 1 on the piece that have the values n~ . v - gamma s(v) at its nodes and n~ . sigma(v) n at its ends.
+    #[cfg(not(kani))]
+    pub fn between<E: Element<N, M>>(
+        triangle: &Triangle<S>,
+        i: usize,
+        places: [S; M],
+        n: Vector2<S>,
+        directions: &[Vector2<S>; M],
+        material: &Material<S>,
+        gamma: S,
+    ) -> Self {
+        let trace = |row: &mut [Vector2<S>; N], a: usize| {
+            for (entry, shape) in row.iter_mut().zip(E::values(on_edge(i, places[a]))) {
+                *entry += directions[a] * shape;
+            }
+        };
+        let ends = [places[0], places[1]];
+        Self::with_traces::<E>((triangle, i), ends, n, directions, (material, gamma), trace)
+    }
+
+    /// The functionals with s at the `ends` of the piece; `trace` adds n~ . v at a node of the piece.
+    #[cfg(not(kani))]
+    fn with_traces<E: Element<N, M>>(
+        (triangle, i): (&Triangle<S>, usize),
+        ends: [S; 2],
+        n: Vector2<S>,
+        directions: &[Vector2<S>; M],
+        (material, gamma): (&Material<S>, S),
+        trace: impl Fn(&mut [Vector2<S>; N], usize),
+    ) -> Self {
         let barycentric = triangle.barycentric_gradients();
         let at_end = |a: usize| {
-            let gradients = E::gradients(on_edge(i, S::from(a as i32)), barycentric);
+            let gradients = E::gradients(on_edge(i, ends[a]), barycentric);
             gradients.map(|g| material.traction_of_shape(g, n, directions[a]))
         };
         let sigma_n = [at_end(0), at_end(1)];
@@ -63,8 +99,8 @@ impl<S: Scalar, const N: usize, const M: usize> ContactEdge<S, N, M> {
                 -((start * (S::from(1) - s) + end * s) * gamma)
             })
         });
-        for ((row, node), d) in p0.iter_mut().zip(E::edge_nodes(i)).zip(directions) {
-            row[node] += d;
+        for (a, row) in p0.iter_mut().enumerate() {
+            trace(row, a);
         }
         ContactEdge { p0, sigma_n }
     }

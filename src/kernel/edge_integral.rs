@@ -139,6 +139,34 @@ where
     sum
 }
 
+/// The integrals with P in place of \[P\]+, where an interface pulls as well as it pushes.
+pub fn bilateral<E, S, const N: usize, const M: usize>(p: [S; M]) -> EdgeIntegrals<S, M>
+where
+    E: Element<N, M>,
+    S: Scalar,
+{
+    let hessian: [[S; M]; M] =
+        std::array::from_fn(|a| std::array::from_fn(|b| mass::<E, S, N, M>(a, b)));
+    let gradient: [S; M] = hessian.map(|row| (0..M).fold(S::from(0), |sum, b| sum + row[b] * p[b]));
+    let energy = (0..M).fold(S::from(0), |sum, a| sum + gradient[a] * p[a]) / S::from(2);
+    EdgeIntegrals { energy, gradient, hessian, active: S::from(1) }
+}
+
+/// int N_a N_b over \[0, 1\].
+fn mass<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(a: usize, b: usize) -> S {
+    let (same, ends) = (a == b, a < 2 && b < 2);
+    if E::DEGREE == 1 {
+        return S::from(if same { 2 } else { 1 }) / S::from(6);
+    }
+    let thirtieths = match (same, ends) {
+        (true, true) => 4,
+        (true, false) => 16,
+        (false, true) => -1,
+        (false, false) => 2,
+    };
+    S::from(thirtieths) / S::from(30)
+}
+
 /// The Bregman distance of 1/2 \[.\]+^2 from `a` to `b`: 1/2 \[b\]+^2 - 1/2 \[a\]+^2 - \[a\]+ (b - a), written as the sum
 /// 1/2 (\[b\]+ - \[a\]+)^2 + \[a\]+ \[-b\]+ of two terms that are never negative, so that nothing cancels. It is the part of
 /// the change of J_h along a step that is not linear.
@@ -351,6 +379,26 @@ mod tests {
             let of_p2 = p2.gradient[a] + p2.gradient[2] / 2.0;
             assert_abs_diff_eq!(p1.gradient[a], of_p2, epsilon = ROUNDING);
         }
+    }
+
+    #[test]
+    fn what_pulls_as_well_is_integrated_as_a_rule_does_it() {
+        // Three points of Gauss are exact; the control: two of them are not, for P2.
+        let by_rule = |p: [f64; 3], points: &[(f64, f64)]| {
+            points
+                .iter()
+                .map(|&(s, w)| w * value_at::<P2, f64, 6, 3>(p, s).powi(2) / 2.0)
+                .sum::<f64>()
+        };
+        let half = 0.5 / 3.0_f64.sqrt();
+        for p in [[1.0, -2.0, 0.3], [-1.0, 3.0, 1.0], [0.0, 0.0, 1.0]] {
+            let e = bilateral::<P2, f64, 6, 3>(p);
+            assert_abs_diff_eq!(e.energy, by_rule(p, &gauss3(0.0, 1.0)), epsilon = 10.0 * ROUNDING);
+            assert!((e.energy - by_rule(p, &[(0.5 - half, 0.5), (0.5 + half, 0.5)])).abs() > 1e-3);
+        }
+        let positive = P1::exact([1.0, 2.0]);
+        assert_eq!(bilateral::<P1, f64, 3, 2>([1.0, 2.0]).hessian, positive.hessian);
+        assert_eq!(bilateral::<P1, f64, 3, 2>([-1.0, -2.0]).energy, positive.energy);
     }
 
     /// energy(Q) - energy(P) - gradient(P) . (Q - P), as the definition has it.

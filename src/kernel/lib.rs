@@ -15,6 +15,7 @@
 //! | [`triangle`] | T, its area, normals and barycentric gradients |
 //! | [`element`] | V^h: P1, and P2 of Remark 3.7; a(.,.) on one triangle |
 //! | [`contact`] | conditions (2), equation (5), P_gamma, lambda^h |
+//! | [`law`] | (5) as an equation for contact, and for interfaces that also pull |
 //! | [`contact_edge`] | P_gamma and sigma_n as functionals on one edge of Gamma_C |
 //! | [`edge_integral`] | the integrals over one edge in (8) and in J_h |
 //! | [`squares`] | not in the paper: the energies of a strain and of a stress as sums of squares |
@@ -32,6 +33,7 @@ pub mod double_double;
 pub mod edge_integral;
 pub mod element;
 pub mod enclosing;
+pub mod law;
 pub mod material;
 pub mod positive_part;
 pub mod scalar;
@@ -46,6 +48,7 @@ pub use double_double::DoubleDouble;
 pub use edge_integral::EdgeIntegrals;
 pub use element::{Element, P1, P2};
 pub use enclosing::Enclosing;
+pub use law::Response;
 pub use material::{Material, Plane, Stress};
 pub use positive_part::{positive_part, positive_part_slope};
 pub use scalar::Scalar;

@@ -8,7 +8,6 @@
 
 use std::sync::Arc;
 
-use super::body::block;
 use super::enclosure::{Enclosure, Unproved, Verifier};
 use super::factor::Factor;
 use super::intervals::Arithmetic;
@@ -296,14 +295,12 @@ impl TrueResidual {
         let mut r = at.linear.clone();
         let one = |v: &[f64]| v.iter().map(|v| v.abs()).sum::<f64>();
         let mut forces = one(d.load.as_flattened());
-        for (e, edge) in d.contact.iter().enumerate() {
-            let integrals = d.rule.integrals(block(&at.p, e, system.nodes()));
-            let weight = edge.length / edge.gamma;
-            forces += weight * one(&integrals.gradient);
-            system.functionals(e, |row, a, entry| {
-                r[row] += entry * weight * integrals.gradient[a];
-            });
+        let mut contact = Vec::with_capacity(at.p.len());
+        for piece in &d.contact {
+            contact.extend(piece.contribution(&d.rule, &at.p[piece.functionals()]).force);
         }
+        forces += one(&contact);
+        system.add_forces(&contact, &mut r);
         if forces == 0.0 {
             forces = one(at.forces.as_flattened());
         }

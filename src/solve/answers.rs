@@ -27,9 +27,8 @@ use nalgebra::Vector2;
 
 use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
-use crate::fem::element::{roots, value_at};
 use crate::fem::mesh::{NO_ANGLE, length};
-use crate::fem::{ContactFace, EdgeRule};
+use crate::fem::{Degree, EdgeRule, Piece};
 use crate::kernel::DoubleDouble;
 use crate::kernel::positive_part;
 
@@ -106,13 +105,11 @@ pub(crate) fn energy_balance(
         supports += a * x + b * y;
     }
     let mut contact = 0.0;
-    for (edge, p) in d.contact.iter().zip(p) {
-        let sigma = edge.sigma_n(|node| u[node]);
-        let product = crate::kernel::contact_edge::integral_of_product(sigma, sigma);
-        contact += edge.gamma * edge.length * product;
-        let gradient = d.rule.integrals(p).gradient;
-        for a in 0..p.len() {
-            contact -= edge.length / edge.gamma * gradient[a] * (p[a].head() + edge.gap[a]);
+    for (piece, p) in d.contact.iter().zip(p) {
+        contact += piece.squared_stress(u);
+        let forces = piece.contribution(&d.rule, p).force;
+        for (i, (force, p)) in forces.iter().zip(p).enumerate() {
+            contact -= force * (p.head() + piece.gap_of(i));
         }
     }
     let largest = [strain, loads, supports, contact].map(f64::abs).into_iter().fold(0.0, f64::max);
@@ -137,11 +134,12 @@ pub(crate) fn recovered_pressure(d: &Discretization, p: &[Vec<DoubleDouble>]) ->
     let count = groups.iter().flatten().max().map_or(0, |last| last + 1);
     let (mut work, mut weight) = (vec![0.0; count], vec![0.0; count]);
     for ((edge, p), groups) in d.contact.iter().zip(p).zip(&groups) {
-        let hats = if p.len() == 2 || edge.curved { Hats::Whole } else { Hats::Halves };
-        let of_edge = hat_integrals(p, &d.rule, hats);
+        let is_whole = edge.degree == Degree::One || edge.geometry.curved;
+        let hats = if is_whole { Hats::Whole } else { Hats::Halves };
+        let of_edge = hat_integrals(edge.degree, p, &d.rule, hats);
         let of_one = hats.integrals();
         for (a, &group) in groups.iter().enumerate() {
-            work[group] += edge.length / edge.gamma * of_edge[a];
+            work[group] += edge.weight() * of_edge[a];
             weight[group] += edge.length * of_one[a];
         }
     }
@@ -183,13 +181,13 @@ impl Hats {
 }
 
 /// int_0^1 \[P\]+ phi_a by the rule of the method.
-fn hat_integrals(fine: &[DoubleDouble], rule: &EdgeRule, hats: Hats) -> [f64; 3] {
+fn hat_integrals(degree: Degree, fine: &[DoubleDouble], rule: &EdgeRule, hats: Hats) -> [f64; 3] {
     let mut sums = [0.0; 3];
     let p: Vec<f64> = fine.iter().map(|p| p.head()).collect();
     let mut add = |s: f64, weight: f64| {
         let value = match rule {
-            EdgeRule::Exact => value_at(&p, s),
-            EdgeRule::Gauss(_) => value_at(fine, s.into()).head(),
+            EdgeRule::Exact => degree.value_at(&p, s),
+            EdgeRule::Gauss(_) => degree.value_at(fine, s.into()).head(),
         };
         let value = positive_part(value);
         let hats = hats.at(s);
@@ -198,7 +196,7 @@ fn hat_integrals(fine: &[DoubleDouble], rule: &EdgeRule, hats: Hats) -> [f64; 3]
     match rule {
         EdgeRule::Gauss(points) => points.iter().for_each(|&(s, weight)| add(s, weight)),
         EdgeRule::Exact => {
-            let mut cuts = roots(&p);
+            let mut cuts = degree.roots(&p);
             cuts.extend([0.0, 0.5, 1.0]);
             cuts.sort_unstable_by(f64::total_cmp);
             for pair in cuts.windows(2) {
@@ -221,10 +219,10 @@ fn groups(d: &Discretization) -> Vec<Vec<usize>> {
     let mut count = 0;
     let mut groups = Vec::with_capacity(d.contact.len());
     for edge in &d.contact {
-        let nodes = d.space.edge_nodes(edge.edge);
+        let nodes = d.space.edge_nodes(edge.edge());
         let group = |a: usize| {
-            let known = of_end.entry((nodes[a], &*edge.boundary)).or_default();
-            let direction = edge.directions[a];
+            let known = of_end.entry((nodes[a], &**edge.boundary())).or_default();
+            let direction = edge.geometry.nodes[a].direction;
             match known.iter().find(|(other, _)| same(*other, direction)) {
                 Some(&(_, group)) => group,
                 None => {
@@ -257,9 +255,9 @@ pub(crate) fn contact_boundaries(
     let mut all: Vec<ContactBoundary> = Vec::new();
     let mut end_of_last = None;
     for ((edge, p), recovered) in d.contact.iter().zip(p).zip(recovered) {
-        if all.last().is_none_or(|last| last.boundary != *edge.boundary) {
+        if all.last().is_none_or(|last| last.boundary != **edge.boundary()) {
             end_of_last = None;
-            all.push(ContactBoundary::empty(&edge.boundary));
+            all.push(ContactBoundary::empty(edge.boundary()));
         }
         if let Some(boundary) = all.last_mut() {
             boundary.add(d, u, edge, p, recovered, &mut end_of_last);
@@ -289,46 +287,45 @@ impl ContactBoundary {
         &mut self,
         d: &Discretization,
         u: &[[f64; 2]],
-        edge: &ContactFace,
+        edge: &Piece,
         p: &[DoubleDouble],
         recovered: &[f64],
         open: &mut Option<usize>,
     ) {
-        let nodes = d.space.edge_nodes(edge.edge);
+        let nodes = d.space.edge_nodes(edge.edge());
         let places: Vec<[f64; 2]> = nodes.iter().map(|&node| d.space.nodes()[node]).collect();
-        let integrals = d.rule.integrals(p);
+        let contact = edge.contribution(&d.rule, p);
         let mut openings = vec![0.0; p.len()];
         for a in 0..p.len() {
-            let (g, [x, y], n) = (integrals.gradient[a], places[a], edge.directions[a]);
-            let size = edge.length / edge.gamma * g;
+            let (size, [x, y], n) = (contact.force[a], places[a], edge.geometry.nodes[a].direction);
             let force = n.map(|c| -size * c);
             self.force += size;
             self.resultant = [self.resultant[0] + force[0], self.resultant[1] + force[1]];
             self.moment += x * force[1] - y * force[0];
             let v = u[nodes[a]];
-            openings[a] = v[0] * n[0] + v[1] * n[1] - edge.gap[a];
+            openings[a] = v[0] * n[0] + v[1] * n[1] - edge.geometry.nodes[a].gap;
             if recovered[a] > self.peak_pressure {
                 (self.peak_pressure, self.peak_at) = (recovered[a], places[a]);
             }
         }
-        self.length += edge.length * integrals.active;
+        self.length += contact.active;
         let place = |s: f64| {
             let [a, b] = [places[0], places[1]];
             [0, 1].map(|c| (1.0 - s) * a[c] + s * b[c])
         };
         for s in [0.0, 0.25, 0.5, 0.75, 1.0] {
-            let depth = value_at(&openings, s);
+            let depth = edge.degree.value_at(&openings, s);
             if depth > self.penetration {
                 (self.penetration, self.penetration_at) = (depth, place(s));
             }
         }
         let p: Vec<f64> = p.iter().map(|p| p.head()).collect();
-        let mut cuts = roots(&p);
+        let mut cuts = edge.degree.roots(&p);
         cuts.extend([0.0, 1.0]);
         cuts.sort_unstable_by(f64::total_cmp);
         let [start, end] = [nodes[0], nodes[1]];
         for pair in cuts.windows(2) {
-            if !(value_at(&p, (pair[0] + pair[1]) / 2.0) > 0.0) {
+            if !(edge.degree.value_at(&p, (pair[0] + pair[1]) / 2.0) > 0.0) {
                 continue;
             }
             let [from, to] = [place(pair[0]), place(pair[1])];

@@ -9,13 +9,14 @@ use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
 use super::accuracy::{Pass, Route};
-use super::body::{Body, ContactEnergy, Derivatives, Residual, Step, block, derivatives};
+use super::body::{Body, ContactEnergy, Derivatives, Residual, Step, blocks, derivatives};
 use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};
 use super::system::System;
 use crate::fem::clearance;
 use crate::fem::dense::norm;
+use crate::fem::piece::Stretch;
 use crate::fem::rigid::Parts;
 use crate::kernel::DoubleDouble;
 
@@ -151,12 +152,14 @@ impl Full<'_, '_, '_, '_, '_> {
         }))
     }
 
-    /// How much stiffer than the body in shear, the sum of |E| / (gamma mu), the springs of all edges are: what is known where
+    /// How much stiffer than the body in shear, the sum of |E| / (gamma mu), the springs of all pieces are: what is known where
     /// the body has no compliance, because nothing else holds it.
     fn springs(&self) -> f64 {
         let d = self.route.system.d;
-        let stiffer = d.contact.iter().map(|edge| {
-            edge.length / (edge.gamma * d.problem.material.of(edge.edge.triangle).mu())
+        let mu = |stretch: &Stretch| d.problem.material.of(stretch.edge.triangle).mu();
+        let stiffer = d.contact.iter().map(|piece| {
+            let softest = piece.geometry.stretches.iter().map(mu).fold(f64::INFINITY, f64::min);
+            piece.length / (piece.gamma * softest)
         });
         stiffer.sum::<f64>().max(1.0)
     }
@@ -224,9 +227,9 @@ impl Body for Full<'_, '_, '_, '_, '_> {
         let dy = self.values_of_p0(&d);
         let slope: f64 = gradient.iter().zip(&d).map(|(r, d)| r * d).sum();
         // d^T A d, where (A + B^T Psi'' B) d = -r with the Psi'' that was factored: nothing is lost where A d cancels.
-        let springs: f64 = (hessian.iter().enumerate())
-            .map(|(e, h)| {
-                let dy = DVector::from_column_slice(block(&dy, e, h.nrows()));
+        let springs: f64 = blocks(&hessian)
+            .map(|(values, h)| {
+                let dy = DVector::from_column_slice(&dy[values]);
                 dy.dot(&(h * &dy))
             })
             .sum();

@@ -1,55 +1,58 @@
-//! The ingredients of (8) in balls: the contact edges, kappa, the components of fields and functionals in the frames of their
+//! The ingredients of (8) in balls: the pieces of Gamma_C, kappa, the components of fields and functionals in the frames of their
 //! nodes, their products.
 
 use std::collections::BTreeMap;
 
 use super::system::System;
+use crate::fem::piece::{Side, Stretch};
 use crate::fem::residual;
-use crate::fem::{ContactFace, Discretization};
+use crate::fem::{Discretization, Piece};
 use crate::kernel::ball::{PreciseBall, larger, up};
 use crate::kernel::contact_edge::traction_stiffness;
 
-/// The contact edges in balls: length and normal as the vertices have them.
-pub fn lines(d: &Discretization) -> Vec<ContactFace<PreciseBall>> {
-    let in_balls = |edge: &ContactFace| {
-        let triangle =
-            residual::exactly::<PreciseBall>(d.space.mesh().triangle(edge.edge.triangle));
-        let normal: [PreciseBall; 2] = triangle.scaled_normal(edge.edge.local).into();
+/// The pieces of Gamma_C in balls: lengths and normals as the vertices have them.
+pub fn pieces(d: &Discretization) -> Vec<Piece<PreciseBall>> {
+    let numbers = |side: &Side, stretch: &Stretch| {
+        let triangle = d.space.mesh().triangle(stretch.edge.triangle);
+        let triangle = residual::exactly::<PreciseBall>(triangle);
+        let normal: [PreciseBall; 2] = triangle.scaled_normal(stretch.edge.local).into();
         let length = dot(normal, normal).sqrt();
-        let normal = normal.map(|c| c / length).into();
-        residual::with_numbers(d, edge, (length, normal, PreciseBall::from(edge.gamma)))
+        (length, normal.map(|c| c / length).into(), PreciseBall::from(side.gamma))
     };
-    d.contact.iter().map(in_balls).collect()
+    d.contact.iter().map(|piece| residual::piece_with(d, piece, numbers)).collect()
 }
 
 /// kappa of Theorem 2.3, rounded up. The directions of contact are doubles, unit vectors to a rounding error only.
-pub(super) fn kappa(d: &Discretization, lines: &[ContactFace<PreciseBall>]) -> f64 {
+pub(super) fn kappa(d: &Discretization, pieces: &[Piece<PreciseBall>]) -> f64 {
     let degree = d.space.degree();
     let mut kappas: BTreeMap<usize, PreciseBall> = BTreeMap::new();
-    for line in lines {
-        let t = line.edge.triangle;
-        let [start, end] = [0, 1].map(|a| line.directions[a].map(PreciseBall::from));
-        let direction = if line.along_normal {
-            Some(line.normal)
-        } else {
-            (line.directions[0] == line.directions[1]).then_some(start)
-        };
-        let factor = if line.along_normal {
-            PreciseBall::from(1)
-        } else {
-            let along: Vec<[PreciseBall; 2]> =
-                line.directions.iter().map(|n| n.map(PreciseBall::from).into()).collect();
-            let off = along.iter().map(|&n| (dot(n, n) - PreciseBall::from(1)).magnitude());
-            let off = PreciseBall::from(8.0 * off.fold(0.0, larger));
-            let turning = degree.turning_factor(start.dot(&end));
-            turning * (PreciseBall::from(1) + off) + off
-        };
-        let material = d.problem.material.of(t).map(PreciseBall::from);
-        let stiffness = traction_stiffness(&material, line.normal, direction, PreciseBall::sqrt);
-        let area = residual::exactly::<PreciseBall>(d.space.mesh().triangle(t)).double_area();
-        let (length, area) = (factor * line.length, area / PreciseBall::from(2));
-        *kappas.entry(t).or_insert(PreciseBall::from(0)) +=
-            degree.coercivity_constant(stiffness, line.gamma, length, area);
+    for piece in pieces {
+        let geometry = &piece.geometry;
+        let along: Vec<[PreciseBall; 2]> =
+            geometry.directions().map(|n| n.map(PreciseBall::from).into()).collect();
+        for (side, stretch) in piece.sides.iter().zip(&geometry.stretches) {
+            let t = stretch.edge.triangle;
+            let direction = if geometry.along_normal {
+                Some(side.normal)
+            } else {
+                (!geometry.turns()).then_some(along[0].into())
+            };
+            let factor = if geometry.along_normal {
+                PreciseBall::from(1)
+            } else {
+                let off = along.iter().map(|&n| (dot(n, n) - PreciseBall::from(1)).magnitude());
+                let off = PreciseBall::from(8.0 * off.fold(0.0, larger));
+                let turning = degree.turning_factor(dot(along[0], along[1]));
+                turning * (PreciseBall::from(1) + off) + off
+            };
+            let material = d.problem.material.of(t).map(PreciseBall::from);
+            let stiffness =
+                traction_stiffness(&material, side.normal, direction, PreciseBall::sqrt);
+            let area = residual::exactly::<PreciseBall>(d.space.mesh().triangle(t)).double_area();
+            let (length, area) = (factor * side.length, area / PreciseBall::from(2));
+            *kappas.entry(t).or_insert(PreciseBall::from(0)) +=
+                degree.coercivity_constant(stiffness, side.gamma, length, area);
+        }
     }
     kappas.values().map(|kappa| kappa.upper()).fold(0.0, larger)
 }

@@ -1,7 +1,8 @@
-//! The interface between Newton's method ([`super::newton`]) and the contact edges and the body, whichever way its equations
+//! The interface between Newton's method ([`super::newton`]) and the pieces of Gamma_C and the body, whichever way its equations
 //! are solved.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,46 +10,44 @@ use super::SolveError;
 use crate::fem::discretization::Discretization;
 use crate::kernel::DoubleDouble;
 
-/// The contact edges as Newton's method needs them.
+/// The pieces of Gamma_C as Newton's method needs them.
 pub trait ContactEnergy {
     /// The number of them.
     fn count(&self) -> usize;
-    /// The nodes of each: two or three.
-    fn nodes(&self) -> usize;
-    /// The gradient and the Hessian of Psi on edge `e`, where P has the nodal values `p`.
+    /// The numbers of the values of P on piece `e`, among those of all pieces.
+    fn values(&self, e: usize) -> Range<usize>;
+    /// The gradient and the Hessian of Psi on piece `e`, where P has the values `p`.
     fn derivatives(&self, e: usize, p: &[DoubleDouble]) -> (Vec<f64>, DMatrix<f64>);
-    /// The Bregman distance of Psi on edge `e` from `p` to `q`.
+    /// The Bregman distance of Psi on piece `e` from `p` to `q`.
     fn bregman(&self, e: usize, p: &[DoubleDouble], q: &[DoubleDouble]) -> f64;
 }
 
-/// Psi of a discretization; edges that press in no solution have none.
+/// Psi of a discretization; pieces that press in no solution have none.
 impl ContactEnergy for Discretization<'_> {
     fn count(&self) -> usize {
         self.contact.len()
     }
 
-    fn nodes(&self) -> usize {
-        self.space.degree().nodes_per_edge()
+    fn values(&self, e: usize) -> Range<usize> {
+        self.contact[e].functionals()
     }
 
     fn derivatives(&self, e: usize, p: &[DoubleDouble]) -> (Vec<f64>, DMatrix<f64>) {
         if self.is_idle(e) {
             return (vec![0.0; p.len()], DMatrix::zeros(p.len(), p.len()));
         }
-        let integrals = self.rule.integrals(p);
-        let weight = self.contact[e].length / self.contact[e].gamma;
-        (integrals.gradient.iter().map(|g| weight * g).collect(), weight * integrals.hessian)
+        let contribution = self.contact[e].contribution(&self.rule, p);
+        (contribution.force, contribution.tangent)
     }
 
     fn bregman(&self, e: usize, p: &[DoubleDouble], q: &[DoubleDouble]) -> f64 {
-        let weight = self.contact[e].length / self.contact[e].gamma;
-        if self.is_idle(e) { 0.0 } else { weight * self.rule.bregman(p, q) }
+        if self.is_idle(e) { 0.0 } else { self.contact[e].bregman(&self.rule, p, q) }
     }
 }
 
 /// The body with its loads, at an iterate.
 pub trait Body {
-    /// y, the values of P at the nodes of each edge, in double-doubles: between the nodes P may be far smaller.
+    /// y, the values of P at the nodes of each piece, in double-doubles: between the nodes P may be far smaller.
     fn y(&self) -> Cow<'_, [DoubleDouble]>;
     /// The residual of (8) at the iterate, relative, where Psi has the derivatives `at`; and how much of it may be noise.
     fn residual(&self, at: &Derivatives) -> Residual;
@@ -82,7 +81,7 @@ pub struct Derivatives {
     pub stiffness: f64,
     /// Nodal values of the gradient.
     pub gradient: Vec<f64>,
-    /// The Hessian, edge by edge.
+    /// The Hessian, piece by piece.
     pub hessian: Vec<DMatrix<f64>>,
 }
 
@@ -104,7 +103,7 @@ pub fn derivatives(
     let mut gradient = Vec::with_capacity(y.len());
     let mut hessian = Vec::with_capacity(edges.count());
     for e in 0..edges.count() {
-        let p: Vec<DoubleDouble> = block(y, e, edges.nodes()).iter().map(|&p| p.into()).collect();
+        let p: Vec<DoubleDouble> = y[edges.values(e)].iter().map(|&p| p.into()).collect();
         let (g, h) = edges.derivatives(e, &p);
         gradient.extend(g);
         hessian.push(h);
@@ -122,13 +121,18 @@ impl Derivatives {
         }
     }
 
+    /// The blocks of the Hessian, each with the numbers of its values.
+    pub(super) fn blocks(&self) -> impl Iterator<Item = (Range<usize>, &DMatrix<f64>)> {
+        blocks(&self.hessian)
+    }
+
     /// The product of the Hessian with nodal values.
     pub(super) fn hessian_times(&self, v: &[f64]) -> Vec<f64> {
-        let product = |(e, h): (usize, &DMatrix<f64>)| {
-            let product = h * DVector::from_column_slice(block(v, e, h.nrows()));
+        let product = |(values, h): (Range<usize>, &DMatrix<f64>)| {
+            let product = h * DVector::from_column_slice(&v[values]);
             product.iter().copied().collect::<Vec<f64>>()
         };
-        self.hessian.iter().enumerate().flat_map(product).collect()
+        self.blocks().flat_map(product).collect()
     }
 
     /// The derivatives at y of springs with this Hessian that pull as well as push.
@@ -138,7 +142,14 @@ impl Derivatives {
     }
 }
 
-/// The `nodes` values of edge `e`.
-pub fn block<T>(v: &[T], e: usize, nodes: usize) -> &[T] {
-    &v[e * nodes..][..nodes]
+/// Blocks that follow each other along a diagonal, each with the numbers of its rows.
+pub(super) fn blocks(
+    diagonal: &[DMatrix<f64>],
+) -> impl Iterator<Item = (Range<usize>, &DMatrix<f64>)> {
+    let mut end = 0;
+    diagonal.iter().map(move |h| {
+        let start = end;
+        end += h.nrows();
+        (start..end, h)
+    })
 }

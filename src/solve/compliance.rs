@@ -1,9 +1,12 @@
 //! The compliance of the body as contact sees it: G = B A^-1 B^T = X^T X with X = L^-1 B^T, from the factor A = L L^T.
 //!
-//! A row of B belongs to a node of a contact edge and touches the unknowns of the triangle that owns it. These lie on one
-//! path of the elimination tree to its root, so the columns of X that belong to the edge are zero off that path. Inside, edges
+//! A row of B belongs to a node of a piece of Gamma_C and touches the unknowns of its triangles, which are neighbours of each
+//! other. These lie on one path of the elimination tree to its root, so the columns of X that belong to the piece are zero off that
+//! path. Inside, pieces
 //! are taken in the order in which a walk through the tree meets the supernodes where their paths begin; then the columns that
 //! are not zero in the rows of a supernode are neighbours, and X is one dense block a supernode.
+
+use std::ops::Range;
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
@@ -11,6 +14,7 @@ use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, Col, Mat, Par};
 
 use super::factor::{Factor, Structure};
+use crate::fem::matrix::OutsidePattern;
 
 /// Which supernodes the contact functionals reach, and which of the functionals each.
 pub struct Reach {
@@ -23,12 +27,12 @@ pub struct Reach {
 struct Reached {
     supernode: usize,
     /// The places of the functionals whose columns of X are not zero here.
-    functionals: std::ops::Range<usize>,
+    functionals: Range<usize>,
 }
 
 impl Reach {
-    /// For contact edges with `per_edge` functionals each, `unknowns` being those that the functionals of an edge touch.
-    pub fn new(structure: &Structure, unknowns: &[Vec<usize>], per_edge: usize) -> Self {
+    /// For pieces with their functionals and the unknowns that these touch, in the order of the functionals.
+    pub fn new(structure: &Structure, pieces: &[(Range<usize>, Vec<usize>)]) -> Self {
         let count = structure.supernodes();
         let mut supernode_of = vec![0; structure.size()];
         for s in 0..count {
@@ -38,32 +42,33 @@ impl Reach {
             .map(|s| structure.rows_below(s).first().map(|&row| supernode_of[row]))
             .collect();
         let rank = postorder(&parent);
-        let first = |e: usize| unknowns[e].iter().min().map(|&row| supernode_of[row]);
-        let mut order: Vec<usize> = (0..unknowns.len()).collect();
+        let first = |e: usize| pieces[e].1.iter().min().map(|&row| supernode_of[row]);
+        let mut order: Vec<usize> = (0..pieces.len()).collect();
         order.sort_by_key(|&e| (first(e).map(|s| rank[s]), e));
-        let mut ranges: Vec<Option<std::ops::Range<usize>>> = vec![None; count];
-        for (position, &e) in order.iter().enumerate() {
+        let mut ranges: Vec<Option<Range<usize>>> = vec![None; count];
+        let mut places = vec![0; pieces.last().map_or(0, |(functionals, _)| functionals.end)];
+        let mut start = 0;
+        for e in order {
+            let functionals = pieces[e].0.clone();
+            let end = start + functionals.len();
             let mut at = first(e);
             while let Some(s) = at {
-                let (start, end) = (position * per_edge, (position + 1) * per_edge);
                 match &mut ranges[s] {
                     Some(range) => range.end = end,
                     None => ranges[s] = Some(start..end),
                 }
                 at = parent[s];
             }
+            for (place, functional) in (start..end).zip(functionals) {
+                places[functional] = place;
+            }
+            start = end;
         }
         let supernodes = ranges
             .into_iter()
             .enumerate()
             .filter_map(|(supernode, range)| Some(Reached { supernode, functionals: range? }))
             .collect();
-        let mut places = vec![0; order.len() * per_edge];
-        for (position, e) in order.into_iter().enumerate() {
-            for a in 0..per_edge {
-                places[e * per_edge + a] = position * per_edge + a;
-            }
-        }
         Reach { places, supernodes }
     }
 
@@ -134,12 +139,15 @@ pub struct Compliance<'a> {
 
 impl<'a> Compliance<'a> {
     /// From the factor, and the entries of B: `entries` calls its argument with the unknown, the functional and the entry.
+    ///
+    /// # Errors
+    /// An entry, or one that the factor makes of it, in rows that `reach` does not reach with its functional.
     pub fn new(
         structure: &'a Structure,
         factor: &Factor,
         reach: &'a Reach,
         entries: impl FnOnce(&mut dyn FnMut(usize, usize, f64)),
-    ) -> Self {
+    ) -> Result<Self, OutsidePattern> {
         let mut place_of_row = vec![None; structure.size()];
         for (place, r) in reach.supernodes.iter().enumerate() {
             place_of_row[structure.columns(r.supernode)].fill(Some(place));
@@ -153,12 +161,20 @@ impl<'a> Compliance<'a> {
             let r = &reach.supernodes[place];
             (structure.columns(r.supernode).start, r.functionals.start)
         };
+        let mut outside = None;
         entries(&mut |row, functional, entry| {
-            if let Some(place) = place_of_row[row] {
-                let (start, first) = start_of(place);
-                x[place][(row - start, reach.places[functional] - first)] += entry;
+            let column = reach.places[functional];
+            match place_of_row[row] {
+                Some(place) if reach.supernodes[place].functionals.contains(&column) => {
+                    let (start, first) = start_of(place);
+                    x[place][(row - start, column - first)] += entry;
+                }
+                _ => outside = Some(OutsidePattern { row, column: functional }),
             }
         });
+        if let Some(outside) = outside {
+            return Err(outside);
+        }
         let q = reach.functionals();
         let mut walked = Mat::zeros(q, q);
         for (place, r) in reach.supernodes.iter().enumerate() {
@@ -169,10 +185,11 @@ impl<'a> Compliance<'a> {
             let mut update = Mat::zeros(below.nrows(), c);
             matmul(update.as_mut(), Accum::Replace, below, x[place].as_ref(), 1.0, Par::Seq);
             for (i, &row) in structure.rows_below(r.supernode).iter().enumerate() {
-                // An ancestor of a supernode that is reached is reached.
-                let Some(target) = place_of_row[row] else { continue };
+                // An ancestor of a supernode that is reached is reached, by all of its functionals.
+                let outside = OutsidePattern { row, column: r.functionals.start };
+                let target = place_of_row[row].ok_or(outside)?;
                 let (start, first) = start_of(target);
-                let offset = r.functionals.start - first;
+                let offset = r.functionals.start.checked_sub(first).ok_or(outside)?;
                 for j in 0..c {
                     x[target][(row - start, offset + j)] -= update[(i, j)];
                 }
@@ -194,7 +211,7 @@ impl<'a> Compliance<'a> {
             let (a, b) = (reach.places[i], reach.places[j]);
             walked[(a.max(b), a.min(b))]
         });
-        Compliance { structure, reach, x, g }
+        Ok(Compliance { structure, reach, x, g })
     }
 
     /// X^T v
@@ -261,18 +278,12 @@ mod tests {
         let rule = EdgeRule::Exact;
         let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, rule).unwrap();
         let system = System::new(&d).unwrap();
-        let unknowns: Vec<Vec<usize>> = (0..d.contact.len()).map(|e| system.unknowns(e)).collect();
-        let reach = Reach::new(&system.structure, &unknowns, system.nodes());
+        let reach = Reach::new(&system.structure, &system.pieces());
         let factor = Factor::with(&system.structure, &system.matrix).unwrap();
-        let compliance = Compliance::new(&system.structure, &factor, &reach, |add| {
-            for e in 0..d.contact.len() {
-                system.functionals(e, |row, a, entry| add(row, e * system.nodes() + a, entry));
-            }
-        });
+        let entries = |add: &mut dyn FnMut(usize, usize, f64)| system.each_functional(add);
+        let compliance = Compliance::new(&system.structure, &factor, &reach, entries).unwrap();
         let mut columns = vec![vec![0.0; system.numbering.count]; reach.functionals()];
-        for e in 0..d.contact.len() {
-            system.functionals(e, |row, a, entry| columns[e * system.nodes() + a][row] += entry);
-        }
+        system.each_functional(|row, i, entry| columns[i][row] += entry);
         columns.iter_mut().for_each(|column| factor.forward(column));
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let largest = columns.iter().map(|c| dot(c, c)).fold(0.0, f64::max);
@@ -299,6 +310,30 @@ mod tests {
     fn x_and_g_are_what_substitutions_give() {
         is_what_substitutions_give(Degree::One);
         is_what_substitutions_give(Degree::Two);
+    }
+
+    #[test]
+    fn a_functional_off_the_elimination_path_is_an_error() {
+        let problem = problem();
+        let degree = Degree::One;
+        let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, EdgeRule::Exact);
+        let d = d.unwrap();
+        let system = System::new(&d).unwrap();
+        let pieces = system.pieces();
+        let reach = Reach::new(&system.structure, &pieces);
+        let factor = Factor::with(&system.structure, &system.matrix).unwrap();
+        let with = |row: usize, functional: usize| {
+            Compliance::new(&system.structure, &factor, &reach, |add| add(row, functional, 1.0))
+        };
+        assert!(with(pieces[0].1[0], 0).is_ok());
+        // The unknowns that are eliminated first of all are far from Gamma_C, or from one of the two sides.
+        for (functionals, _) in [&pieces[0], &pieces[pieces.len() - 1]] {
+            let functional = functionals.start;
+            let errors = (0..system.numbering.count).filter_map(|row| with(row, functional).err());
+            let errors: Vec<OutsidePattern> = errors.collect();
+            assert!(!errors.is_empty());
+            assert!(errors.iter().all(|error| error.column == functional));
+        }
     }
 
     #[test]

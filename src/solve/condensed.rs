@@ -15,6 +15,7 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 use faer::linalg::solvers::Solve;
@@ -23,7 +24,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
 use super::accuracy::{Pass, Route};
-use super::body::{Body, ContactEnergy, Derivatives, Residual, Step, block, derivatives};
+use super::body::{Body, ContactEnergy, Derivatives, Residual, Step, derivatives};
 use super::compliance::{Compliance, Reach};
 use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate, NOISE};
@@ -50,14 +51,17 @@ pub struct Condensed<'a, 'd, 'p> {
 
 impl<'a, 'd, 'p> Condensed<'a, 'd, 'p> {
     /// With the factor of A and without contact yet.
+    ///
+    /// # Errors
+    /// As [`Compliance::new`].
     pub fn new(
         system: &'a System<'d, 'p>,
         factor: Arc<Factor>,
         reach: &'a Reach,
         reference: f64,
-    ) -> Self {
+    ) -> Result<Self, SolveError> {
         let compliance =
-            Compliance::new(&system.structure, &factor, reach, |add| system.each_functional(add));
+            Compliance::new(&system.structure, &factor, reach, |add| system.each_functional(add))?;
         let mut place: BTreeMap<usize, usize> = BTreeMap::new();
         let mut forces = Vec::new();
         system.each_functional(|row, functional, entry| {
@@ -66,7 +70,7 @@ impl<'a, 'd, 'p> Condensed<'a, 'd, 'p> {
         });
         let w = vec![0.0; reach.functionals()];
         let rows = place.len();
-        Condensed { system, factor, compliance, forces, rows, reference, w, first: true }
+        Ok(Condensed { system, factor, compliance, forces, rows, reference, w, first: true })
     }
 }
 
@@ -141,12 +145,12 @@ impl Reduced<'_, '_, '_, '_> {
         norm(&sum) / self.route.reference
     }
 
-    /// The columns of R with their edges.
-    fn roots(at: &Derivatives) -> Vec<(usize, DVector<f64>)> {
-        let of = |(e, h): (usize, &DMatrix<f64>)| {
-            root(h.clone()).into_iter().map(move |column| (e, column))
+    /// The columns of R with the functionals of their pieces.
+    fn roots(at: &Derivatives) -> Vec<(Range<usize>, DVector<f64>)> {
+        let of = |(values, h): (Range<usize>, &DMatrix<f64>)| {
+            root(h.clone()).into_iter().map(move |column| (values.clone(), column))
         };
-        at.hessian.iter().enumerate().flat_map(of).collect()
+        at.blocks().flat_map(of).collect()
     }
 
     fn s(&self, at: &Derivatives) -> Vec<f64> {
@@ -162,12 +166,12 @@ impl Body for Reduced<'_, '_, '_, '_> {
 
     fn residual(&self, at: &Derivatives) -> Residual {
         let mut magnitudes = Vec::with_capacity(self.y.len());
-        for (e, hessian) in at.hessian.iter().enumerate() {
-            let nodes = hessian.nrows();
-            let size = |b: usize| self.y[e * nodes + b].head().abs() + self.start[e * nodes + b];
-            for a in 0..nodes {
-                let i = e * nodes + a;
-                let spread: f64 = (0..nodes).map(|b| hessian[(a, b)].abs() * size(b)).sum();
+        for (values, hessian) in at.blocks() {
+            let first = values.start;
+            let size = |b: usize| self.y[first + b].head().abs() + self.start[first + b];
+            for (a, i) in values.enumerate() {
+                let spread: f64 =
+                    (0..hessian.nrows()).map(|b| hessian[(a, b)].abs() * size(b)).sum();
                 magnitudes.push(self.route.w[i].abs() + at.gradient[i].abs() + spread);
             }
         }
@@ -183,13 +187,13 @@ impl Body for Reduced<'_, '_, '_, '_> {
         let roots = Self::roots(&at);
         let stiffness = newton::largest_eigenvalue(roots.len(), |x| {
             let mut rx = vec![0.0; self.y.len()];
-            for ((e, column), x) in roots.iter().zip(x) {
-                for (a, entry) in column.iter().enumerate() {
-                    rx[e * column.len() + a] += entry * x;
+            for ((values, column), x) in roots.iter().zip(x) {
+                for (i, entry) in values.clone().zip(column) {
+                    rx[i] += entry * x;
                 }
             }
             let grx = self.times_compliance(&rx);
-            roots.iter().map(|(e, column)| on_edge(column, &grx, *e)).collect()
+            roots.iter().map(|(values, column)| product(column, &grx[values.clone()])).collect()
         });
         // The body bends so far without contact that what contact leaves of it is rounding: it is held by contact, and the tangent
         // must know it.
@@ -215,22 +219,23 @@ impl Body for Reduced<'_, '_, '_, '_> {
             if i < j {
                 return 0.0;
             }
-            let ((e, r), (f, q)) = (&columns[i], &columns[j]);
+            let ((rows, r), (columns, q)) = (&columns[i], &columns[j]);
             let mut sum = f64::from(u8::from(i == j));
             for a in 0..r.len() {
                 for b in 0..q.len() {
-                    sum += r[a] * g[(e * r.len() + a, f * q.len() + b)] * q[b];
+                    sum += r[a] * g[(rows.start + a, columns.start + b)] * q[b];
                 }
             }
             sum
         });
-        let right = Col::from_fn(columns.len(), |i| on_edge(&columns[i].1, &gs, columns[i].0));
+        let right =
+            Col::from_fn(columns.len(), |i| product(&columns[i].1, &gs[columns[i].0.clone()]));
         let llt = system.llt(Side::Lower).map_err(|_| SolveError::Singular)?;
         let t = llt.solve(right);
         let mut dw: Vec<f64> = s.iter().map(|s| -s).collect();
-        for (i, (e, column)) in columns.iter().enumerate() {
-            for (a, entry) in column.iter().enumerate() {
-                dw[e * column.len() + a] += entry * t[i];
+        for (i, (values, column)) in columns.iter().enumerate() {
+            for (functional, entry) in values.clone().zip(column) {
+                dw[functional] += entry * t[i];
             }
         }
         let dy: Vec<f64> = self.times_compliance(&dw).into_iter().map(|v| -v).collect();
@@ -250,9 +255,9 @@ impl Body for Reduced<'_, '_, '_, '_> {
     }
 }
 
-/// The product of a column with the values of edge `e`.
-fn on_edge(column: &DVector<f64>, values: &[f64], e: usize) -> f64 {
-    column.iter().zip(block(values, e, column.len())).map(|(a, b)| a * b).sum()
+/// The product of a column with the values of its piece.
+fn product(column: &DVector<f64>, values: &[f64]) -> f64 {
+    column.iter().zip(values).map(|(a, b)| a * b).sum()
 }
 
 /// The columns of R with H = R R^T for a positive semidefinite H, by Cholesky; those of pivots that are zero to rounding are left

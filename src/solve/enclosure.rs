@@ -22,7 +22,7 @@ use nalgebra::DMatrix;
 use thiserror::Error;
 
 use super::SolveError;
-use super::balls::{field, free, kappa, length, lines, root};
+use super::balls::{field, free, kappa, length, pieces, root};
 use super::factor::Factor;
 use super::intervals::{Arithmetic, EnclosedResidual, Intervals};
 use super::newton::SLIGHT;
@@ -31,7 +31,7 @@ use super::system::System;
 use super::times::Stopwatch;
 use crate::fem::korn::Korn;
 use crate::fem::solvability::Slides;
-use crate::fem::{ContactFace, Discretization};
+use crate::fem::{Discretization, Piece};
 use crate::kernel::DoubleDouble;
 use crate::kernel::ball::{PreciseBall, up};
 
@@ -110,7 +110,7 @@ pub fn enclose(
 pub struct Verifier<'s, 'd, 'p> {
     system: &'s System<'d, 'p>,
     load: &'s [[PreciseBall; 2]],
-    lines: Vec<ContactFace<PreciseBall>>,
+    lines: Vec<Piece<PreciseBall>>,
     kappa: f64,
     /// The relative radius that is asked for: a bound that is far below is not sharpened.
     proof: f64,
@@ -144,7 +144,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         load: &'s [[PreciseBall; 2]],
     ) -> Self {
         let mut watch = Stopwatch::start();
-        let lines = lines(system.d);
+        let lines = pieces(system.d);
         let kappa = kappa(system.d, &lines);
         let time = watch.lap();
         let proof = 0.0;
@@ -363,22 +363,22 @@ fn slid(
 /// `nodes` say, and by `radius` in the norm of A_S: then the motion changes nothing.
 fn stays_off(
     d: &Discretization,
-    lines: &[ContactFace<PreciseBall>],
+    lines: &[Piece<PreciseBall>],
     u: &[[PreciseBall; 2]],
     (nodes, radius): (&[f64], f64),
 ) -> bool {
     let stopping = d.slides.as_ref().map_or(&[][..], |slides| &slides.stopping);
     stopping.iter().map(|&e| &lines[e]).all(|line| {
-        let on_edge = d.space.edge_nodes(line.edge);
+        let on_edge = d.space.edge_nodes(line.edge());
         let far = on_edge.into_iter().map(|node| nodes[node]).fold(0.0, f64::max);
-        pressed::greatest(&line.p(u)) + pressed::change(line, far, radius) <= 0.0
+        pressed::greatest(line.degree, &line.p(u)) + pressed::change(line, far, radius) <= 0.0
     })
 }
 
 /// A, with the springs where it is `pressed`.
 struct Product<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
-    lines: &'a [ContactFace<PreciseBall>],
+    lines: &'a [Piece<PreciseBall>],
     pressed: &'a Pressed,
     arithmetic: Arithmetic,
 }

@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::fem::matrix::OutsidePattern;
 use crate::fem::{DataError, MeshError};
 use crate::memory::OutOfMemory;
 use crate::quote::{fixed, number};
@@ -40,6 +41,8 @@ pub enum SolveError {
         "the numbers of this case would over- or underflow double precision; expected lengths from 1e-40 to 1e40, moduli from 1e-80 to 1e80, and energies (modulus times squared displacement) from 1e-270 to 1e270: choose other units"
     )]
     OutOfRange,
+    #[error(transparent)]
+    OutsidePattern(#[from] OutsidePattern),
     #[error("the solution needs {bytes} bytes of memory, more than there are; use a coarser mesh")]
     OutOfMemory { bytes: u64 },
 }
@@ -83,6 +86,7 @@ impl SolveError {
             | SolveError::IllConditioned { .. }
             | SolveError::Singular
             | SolveError::OutOfRange
+            | SolveError::OutsidePattern(_)
             | SolveError::OutOfMemory { .. } => false,
         }
     }

@@ -8,8 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::balls::{field, length, product, root, strain_energy};
 use super::system::System;
-use crate::fem::moments::moments;
-use crate::fem::{ContactFace, Discretization};
+use crate::fem::{Discretization, Piece};
 use crate::fem::{residual, rounded_stress};
 use crate::kernel::DoubleDouble;
 use crate::kernel::ball::{PreciseBall, up};
@@ -115,7 +114,7 @@ pub(super) struct EnclosedResidual {
     pub energy: PreciseBall,
     /// The residual is off by no more than a functional r with |r(v)| <= this times |v|_a.
     pub off: f64,
-    /// int \[P\]+ N_a / gamma on each contact edge.
+    /// int \[P\]+ N_a / gamma on each piece.
     pressures: Vec<Vec<PreciseBall>>,
     arithmetic: Arithmetic,
 }
@@ -124,7 +123,7 @@ impl EnclosedResidual {
     /// None if it over- or underflows double precision.
     pub fn new(
         system: &System,
-        lines: &[ContactFace<PreciseBall>],
+        lines: &[Piece<PreciseBall>],
         (u, reported): (&[[f64; 2]], &[[f64; 2]]),
         near: Option<&[[DoubleDouble; 2]]>,
         (load, arithmetic): (&[[PreciseBall; 2]], Arithmetic),
@@ -158,9 +157,7 @@ impl EnclosedResidual {
         let mut pressures = Vec::with_capacity(lines.len());
         for line in lines {
             line.add_stresses(&exact, &mut residual);
-            let weight = line.length / line.gamma;
-            let moments = moments(&d.rule, &line.p(&exact)).into_iter();
-            let pressure: Vec<PreciseBall> = moments.map(|moment| weight * moment).collect();
+            let pressure = line.force(&d.rule, &line.p(&exact));
             line.add_contact(&pressure, &mut residual);
             pressures.push(pressure);
         }
@@ -181,7 +178,7 @@ impl EnclosedResidual {
     pub fn intervals(
         &self,
         d: &Discretization,
-        lines: &[ContactFace<PreciseBall>],
+        lines: &[Piece<PreciseBall>],
         (u, nodes): (&[[PreciseBall; 2]], &[f64]),
         [rho, pressure]: [f64; 2],
         radius: f64,
@@ -208,13 +205,13 @@ impl EnclosedResidual {
                 let n = line.direction(a);
                 [sum[0] + p, sum[1] - p * n[0], sum[2] - p * n[1]]
             });
-            let weight = line.length / line.gamma;
-            match contact.iter_mut().find(|(name, ..)| *name == line.boundary) {
+            let weight = line.weight();
+            match contact.iter_mut().find(|(name, ..)| name == line.boundary()) {
                 Some((_, sum, weights)) => {
                     *sum = [0, 1, 2].map(|i| sum[i] + of[i]);
                     *weights += weight;
                 }
-                None => contact.push((Arc::clone(&line.boundary), of, weight)),
+                None => contact.push((Arc::clone(line.boundary()), of, weight)),
             }
         }
         let contact = contact
@@ -236,7 +233,7 @@ impl EnclosedResidual {
     fn reactions(
         &self,
         d: &Discretization,
-        lines: &[ContactFace<PreciseBall>],
+        lines: &[Piece<PreciseBall>],
         [rho, pressure]: [f64; 2],
     ) -> BTreeMap<String, [Range; 2]> {
         let of = |(boundary, held): (&String, &Vec<crate::fem::constraints::Held>)| {
@@ -255,8 +252,7 @@ impl EnclosedResidual {
                 let by_body = self.arithmetic.energy_norm(d, &test);
                 let by_contact = lines.iter().fold(PreciseBall::from(0), |sum, line| {
                     let most = line.p0(&test).iter().fold(0.0, |sum, p| up(sum + p.magnitude()));
-                    let weight = line.length / line.gamma;
-                    sum + weight * PreciseBall::from(most) * PreciseBall::from(most)
+                    sum + line.weight() * PreciseBall::from(most) * PreciseBall::from(most)
                 });
                 let by_contact = root(by_contact);
                 range(reaction.widened(up((rho + self.off) * by_body + pressure * by_contact)))

@@ -10,7 +10,7 @@ use super::system::System;
 use crate::fem::discretization::{Discretization, Functional};
 use crate::fem::residual;
 use crate::fem::solvability::{Play, Slides};
-use crate::fem::{ContactFace, EdgeRule};
+use crate::fem::{EdgeRule, Piece};
 use crate::kernel::DoubleDouble;
 
 /// A residual this many times the distance of doubles, times its magnitudes, is noise: Newton's method ends there. With 0 it goes on
@@ -68,14 +68,19 @@ impl Iterate {
     /// The linear part of (8) here, in double-doubles if `precisely`.
     pub fn evaluate(&self, system: &System, precisely: bool) -> Evaluation {
         let d = system.d;
-        // Edges that press in no solution: the body is moved away from them in the end.
-        let idle = |(i, p): (usize, DoubleDouble)| {
-            if d.is_idle(i / system.nodes()) && p.head() > 0.0 { -p } else { p }
+        // Pieces that press in no solution: the body is moved away from them in the end.
+        let idle = |mut p: Vec<DoubleDouble>| {
+            for (_, piece) in d.contact.iter().enumerate().filter(|(e, _)| d.is_idle(*e)) {
+                for p in &mut p[piece.functionals()] {
+                    *p = if p.head() > 0.0 { -*p } else { *p };
+                }
+            }
+            p
         };
         let (heads, tails) = (self.rounded(), self.remainder());
         if precisely {
             let (forces, p) = residual::evaluate(d, &self.u);
-            let p: Vec<DoubleDouble> = p.into_iter().enumerate().map(idle).collect();
+            let p = idle(p);
             // The forces of contact are added to these in doubles, and the loads are doubles.
             let noise = NOISE * f64::EPSILON * d.free_norm(&forces).max(d.free_norm(&d.load));
             let p_magnitudes = p.iter().map(|p| p.head().abs()).collect();
@@ -91,14 +96,15 @@ impl Iterate {
             });
         let by_points = matches!(d.rule, EdgeRule::Gauss(_));
         let p: Vec<DoubleDouble> = if by_points {
-            residual::p(d, &self.u).enumerate().map(idle).collect()
+            residual::p(d, &self.u).collect()
         } else {
-            let p = |edge: &ContactFace| {
-                edge.p(&heads).into_iter().zip(edge.p0(&tails)).map(|(p, of_tail)| p + of_tail)
+            let p = |piece: &Piece| {
+                let with_tails = piece.p(&heads).into_iter().zip(piece.p0(&tails));
+                with_tails.map(|(p, of_tail)| DoubleDouble::from(p + of_tail)).collect::<Vec<_>>()
             };
-            let p: Vec<f64> = d.contact.iter().flat_map(p).collect();
-            p.into_iter().map(DoubleDouble::from).enumerate().map(idle).collect()
+            d.contact.iter().flat_map(p).collect()
         };
+        let p = idle(p);
         let p_magnitudes = if by_points {
             p.iter().map(|p| p.tail().abs()).collect()
         } else {
@@ -141,12 +147,10 @@ impl Evaluated {
         p: &[DoubleDouble],
     ) -> Self {
         let p: Vec<Vec<DoubleDouble>> =
-            p.chunks_exact(d.space.degree().nodes_per_edge()).map(<[_]>::to_vec).collect();
+            d.contact.iter().map(|piece| p[piece.functionals()].to_vec()).collect();
         let mut residual = forces;
-        for (edge, p) in d.contact.iter().zip(&p) {
-            let weight = edge.length / edge.gamma;
-            let pressure = d.rule.integrals(p).gradient.into_iter().map(|g| weight * g);
-            edge.add_contact(&pressure.collect::<Vec<f64>>(), &mut residual);
+        for (piece, p) in d.contact.iter().zip(&p) {
+            piece.add_contact(&piece.contribution(&d.rule, p).force, &mut residual);
         }
         Evaluated { u, p, residual }
     }
@@ -160,7 +164,7 @@ impl Evaluated {
         }
         slides.least_norm(&mut self.u);
         for (edge, p) in d.contact.iter().zip(&mut self.p) {
-            if d.rule.integrals(p).active == 0.0 {
+            if edge.contribution(&d.rule, p).active == 0.0 {
                 *p = edge.p(&self.u).into_iter().map(|p| p.min(0.0).into()).collect();
             }
         }

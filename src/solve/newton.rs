@@ -1,6 +1,6 @@
 //! Newton's method with an exact line search on J_h, for a body of which it knows only what a step does to P.
 //!
-//! Let y be the values of P at the nodes of the contact edges, y = B u + d, and Psi(y) = sum over the edges of
+//! Let y be the values of P at the nodes of the pieces of Gamma_C, y = B u + d, and Psi(y) = sum over the pieces of
 //! (|E| / gamma) 1/2 int \[P\]+^2. Then
 //!
 //! J_h(u) = 1/2 u^T A u - l^T u + Psi(B u + d).
@@ -24,7 +24,7 @@
 //! **The end** is the rounding level of the residual, or of the decrease along a step.
 
 use super::SolveError;
-use super::body::{Body, ContactEnergy, Derivatives, Step, block, derivatives};
+use super::body::{Body, ContactEnergy, Derivatives, Step, derivatives};
 use crate::fem::dense::norm;
 use crate::kernel::DoubleDouble;
 
@@ -111,21 +111,26 @@ fn line_search(
     at: &Derivatives,
     step: &Step,
 ) -> Option<f64> {
-    let (nodes, stiffness) = (edges.nodes(), at.stiffness);
+    let stiffness = at.stiffness;
     let point = |e: usize, t: f64| -> Vec<DoubleDouble> {
-        let (p, d) = (block(y, e, nodes), block(&step.dy, e, nodes));
-        p.iter().zip(d).map(|(&p, d)| p + DoubleDouble::from(t * d)).collect()
+        let values = edges.values(e);
+        y[values.clone()]
+            .iter()
+            .zip(&step.dy[values])
+            .map(|(&p, d)| p + DoubleDouble::from(t * d))
+            .collect()
     };
     // The first and the second derivative of J_h along the step.
     let derivatives = |t: f64| {
         let mut first = step.slope + t * step.curvature;
         let mut second = step.curvature;
         for e in 0..edges.count() {
-            let d = block(&step.dy, e, nodes);
+            let values = edges.values(e);
+            let (d, before) = (&step.dy[values.clone()], &at.gradient[values]);
             let (g, h) = edges.derivatives(e, &point(e, t));
-            for a in 0..nodes {
-                first += (stiffness * g[a] - at.gradient[e * nodes + a]) * d[a];
-                for b in 0..nodes {
+            for a in 0..d.len() {
+                first += (stiffness * g[a] - before[a]) * d[a];
+                for b in 0..d.len() {
                     second += stiffness * h[(a, b)] * d[a] * d[b];
                 }
             }
@@ -134,7 +139,7 @@ fn line_search(
     };
     let falls = |t: f64| {
         let distance: f64 =
-            (0..edges.count()).map(|e| edges.bregman(e, block(y, e, nodes), &point(e, t))).sum();
+            (0..edges.count()).map(|e| edges.bregman(e, &y[edges.values(e)], &point(e, t))).sum();
         t * t / 2.0 * step.curvature + stiffness * distance <= (SLIGHT - 1.0) * t * step.slope
     };
     let flat = SLIGHT * step.slope.abs();

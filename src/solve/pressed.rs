@@ -9,9 +9,8 @@
 
 use nalgebra::DMatrix;
 
-use crate::fem::element::{bernstein, roots};
 use crate::fem::korn::Hold;
-use crate::fem::{ContactFace, Degree, Discretization, EdgeRule};
+use crate::fem::{Degree, Discretization, EdgeRule, Piece};
 use crate::kernel::ball::{PreciseBall, up};
 
 /// A piece is taken for pressed where P is at least this share of the most that it is all along some piece; where that proves
@@ -82,7 +81,7 @@ impl EdgePiece {
 
     /// Those in the stretches between the roots of P.
     fn between_roots(degree: Degree, p: &Row) -> Vec<Self> {
-        let mut cuts = roots(&p.iter().map(|p| p.head()).collect::<Vec<_>>());
+        let mut cuts = degree.roots(&p.iter().map(|p| p.head()).collect::<Vec<_>>());
         cuts.extend([0.0, 1.0]);
         cuts.sort_unstable_by(f64::total_cmp);
         let stretch = |cut: &[f64]| {
@@ -129,7 +128,7 @@ impl EdgePiece {
 
 impl PressedEdge {
     /// The part of the edge `line` in these pieces, where P has the values `p`. `None` where there are none.
-    fn new(line: &ContactFace<PreciseBall>, p: &Row, pieces: &[&EdgePiece]) -> Option<Self> {
+    fn new(line: &Piece<PreciseBall>, p: &Row, pieces: &[&EdgePiece]) -> Option<Self> {
         let mut mass = vec![vec![PreciseBall::from(0); p.len()]; p.len()];
         pieces.iter().for_each(|piece| add(&mut mass, &piece.mass));
         let most = |piece: &EdgePiece| SAFETY * root_of(line) * piece.square.upper().sqrt();
@@ -153,7 +152,7 @@ impl Pressed {
     /// Finds the pieces that are surely pressed at the displacement `u`, those that have their `share` of the pressure.
     pub fn at(
         d: &Discretization,
-        lines: &[ContactFace<PreciseBall>],
+        lines: &[Piece<PreciseBall>],
         u: &[[PreciseBall; 2]],
         share: f64,
     ) -> Self {
@@ -167,7 +166,7 @@ impl Pressed {
         let edges: Vec<(Row, Vec<(f64, EdgePiece)>)> = edges.collect();
         let all = edges.iter().flat_map(|(_, pieces)| pieces);
         let enough = share * all.fold(0.0, |most: f64, (least, _)| most.max(*least));
-        let part = |(line, (p, pieces)): (&ContactFace<PreciseBall>, &(Row, Vec<_>))| {
+        let part = |(line, (p, pieces)): (&Piece<PreciseBall>, &(Row, Vec<_>))| {
             let taken = pieces.iter().filter(|(least, _)| *least >= enough);
             PressedEdge::new(line, p, &taken.map(|(_, piece)| piece).collect::<Vec<_>>())
         };
@@ -192,13 +191,13 @@ impl Pressed {
 
     /// The holds of S: sums of n~ . v at the nodes of its edges, each times its shape function at a place of the edge:
     /// n~ . v = P0(v) + gamma s(v), for |v|_S (1 - kappa)^{-1/2} <= 1: at most what P0(v) is beside |v|_S.
-    pub fn holds(&self, d: &Discretization, lines: &[ContactFace<PreciseBall>]) -> Vec<Hold> {
+    pub fn holds(&self, d: &Discretization, lines: &[Piece<PreciseBall>]) -> Vec<Hold> {
         let mesh = d.space.mesh();
         let mut holds = Vec::new();
         for (line, part) in lines.iter().zip(&self.edges) {
             let Some(part) = part else { continue };
             let [start, end] =
-                mesh.ends(line.edge).map(|v| mesh.vertices()[v].map(PreciseBall::from));
+                mesh.ends(line.edge()).map(|v| mesh.vertices()[v].map(PreciseBall::from));
             let middle = [0, 1].map(|c| (start[c] + end[c]) * PreciseBall::from(0.5));
             for (shapes, most) in &part.places {
                 let nodes = [start, end, middle].into_iter().zip(shapes).enumerate();
@@ -206,7 +205,7 @@ impl Pressed {
                     let direction: [PreciseBall; 2] = line.direction(a).into();
                     (at.map(PreciseBall::rounded), direction.map(|n| (shape * n).rounded()))
                 });
-                let (triangle, terms) = (line.edge.triangle, terms.collect());
+                let (triangle, terms) = (line.edge().triangle, terms.collect());
                 holds.push(Hold { triangle, terms, most: *most });
             }
         }
@@ -214,10 +213,10 @@ impl Pressed {
     }
 
     /// For each contact edge the matrix of its springs, in doubles.
-    pub fn springs(&self, lines: &[ContactFace<PreciseBall>]) -> Vec<DMatrix<f64>> {
-        let of = |(line, part): (&ContactFace<PreciseBall>, &Option<PressedEdge>)| {
-            let weight = (line.length / line.gamma).head();
-            let nodes = line.gap.len();
+    pub fn springs(&self, lines: &[Piece<PreciseBall>]) -> Vec<DMatrix<f64>> {
+        let of = |(line, part): (&Piece<PreciseBall>, &Option<PressedEdge>)| {
+            let weight = line.weight().head();
+            let nodes = line.p0.len();
             let mass =
                 |a: usize, b: usize| part.as_ref().map_or(0.0, |part| part.mass[a][b].head());
             DMatrix::from_fn(nodes, nodes, |a, b| weight * mass(a, b))
@@ -228,13 +227,13 @@ impl Pressed {
     /// Adds what the springs of S do against v, the integral over S of P0(v) P0(w) / gamma for every basis function w.
     pub fn add_springs(
         &self,
-        lines: &[ContactFace<PreciseBall>],
+        lines: &[Piece<PreciseBall>],
         v: &[[PreciseBall; 2]],
         forces: &mut [[PreciseBall; 2]],
     ) {
         for (line, part) in lines.iter().zip(&self.edges) {
             let Some(part) = part else { continue };
-            let weight = line.length / line.gamma;
+            let weight = line.weight();
             let p0 = line.p0(v);
             let springs: Row = part.mass.iter().map(|row| weight * dot(row, &p0)).collect();
             line.add_contact(&springs, forces);
@@ -258,17 +257,17 @@ fn products(weight: PreciseBall, values: &[PreciseBall]) -> Vec<Row> {
 }
 
 /// (gamma / |E|)^{1/2}
-fn root_of(line: &ContactFace<PreciseBall>) -> f64 {
+fn root_of(line: &Piece<PreciseBall>) -> f64 {
     up((line.gamma / line.length).upper().sqrt())
 }
 
 /// An upper bound of a polynomial on an edge by its Bernstein coefficients, from its values at the nodes.
-pub fn greatest(p: &[PreciseBall]) -> f64 {
-    bernstein(p).iter().map(|p| p.upper()).fold(f64::NEG_INFINITY, f64::max)
+pub fn greatest(degree: Degree, p: &[PreciseBall]) -> f64 {
+    degree.bernstein(p).iter().map(|p| p.upper()).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// How much P0(v) is along an edge at most where |v| is at most `far` at its nodes and `radius` in the energy norm a: n~ . v
 /// is at most 5/4 of the largest nodal value, gamma |s(v)| at most 2 (gamma / |E|)^{1/2} |v|_a.
-pub fn change(line: &ContactFace<PreciseBall>, far: f64, radius: f64) -> f64 {
+pub fn change(line: &Piece<PreciseBall>, far: f64, radius: f64) -> f64 {
     up(SAFETY * (1.25 * far + 2.0 * root_of(line) * radius))
 }

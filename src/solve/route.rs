@@ -62,9 +62,7 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
     /// [`SolveError::OutOfRange`].
     pub fn new(system: &'a System<'d, 'p>) -> Result<Self, SolveError> {
         let structure = &system.structure;
-        let unknowns: Vec<Vec<usize>> =
-            (0..system.d.contact.len()).map(|e| system.unknowns(e)).collect();
-        let reach = Reach::new(structure, &unknowns, system.nodes());
+        let reach = Reach::new(structure, &system.pieces());
         let factor = structure.operations();
         let q = reach.functionals() as f64;
         let dense = q * q * q / 6.0 / DENSE + 4.0 * q * q;
@@ -132,19 +130,19 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
         };
         times.factor += watch.lap();
         system.course.enters(Phase::Condense);
-        let route = Condensed::new(system, factor, &self.reach, self.reference);
+        let route = Condensed::new(system, factor, &self.reach, self.reference)?;
         times.compliance += watch.lap();
         Ok(route)
     }
 }
 
-/// Returns whether what the matrix is made of on the contact edges neither over- nor underflows.
+/// Returns whether what the matrix is made of on the pieces of Gamma_C neither over- nor underflows.
 fn contact_is_in_range(system: &System) -> bool {
-    system.d.contact.iter().all(|edge| {
-        let stresses = edge.functionals.sigma_n().into_iter().flatten();
+    system.d.contact.iter().all(|piece| {
+        let stresses = piece.sigma_n.iter().flatten();
         let stress = stresses.flat_map(|v| v.iter()).fold(0.0, |m: f64, s| m.max(s.abs()));
-        let (gamma, length) = (edge.gamma, edge.length);
-        let springs = [length / gamma, gamma * length].iter().all(|x| x.is_normal());
+        let gamma = piece.gamma;
+        let springs = [piece.weight(), gamma * piece.length].iter().all(|x| x.is_normal());
         springs
             && (stress == 0.0 || [stress * stress, gamma * stress].iter().all(|x| x.is_normal()))
     })

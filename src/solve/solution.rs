@@ -10,12 +10,12 @@ use super::answers::{self, ContactBoundary, EnergyBalance};
 use super::enclosure::{Enclosure, Unproved};
 use super::iterate::Evaluated;
 use super::{MethodReport, NewtonReport, Report, Verdict};
-use crate::fem::Degree;
 use crate::fem::contact_line::{Coercivity, Gamma};
 use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
-use crate::fem::element::maximum;
+use crate::fem::piece::PieceNode;
 use crate::fem::solvability::Play;
+use crate::fem::{Degree, Piece};
 use crate::kernel::DoubleDouble;
 use crate::kernel::Stress;
 use crate::kernel::contact::pressure;
@@ -40,6 +40,8 @@ pub struct Solution {
     pub von_mises: Vec<f64>,
     /// The edges of Gamma_C, chained along the boundary.
     pub contact: Vec<ContactEdgeValues>,
+    /// The pieces of Gamma_C with what method (8) has on them.
+    pub pieces: Vec<Piece>,
     /// gamma0, kappa and where the limit comes from.
     pub gamma: GammaReport,
     /// How Newton's method went.
@@ -158,6 +160,7 @@ impl Solution {
             boundaries: answers::contact_boundaries(d, &u, &p, &recovered),
             largest_strain: answers::largest_strain(d, &u),
             balance: answers::energy_balance(d, &u, &p, &residual, quantities.energy),
+            pieces: d.contact.clone(),
             gamma: GammaReport::new(d),
             newton: report.newton,
             method: report.method,
@@ -192,7 +195,7 @@ impl Solution {
 }
 
 impl GammaReport {
-    /// The stresses of a discretization.
+    /// Reports gamma, kappa and the limit of a discretization.
     pub fn new(d: &Discretization) -> Self {
         let (kappa, coercivity) = (d.kappa(), d.coercivity);
         GammaReport { gamma: d.gamma, gamma0: d.gamma0, kappa, coercivity }
@@ -214,22 +217,23 @@ fn contact_values(
     let mut start = 0.0;
     let mut line = Vec::with_capacity(d.contact.len());
     for ((edge, p), recovered) in d.contact.iter().zip(p).zip(recovered) {
-        if line.last().is_none_or(|last: &ContactEdgeValues| last.boundary != edge.boundary) {
+        if line.last().is_none_or(|last: &ContactEdgeValues| last.boundary != *edge.boundary()) {
             start = 0.0;
         }
-        let triangle = edge.edge.triangle;
-        let sigma_n = edge.sigma_n(|node| u[node]);
-        let nodes = d.space.edge_nodes(edge.edge);
+        let triangle = edge.edge().triangle;
+        let sigma_n = edge.sigma_n(u);
+        let nodes = d.space.edge_nodes(edge.edge());
         let positions = d.space.degree().edge_positions();
         let mut points: Vec<ContactValues> = (0..nodes.len())
             .map(|a| {
                 let [x, y] = u[nodes[a]];
+                let PieceNode { direction, gap, .. } = edge.geometry.nodes[a];
                 ContactValues {
                     node: nodes[a],
-                    direction: edge.directions[a].into(),
+                    direction: direction.into(),
                     arc: start + positions[a] * edge.length,
-                    u_n: x * edge.directions[a][0] + y * edge.directions[a][1],
-                    gap: edge.gap[a],
+                    u_n: x * direction[0] + y * direction[1],
+                    gap,
                     sigma_n: (1.0 - positions[a]) * sigma_n[0] + positions[a] * sigma_n[1],
                     lambda: pressure(p[a].head(), edge.gamma) + 0.0,
                     pressure: recovered[a],
@@ -237,8 +241,8 @@ fn contact_values(
             })
             .collect();
         points.sort_by(|a, b| a.arc.total_cmp(&b.arc));
-        let boundary = Arc::clone(&edge.boundary);
-        line.push(ContactEdgeValues { triangle, boundary, normal: edge.normal.into(), points });
+        let (boundary, normal) = (Arc::clone(edge.boundary()), edge.normal().into());
+        line.push(ContactEdgeValues { triangle, boundary, normal, points });
         start += edge.length;
     }
     line
@@ -257,18 +261,16 @@ fn quantities(d: &Discretization, Evaluated { u, p, residual }: &Evaluated) -> Q
         reaction_moments: BTreeMap::new(),
     };
     for (edge, p) in d.contact.iter().zip(p) {
-        let integrals = d.rule.integrals(p);
-        // The shape functions add up to one, so this is the integral of [P]+ / gamma.
-        let force = edge.length / edge.gamma * integrals.gradient.iter().sum::<f64>();
-        q.contact_force += force;
-        for (g, n) in integrals.gradient.iter().zip(&edge.directions) {
+        let contact = edge.contribution(&d.rule, p);
+        q.contact_force += contact.resultant;
+        for (force, n) in contact.force.iter().zip(edge.geometry.directions()) {
             for c in 0..2 {
-                q.contact_resultant[c] -= edge.length / edge.gamma * g * n[c];
+                q.contact_resultant[c] -= force * n[c];
             }
         }
-        q.contact_length += edge.length * integrals.active;
+        q.contact_length += contact.active;
         let heads: Vec<f64> = p.iter().map(|p| p.head()).collect();
-        let peak = -pressure(maximum(&heads), edge.gamma);
+        let peak = -pressure(edge.degree.maximum(&heads), edge.gamma);
         q.peak_pressure = q.peak_pressure.max(peak);
     }
     for (boundary, held) in d.constraints.holders() {

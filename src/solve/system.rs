@@ -1,8 +1,9 @@
 //! The linear part of (8) as matrices over the free degrees of freedom: A in an order of elimination, the structure of its
-//! factor, and B, the values of P0 at the nodes of the contact edges. The tangent A + B^T Psi'' B has the pattern of A: each
-//! functional lives on one triangle.
+//! factor, and B, the values of P0 at the nodes of the pieces of Gamma_C. The tangent A + B^T Psi'' B has the pattern of A, which is
+//! joined over the triangles of each piece.
 
 use std::cell::Cell;
+use std::ops::Range;
 use std::sync::Arc;
 
 use nalgebra::DMatrix;
@@ -11,6 +12,7 @@ use super::SolveError;
 use super::course::{Course, Phase};
 use super::factor::{Factor, Structure};
 use super::ordering::nested_dissection;
+use crate::fem::Piece;
 use crate::fem::discretization::Discretization;
 use crate::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
 use crate::kernel::ball::larger;
@@ -34,7 +36,7 @@ impl<'d, 'p> System<'d, 'p> {
     /// The system of a discretization.
     ///
     /// # Errors
-    /// [`SolveError::OutOfMemory`].
+    /// [`SolveError::OutOfMemory`], and [`SolveError::OutsidePattern`].
     pub fn new(d: &'d Discretization<'p>) -> Result<Self, SolveError> {
         System::on(d, Course::default())
     }
@@ -45,10 +47,10 @@ impl<'d, 'p> System<'d, 'p> {
     /// As [`System::new`].
     pub fn on(d: &'d Discretization<'p>, course: Course<'d>) -> Result<Self, SolveError> {
         course.enters(Phase::Order);
-        let neighbours = Neighbours::new(&d.space);
+        let neighbours = Neighbours::across(&d.space, &d.contact);
         let order = nested_dissection(d.space.nodes(), &neighbours);
         let numbering = Numbering::under(&order, &d.constraints);
-        let matrix = matrix::assemble(d, &numbering, &neighbours);
+        let matrix = matrix::assemble(d, &numbering, &neighbours)?;
         let structure = Arc::new(Structure::new(&matrix)?);
         Ok(System { d, numbering, matrix, structure, course, steps: Cell::new(0) })
     }
@@ -59,48 +61,48 @@ impl<'d, 'p> System<'d, 'p> {
         self.course.enters(Phase::Newton { step: self.steps.get() });
     }
 
-    /// The nodes of a contact edge, where P is given: two or three.
-    pub fn nodes(&self) -> usize {
-        self.d.space.degree().nodes_per_edge()
+    /// The number of functionals.
+    pub fn functionals(&self) -> usize {
+        self.d.contact.last().map_or(0, |piece| piece.functionals().end)
     }
 
-    /// The free degrees of freedom on the triangle of contact edge `e`.
+    /// The free degrees of freedom on the triangles of piece `e`.
     pub fn unknowns(&self, e: usize) -> Vec<usize> {
         let nodes = self.d.contact[e].nodes.iter();
         nodes.flat_map(|&node| self.numbering.of[node]).flatten().collect()
     }
 
-    /// The rows of B that belong to contact edge `e`: calls `f` with the unknown, the node of the edge and the entry.
-    pub fn functionals(&self, e: usize, mut f: impl FnMut(usize, usize, f64)) {
-        let edge = &self.d.contact[e];
-        for (a, functional) in edge.functionals.p0().into_iter().enumerate() {
-            for (&node, &entries) in edge.nodes.iter().zip(functional) {
-                let entries = self.numbering.in_frame(node, entries.into());
-                for (number, entry) in self.numbering.of[node].iter().zip(entries) {
-                    if let Some(number) = *number {
-                        f(number, a, entry);
-                    }
-                }
-            }
-        }
+    /// For each piece the numbers of its functionals and the free degrees of freedom on its triangles.
+    pub fn pieces(&self) -> Vec<(Range<usize>, Vec<usize>)> {
+        let of = |(e, piece): (usize, &Piece)| (piece.functionals(), self.unknowns(e));
+        self.d.contact.iter().enumerate().map(of).collect()
     }
 
-    /// L of A + B^T h B, where `springs` are the blocks of h, one for each contact edge.
+    /// L of A + B^T h B, where `springs` are the blocks of h, one for each piece.
     ///
     /// # Errors
     /// As [`Factor::with`].
     pub(super) fn factor(&self, springs: &[DMatrix<f64>]) -> Result<Arc<Factor>, SolveError> {
         let mut tangent = self.matrix.clone();
-        for (edge, h) in self.d.contact.iter().zip(springs) {
-            tangent.add_contact_springs(&self.numbering, edge, h);
+        for (piece, h) in self.d.contact.iter().zip(springs) {
+            tangent.add_contact_springs(&self.numbering, piece, h)?;
         }
         Factor::with(&self.structure, &tangent).map(Arc::new)
     }
 
     /// B: calls `f` with the unknown, the number of the functional and the entry.
     pub fn each_functional(&self, mut f: impl FnMut(usize, usize, f64)) {
-        for e in 0..self.d.contact.len() {
-            self.functionals(e, |row, a, entry| f(row, e * self.nodes() + a, entry));
+        for piece in &self.d.contact {
+            for (i, functional) in piece.functionals().zip(&piece.p0) {
+                for (&node, &entries) in piece.nodes.iter().zip(functional) {
+                    let entries = self.numbering.in_frame(node, entries.into());
+                    for (number, entry) in self.numbering.of[node].iter().zip(entries) {
+                        if let Some(number) = *number {
+                            f(number, i, entry);
+                        }
+                    }
+                }
+            }
         }
     }
 

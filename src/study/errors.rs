@@ -13,11 +13,11 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::exact::ExactSolution;
-use crate::fem::contact_face::ContactFace;
-use crate::fem::element::{roots, value_at, with_element};
+use crate::fem::Piece;
+use crate::fem::Problem;
+use crate::fem::element::with_element;
 use crate::fem::graded_quadrature::Rule;
 use crate::fem::space::Space;
-use crate::fem::{DataError, Problem, contact_line};
 use crate::kernel::element::displacement_gradient;
 use crate::kernel::{ContactPoint, Element, positive_part};
 use crate::solve::Solution;
@@ -51,7 +51,7 @@ impl Errors {
     /// The distances of the field with the nodal values `v` from `exact`, with [`POINTS`] points.
     pub fn new(
         space: &Space,
-        contact: &[ContactFace],
+        contact: &[Piece],
         v: &[[f64; 2]],
         exact: &dyn ExactSolution,
     ) -> Self {
@@ -59,23 +59,15 @@ impl Errors {
     }
 
     /// The distances of a solution from an exact solution of `problem`, which is the one that it solves.
-    ///
-    /// # Errors
-    /// A problem with no contact boundary, or with a gap that is not finite.
-    pub fn of(
-        solution: &Solution,
-        problem: &Problem,
-        exact: &dyn ExactSolution,
-    ) -> Result<Self, DataError> {
+    pub fn of(solution: &Solution, problem: &Problem, exact: &dyn ExactSolution) -> Self {
         let space = Space::new(&problem.mesh, solution.degree);
-        let contact = contact_line::assemble(problem, &space, solution.gamma.gamma)?;
-        Ok(Errors::new(&space, &contact, &solution.displacement, exact))
+        Errors::new(&space, &solution.pieces, &solution.displacement, exact)
     }
 
     /// [`Errors::new`] with `points` quadrature points in each direction.
     pub fn with_points(
         space: &Space,
-        contact: &[ContactFace],
+        contact: &[Piece],
         v: &[[f64; 2]],
         exact: &dyn ExactSolution,
         points: usize,
@@ -86,7 +78,7 @@ impl Errors {
             add_triangles::<E, _, _>(&mut squares, space, &rule, v, exact);
         });
         for edge in contact {
-            let ends = space.mesh().places_of_ends(edge.edge);
+            let ends = space.mesh().places_of_ends(edge.edge());
             squares.add_edge(&rule, edge, ends, v, exact);
         }
         // The full norm of H1: so far there is only the seminorm.
@@ -110,15 +102,15 @@ impl Errors {
     fn add_edge(
         &mut self,
         rule: &Rule,
-        edge: &ContactFace,
+        edge: &Piece,
         ends: [[f64; 2]; 2],
         v: &[[f64; 2]],
         exact: &dyn ExactSolution,
     ) {
-        let (n, gamma) = (edge.normal, edge.gamma);
+        let (n, gamma, degree) = (edge.normal(), edge.gamma, edge.degree);
         let p = edge.p(v);
-        let stress = edge.sigma_n(|node| v[node]);
-        rule.on_edge(ends, roots(&p), |point| {
+        let stress = edge.sigma_n(v);
+        rule.on_edge(ends, degree.roots(&p), |point| {
             let (s, x) = (point.s, point.x);
             let exact = ContactPoint {
                 u_n: Vector2::from(exact.displacement(x)).dot(&n),
@@ -126,7 +118,7 @@ impl Errors {
                 sigma_n: exact.stress(x).normal(n),
                 gamma,
             };
-            let p = value_at(&p, s);
+            let p = degree.value_at(&p, s);
             let residual = exact.sigma_n + positive_part(p) / gamma;
             let stress = exact.sigma_n - ((1.0 - s) * stress[0] + s * stress[1]);
             let weight = point.weight * edge.length;

@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 use super::a_priori;
 use super::errors::{Errors, POINTS};
 use super::exact::ExactSolution;
-use crate::fem::contact_face::ContactFace;
+use crate::fem::Piece;
 use crate::fem::graded_quadrature::{EdgePoint, Rule};
 use crate::fem::material::largest_eigenvalue;
 use crate::fem::space::Space;
@@ -47,16 +47,16 @@ pub struct Interpolation {
 
 impl Interpolation {
     /// The constants for a body of this material with these edges on Gamma_C.
-    pub fn new(space: &Space, contact: &[ContactFace], material: &Material<f64>) -> Self {
+    pub fn new(space: &Space, contact: &[Piece], material: &Material<f64>) -> Self {
         let both = largest_eigenvalue(material);
         let gradient = |triangle: Triangle<f64>| gradient_constant_squared(&triangle).sqrt();
         let c: Vec<f64> = space.triangles::<3>().map(|(triangle, _)| gradient(triangle)).collect();
-        let on_edge = |edge: &ContactFace| {
-            let t = edge.edge.triangle;
+        let on_edge = |edge: &Piece| {
+            let t = edge.edge().triangle;
             let (mesh, root) = (space.mesh(), edge.gamma.sqrt());
             let sizes = [edge.length, mesh.triangle(t).double_area() / 2.0, mesh.diameter(t)];
             let trace = trace_constant_squared(sizes, c[t]).sqrt();
-            let stress = (material.normal_stiffness(edge.normal) * both).sqrt() * trace;
+            let stress = (material.normal_stiffness(edge.normal()) * both).sqrt() * trace;
             (t, [root * stress, edge.length / PI * trace / root])
         };
         Interpolation {
@@ -98,17 +98,18 @@ impl Interpolation {
 /// integrals and loads; `None` where u is not in H^2, or unless 0 <= kappa < 1.
 pub fn bound(
     space: &Space,
-    contact: &[ContactFace],
+    contact: &[Piece],
     exact: &dyn ExactSolution,
     kappa: f64,
 ) -> Option<f64> {
     let seminorms = seminorms(space, exact)?;
     let rule = Rule::new(exact.features(), POINTS);
-    let gap = |edge: &ContactFace| {
-        let ends = space.mesh().places_of_ends(edge.edge);
+    let gap = |edge: &Piece| {
+        let ends = space.mesh().places_of_ends(edge.edge());
+        let [start, end] = [0, 1].map(|a| edge.geometry.nodes[a].gap);
         let mut square = 0.0;
         rule.on_edge(ends, [], |EdgePoint { s, x, weight }| {
-            let difference = exact.gap(x) - ((1.0 - s) * edge.gap[0] + s * edge.gap[1]);
+            let difference = exact.gap(x) - ((1.0 - s) * start + s * end);
             square += weight * edge.length / edge.gamma * difference * difference;
         });
         square.sqrt()

@@ -96,15 +96,15 @@ fn projection(d: &Discretization, exact: &dyn ExactSolution) -> Result<Vec<[f64;
     }
     let rule = Rule::new(exact.features(), errors::POINTS);
     for edge in &d.contact {
-        let ends = d.space.mesh().ends(edge.edge).map(|vertex| d.space.mesh().vertices()[vertex]);
-        let nodes = d.space.edge_nodes(edge.edge);
+        let ends = d.space.mesh().ends(edge.edge()).map(|vertex| d.space.mesh().vertices()[vertex]);
+        let (nodes, normal) = (d.space.edge_nodes(edge.edge()), edge.normal());
         rule.on_edge(ends, [], |point| {
-            let sigma_n = exact.stress(point.x).normal(edge.normal);
+            let sigma_n = exact.stress(point.x).normal(normal);
             let shapes = d.space.degree().edge_values(point.s);
             for (&node, shape) in nodes.iter().zip(shapes) {
                 for c in 0..2 {
                     let weight = point.weight * edge.length * shape;
-                    force[node][c] += weight * sigma_n * edge.normal[c];
+                    force[node][c] += weight * sigma_n * normal[c];
                 }
             }
         });
@@ -112,7 +112,8 @@ fn projection(d: &Discretization, exact: &dyn ExactSolution) -> Result<Vec<[f64;
     let neighbours = Neighbours::new(&d.space);
     let order = nested_dissection(d.space.nodes(), &neighbours);
     let numbering = Numbering::under(&order, &d.constraints);
-    let matrix = matrix::assemble_stiffness(d, &numbering, &neighbours);
+    let matrix =
+        matrix::assemble_stiffness(d, &numbering, &neighbours).map_err(SolveError::from)?;
     let factor = Factor::new(&matrix)?;
     let mut x = numbering.gather(&force);
     factor.forward(&mut x);

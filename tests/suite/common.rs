@@ -5,9 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use signorini::certify::Continuous;
-use signorini::fem::{
-    Condition, Diagonal, Mesh, Problem, Rectangle, SharedFunction, Space, contact_line,
-};
+use signorini::fem::{Condition, Diagonal, Mesh, Problem, Rectangle, SharedFunction, Space};
 use signorini::io::certificate::{self, Header};
 use signorini::io::{Case, Expression};
 use signorini::kernel::{Material, Plane};
@@ -63,9 +61,8 @@ pub fn encoded(certified: &Continuous) -> (Header, Vec<u8>) {
 pub fn error_of(problem: &Problem, exact: &Exact, v: &[[f64; 2]]) -> f64 {
     let is_linear = v.len() == problem.mesh.vertices().len();
     let space = Space::new(&problem.mesh, if is_linear { Degree::One } else { Degree::Two });
-    // The energy norm knows of no gamma.
-    let contact = contact_line::assemble(problem, &space, 1.0).unwrap();
-    Errors::new(&space, &contact, v, &**exact).energy
+    // The energy norm knows of no contact.
+    Errors::new(&space, &[], v, &**exact).energy
 }
 
 /// The mesh with each vertex where `place` has it.

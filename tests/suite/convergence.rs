@@ -14,15 +14,15 @@
 //!
 //! Meshes with fewer than 8 cells a side are too coarse to count. A failure prints all errors.
 
+use std::sync::Arc;
+
 use crate::common::DEGREES;
 use crate::common::exact::{
     corner, moved, on_square, on_trapezoid, singular, smooth, smooth_with_gap,
 };
 use approx::assert_relative_eq;
-use signorini::fem::EdgeRule;
-use signorini::fem::contact_face::Functionals;
 use signorini::fem::contact_line::assemble;
-use signorini::fem::{Discretization, Space, loads};
+use signorini::fem::{Discretization, EdgeRule, Piece, Space, loads, residual};
 use signorini::kernel::P2;
 use signorini::nalgebra::Vector2;
 use signorini::solve::iterate::Evaluated;
@@ -315,15 +315,13 @@ fn last_rate(errors: &[Option<f64>]) -> f64 {
 }
 
 fn rebuilt(d: &mut Discretization, gamma: impl Fn(f64, f64) -> f64) {
-    for edge in &mut d.contact {
-        let mesh = d.space.mesh();
-        let t = edge.edge.triangle;
-        edge.gamma = gamma(d.gamma0, mesh.diameter(t));
-        let triangle = (&mesh.triangle(t), edge.edge.local);
-        let (degree, material) = (edge.functionals.degree(), d.problem.material.of(0));
-        edge.functionals =
-            Functionals::new(degree, triangle, edge.normal, None, material, edge.gamma);
-    }
+    let with_gamma = |piece: &Piece| {
+        residual::piece_with(d, piece, |side, stretch| {
+            let h = d.space.mesh().diameter(stretch.edge.triangle);
+            (side.length, side.normal, gamma(d.gamma0, h))
+        })
+    };
+    d.contact = d.contact.iter().map(with_gamma).collect();
 }
 
 /// The largest diameter on the coarsest level.
@@ -343,12 +341,12 @@ fn control_a_fixed_penalty_without_the_consistency_terms_stalls() {
     let errors = variant(Degree::One, |d| {
         for edge in &mut d.contact {
             edge.gamma = 1.0;
-            let Functionals::One(functionals) = &mut edge.functionals else { unreachable!() };
-            for (functional, node) in functionals.p0.iter_mut().zip([1, 2]) {
-                *functional = [Vector2::zeros(); 3];
-                functional[(edge.edge.local + node) % 3] = edge.normal;
+            let (local, normal) = (edge.edge().local, edge.normal());
+            for (functional, node) in edge.p0.iter_mut().zip([1, 2]) {
+                *functional = vec![Vector2::zeros(); 3];
+                functional[(local + node) % 3] = normal;
             }
-            functionals.sigma_n = [[Vector2::zeros(); 3]; 2];
+            edge.sigma_n = vec![vec![Vector2::zeros(); 3]; 2];
         }
     });
     assert!(last_rate(&errors) < 0.3, "{errors:?}");
@@ -380,15 +378,14 @@ fn control_a_stress_with_the_wrong_sign_in_p_costs_p2_its_rate() {
     // P = u_n + gamma sigma_n: the exact solution no longer satisfies the discrete equation.
     let errors = variant(Degree::Two, |d| {
         for edge in &mut d.contact {
-            let Functionals::Two(functionals) = &mut edge.functionals else { unreachable!() };
             let opposite = signorini::kernel::ContactEdge::new::<P2>(
-                &d.space.mesh().triangle(edge.edge.triangle),
-                edge.edge.local,
-                edge.normal,
+                &d.space.mesh().triangle(edge.edge().triangle),
+                edge.edge().local,
+                edge.normal(),
                 d.problem.material.of(0),
                 -edge.gamma,
             );
-            functionals.p0 = opposite.p0;
+            edge.p0 = opposite.p0.map(|row| row.to_vec()).to_vec();
         }
     });
     assert!(last_rate(&errors) < 1.3, "{errors:?}");
@@ -409,9 +406,10 @@ fn control_bilateral_contact_does_not_converge_to_the_unilateral_solution() {
     const RAISED: f64 = 100.0;
     let errors = variant(Degree::One, |d| {
         for edge in &mut d.contact {
-            edge.gap.iter_mut().for_each(|g| *g -= RAISED);
+            let geometry = Arc::make_mut(&mut edge.geometry);
+            geometry.nodes.iter_mut().for_each(|node| node.gap -= RAISED);
             let force = edge.length / edge.gamma * RAISED / 2.0;
-            for functional in edge.functionals.p0() {
+            for functional in &edge.p0 {
                 for (&node, f) in edge.nodes.iter().zip(functional) {
                     for c in 0..2 {
                         d.load[node][c] += force * f[c];

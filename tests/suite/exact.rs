@@ -13,7 +13,7 @@ use approx::{abs_diff_eq, assert_relative_eq};
 
 use crate::common::Random;
 use crate::common::exact::{corner, on_square, on_trapezoid, singular, smooth};
-use signorini::fem::{Space, contact_line};
+use signorini::fem::Space;
 use signorini::kernel::{Material, Plane};
 use signorini::nalgebra::{Matrix2, Vector2};
 use signorini::solve::Degree;
@@ -293,11 +293,9 @@ fn ladders(degree: Degree) -> Vec<signorini::study::Ladder> {
 fn difference_of_rules(ladder: &signorini::study::Ladder, points: [usize; 2]) -> f64 {
     let (_, problem, solution) = ladder.solve(0).unwrap();
     let space = Space::new(&problem.mesh, Degree::Two);
-    let gamma0 = solution.gamma.gamma0;
-    let contact = contact_line::assemble(&problem, &space, gamma0).unwrap();
     let [a, b] = points.map(|points| {
         let u = &solution.displacement;
-        Errors::with_points(&space, &contact, u, &*ladder.solution, points)
+        Errors::with_points(&space, &solution.pieces, u, &*ladder.solution, points)
     });
     let pairs = [
         (a.energy, b.energy),

@@ -51,7 +51,7 @@ fn newton_iterate(d: &Discretization, set: &[usize]) -> Vec<[f64; 2]> {
             let edge = &d.contact[e - 1];
             let p = edge.p(u);
             let middle = edge.length / edge.gamma * (p[0] + p[1]) / 2.0;
-            for functional in edge.functionals.p0() {
+            for functional in &edge.p0 {
                 for (&node, f) in edge.nodes.iter().zip(functional) {
                     for c in 0..2 {
                         r[node][c] += middle / 2.0 * f[c];

@@ -2,8 +2,8 @@
 //! which the discrete solution is enclosed. Each operation on members of the operands is one of exact rationals, and must lie in the result.
 
 use proptest::prelude::*;
-use signorini::fem::EdgeRule;
 use signorini::fem::moments::moments;
+use signorini::fem::{Degree, EdgeRule};
 use signorini::kernel::DoubleDouble;
 use signorini::kernel::PreciseBall;
 use signorini::kernel::edge_integral::ExactEdge;
@@ -212,7 +212,7 @@ pub fn chains_of_doubles_are_exact() -> Outcome {
 fn moments_of(draw: &Draw, share: f64) -> Verdict {
     let &([a, b, ..], [r, s]) = draw;
     let p = [PreciseBall::from(a).widened(r * a.abs()), PreciseBall::from(b).widened(s * b.abs())];
-    let found = moments(&EdgeRule::Exact, &p);
+    let found = moments(&EdgeRule::Exact, Degree::One, &p);
     Exact::scope(|| {
         for start in members(p[0]) {
             for end in members(p[1]) {

@@ -623,8 +623,10 @@ fn proved_kappa_on(
     if !((proved - kappa).abs() <= 1e-14 * kappa) {
         return Err(format!("kappa = {kappa}, and {proved} is proved"));
     }
-    let turns =
-        d.contact.iter().map(|edge| (edge.directions[0] - edge.directions[1]).map(f64::abs).max());
+    let turns = d.contact.iter().map(|piece| {
+        let [start, end] = [0, 1].map(|a| piece.geometry.nodes[a].direction);
+        (start - end).map(f64::abs).max()
+    });
     Ok(turns.fold(0.0, f64::max))
 }
 

@@ -7,7 +7,6 @@
 //! singular point, with the solver's functionals on contact edges. That the formulas of these solutions satisfy (1) and (2)
 //! is a test (tests/suite/exact.rs).
 
-use signorini::fem::element::value_at;
 use signorini::fem::graded_quadrature::Rule;
 use signorini::fem::{Condition, Degree, Discretization};
 use signorini::kernel::{ContactPoint, Element, P1, P2, positive_part};
@@ -110,9 +109,9 @@ impl Sums {
         terms: Terms,
     ) {
         for face in &d.contact {
-            let (n, gamma) = (face.normal, face.gamma);
+            let (n, gamma) = (face.normal(), face.gamma);
             let mesh = d.space.mesh();
-            let ends = mesh.ends(face.edge).map(|v| mesh.vertices()[v]);
+            let ends = mesh.ends(face.edge()).map(|v| mesh.vertices()[v]);
             rule.on_edge(ends, [], |point| {
                 let sigma_n = solution.stress(point.x).normal(n);
                 let here = ContactPoint {
@@ -123,13 +122,14 @@ impl Sums {
                 };
                 let weight = point.weight * face.length;
                 let pressure = positive_part(here.p()) / gamma;
-                for (j, &node) in d.space.nodes_of(face.edge.triangle).iter().enumerate() {
+                for (j, &node) in face.nodes.iter().enumerate() {
                     for c in 0..2 {
-                        let along = |rows: Vec<&[Vector2<f64>]>| {
-                            value_at(&rows.iter().map(|row| row[j][c]).collect::<Vec<_>>(), point.s)
+                        let along = |degree: Degree, rows: &[Vec<Vector2<f64>>]| {
+                            let values: Vec<f64> = rows.iter().map(|row| row[j][c]).collect();
+                            degree.value_at(&values, point.s)
                         };
-                        let of_v = along(face.functionals.sigma_n().into());
-                        let p0 = along(face.functionals.p0()) + (1.0 - terms.theta) * gamma * of_v;
+                        let of_v = along(Degree::One, &face.sigma_n);
+                        let p0 = along(face.degree, &face.p0) + (1.0 - terms.theta) * gamma * of_v;
                         self.add(node, c, -terms.stresses * weight * gamma * sigma_n * of_v);
                         self.add(node, c, terms.contact * weight * pressure * p0);
                     }

@@ -69,7 +69,7 @@ fn rounding_of_stresses(degree: Degree, problem: &Problem, by: f64) -> Result<f6
         (0..nodes).map(|i| [0, 1].map(|c| (sums[0][i][c] - sums[1][i][c]).head())).collect();
     let off = system.numbering.gather(&off);
     let neighbours = Neighbours::new(&d.space);
-    let stiffness = matrix::assemble_stiffness(&d, &system.numbering, &neighbours);
+    let stiffness = matrix::assemble_stiffness(&d, &system.numbering, &neighbours).map_err(text)?;
     let factor = Factor::new(&stiffness).map_err(text)?;
     let mut half = off;
     factor.forward(&mut half);

@@ -246,7 +246,7 @@ pub use row::claim;
 #[cfg(not(kani))]
 mod row {
     use proptest::prelude::*;
-    use signorini::fem::EdgeRule;
+    use signorini::fem::{Degree, EdgeRule};
     use signorini::kernel::P2;
     use signorini::kernel::edge_integral::{gauss, maximum, roots};
 
@@ -439,7 +439,7 @@ mod row {
             let size = p.iter().chain(&q).fold(0.0, |m: f64, v| m.max(v.abs()));
             let step = [0, 1].map(|a| Exact::of_double(q[a]) - Exact::of_double(p[a]));
             let linear = sum([0, 1], |a| exact(p).gradient[a] * step[a]);
-            let distance = EdgeRule::Exact.bregman(&p, &q);
+            let distance = EdgeRule::Exact.bregman(Degree::One, &p, &q);
             let expected = exact(q).energy - exact(p).energy - linear;
             ensure!(near(distance, expected, size * size * 2.0_f64.powi(-46)));
             Verdict::Holds(class(p))
@@ -456,11 +456,11 @@ mod row {
                     };
                 let half = Exact::ratio(1, 2);
                 let expected = half * (against(q, q) + against(p, p)) - against(p, q);
-                let distance = EdgeRule::Exact.bregman(&p.nodal(), &q.nodal());
+                let distance = EdgeRule::Exact.bregman(Degree::Two, &p.nodal(), &q.nodal());
                 ensure!(near(distance, expected, 100.0 * 2.0_f64.powi(-44)));
                 let rule = [(0.125, 0.25), (0.5, 0.5), (0.75, 0.25)];
                 let points = EdgeRule::Gauss(rule.to_vec());
-                let by_points = points.bregman(&p.nodal(), &q.nodal());
+                let by_points = points.bregman(Degree::Two, &p.nodal(), &q.nodal());
                 let expected = sum(rule, |(s, w)| {
                     let [p, q] = [p, q].map(|r| r.line().at(Exact::of_double(s)));
                     let [a, b] = [p, q].map(positive_part);

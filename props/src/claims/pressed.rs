@@ -11,13 +11,12 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
 use signorini::fem::contact_line::Coercivity;
-use signorini::fem::element::value_at;
 use signorini::fem::quadrature::gauss;
-use signorini::fem::{ContactFace, Diagonal, Discretization, EdgeRule, Problem, Rectangle};
+use signorini::fem::{Diagonal, Discretization, EdgeRule, Piece, Problem, Rectangle};
 use signorini::kernel::PreciseBall;
 use signorini::kernel::contact_edge::integral_of_product;
 use signorini::kernel::{self, Material, Plane};
-use signorini::solve::balls::lines;
+use signorini::solve::balls::pieces;
 use signorini::solve::pressed::{Pressed, SHARES};
 use signorini::solve::{Degree, Method, Settings, solve};
 
@@ -36,7 +35,7 @@ fn square() -> Result<Problem, String> {
 /// A displacement, and what is known of it.
 struct At<'a, 'p> {
     d: &'a Discretization<'p>,
-    lines: Vec<ContactFace<PreciseBall>>,
+    lines: Vec<Piece<PreciseBall>>,
 }
 
 fn balls(u: &[[f64; 2]]) -> Vec<[PreciseBall; 2]> {
@@ -45,10 +44,10 @@ fn balls(u: &[[f64; 2]]) -> Vec<[PreciseBall; 2]> {
 
 impl<'a, 'p> At<'a, 'p> {
     fn new(d: &'a Discretization<'p>) -> Self {
-        At { d, lines: lines(d) }
+        At { d, lines: pieces(d) }
     }
 
-    fn edge(&self) -> &'a ContactFace {
+    fn edge(&self) -> &'a Piece {
         &self.d.contact[0]
     }
 
@@ -65,13 +64,13 @@ impl<'a, 'p> At<'a, 'p> {
     fn is_positive(p: &[f64], pressed: &Pressed) -> bool {
         let places = |[a, b]: [f64; 2]| (0..=50).map(move |k| a + (b - a) * f64::from(k) / 50.0);
         let mut places = pressed.pieces(0).iter().copied().flat_map(places);
-        places.all(|s| value_at(p, s) > 0.0)
+        places.all(|s| degree(p).value_at(p, s) > 0.0)
     }
 
     /// The field that has these values of n . v at the nodes of the edge, and is 0 elsewhere.
     fn field(&self, values: Vec<f64>) -> Vec<[f64; 2]> {
         let mut v = vec![[0.0; 2]; self.d.space.nodes().len()];
-        for (node, value) in self.d.space.edge_nodes(self.edge().edge).into_iter().zip(values) {
+        for (node, value) in self.d.space.edge_nodes(self.edge().edge()).into_iter().zip(values) {
             v[node][1] = -value;
         }
         v
@@ -85,13 +84,13 @@ impl<'a, 'p> At<'a, 'p> {
             EdgeRule::Gauss(points) => points.clone(),
         };
         let rule = rule.into_iter();
-        let square = |s| value_at(&p, s).powi(2);
-        self.edge().length / self.edge().gamma * rule.map(|(s, w)| w * square(s)).sum::<f64>()
+        let square = |s| self.edge().degree.value_at(&p, s).powi(2);
+        self.edge().weight() * rule.map(|(s, w)| w * square(s)).sum::<f64>()
     }
 
     /// |v|_S^2
     fn square(&self, v: &[[f64; 2]]) -> f64 {
-        let sigma = self.edge().sigma_n(|node| v[node]);
+        let sigma = self.edge().sigma_n(v);
         let stress = self.edge().gamma * self.edge().length * integral_of_product(sigma, sigma);
         self.d.strain_energy(v) - stress + self.springs(v)
     }
@@ -108,6 +107,11 @@ impl<'a, 'p> At<'a, 'p> {
         }
         low
     }
+}
+
+/// The degree of a polynomial on an edge with so many nodes.
+fn degree(p: &[f64]) -> Degree {
+    if p.len() == 2 { Degree::One } else { Degree::Two }
 }
 
 /// The polynomials of degree 1 and 2 that are 1 at the start and have the least mean square: by their values at the nodes.
@@ -200,7 +204,7 @@ fn holds_on(degree: Degree, rule: EdgeRule, kappa: f64, share: f64) -> Result<f6
     let mut nearest: f64 = 0.0;
     for (s, hold) in places.into_iter().zip(&holds) {
         let mut component = Mat::zeros(count - 1, 1);
-        let nodes = d.space.edge_nodes(at.edge().edge).into_iter().zip(degree.edge_values(s));
+        let nodes = d.space.edge_nodes(at.edge().edge()).into_iter().zip(degree.edge_values(s));
         for ((node, shape), (x, [_, y])) in nodes.zip(&hold.terms) {
             let place = d.space.nodes()[node];
             let near = |ball: kernel::Ball, value: f64| {

@@ -311,8 +311,8 @@ fn translation(degree: Degree, more: f64) -> Result<(), String> {
     }
     for (i, p) in p.iter().map(|p| p.head()).enumerate() {
         let (edge, a) = (&d.contact[i / (degree.number() + 1)], i % (degree.number() + 1));
-        let n = edge.directions[a];
-        let expected = n[0] / 3.0 + n[1] / 9.0 - edge.gap[a];
+        let node = edge.geometry.nodes[a];
+        let expected = node.direction[0] / 3.0 + node.direction[1] / 9.0 - node.gap;
         if !((p - expected).abs() <= 1e-15) {
             return Err(format!("P is {p}, expected {expected}"));
         }

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use signorini::fem::{Condition, ContactFace, Diagonal, Problem, Rectangle};
+use signorini::fem::{Condition, Diagonal, Piece, Problem, Rectangle};
 use signorini::kernel::triangle::on_edge;
 use signorini::kernel::{Material, Plane};
 use signorini::nalgebra::Vector2;
@@ -26,39 +26,40 @@ fn bent(plane: Plane) -> Result<Problem, String> {
 }
 
 /// n~ at the nodes of an edge; the planted mistake takes the facet's normal.
-type Directions = fn(&ContactFace) -> Vec<Vector2<f64>>;
+type Directions = fn(&Piece) -> Vec<Vector2<f64>>;
 
 fn functionals_on(degree: Degree, plane: Plane, directions: Directions) -> Outcome {
     let problem = bent(plane)?;
     let d = discretize(&problem, &Method { degree, ..Method::default() }).map_err(text)?;
-    if d.contact.iter().all(|edge| edge.along_normal) {
+    if d.contact.iter().all(|edge| edge.geometry.along_normal) {
         return Err("the direction of contact turns nowhere".to_owned());
     }
     let mut random = Random(2013);
     for edge in &d.contact {
         let v = random.field(d.space.nodes().len());
-        let vectors = d.space.on_triangle(edge.edge.triangle, &v);
-        let triangle = problem.mesh.triangle(edge.edge.triangle);
-        let material = problem.material.of(edge.edge.triangle);
+        let vectors = d.space.on_triangle(edge.edge().triangle, &v);
+        let triangle = problem.mesh.triangle(edge.edge().triangle);
+        let material = problem.material.of(edge.edge().triangle);
         let n = directions(edge);
         // n~ . sigma(v) n at the start and at the end: the first two nodes.
         let stress = [0, 1].map(|a| {
-            let l = on_edge(edge.edge.local, a as f64);
+            let l = on_edge(edge.edge().local, a as f64);
             let barycentric = triangle.barycentric_gradients();
             let sigma =
                 material.stress(degree.displacement_gradient(l, barycentric, |j| vectors[j]));
-            n[a].dot(&sigma.traction(edge.normal))
+            n[a].dot(&sigma.traction(edge.normal()))
         });
         let near = |found: f64, expected: f64| (found - expected).abs() <= 1e-11;
-        let found = edge.sigma_n(|node| v[node]);
+        let found = edge.sigma_n(&v);
         if !(near(found[0], stress[0]) && near(found[1], stress[1])) {
             return Err(format!("s(v) = {found:?}, by definition {stress:?}"));
         }
         let p = edge.p(&v);
-        let nodes = degree.edge_nodes(edge.edge.local);
+        let nodes = degree.edge_nodes(edge.edge().local);
         for (a, s) in degree.edge_positions().into_iter().enumerate() {
             let along = (1.0 - s) * stress[0] + s * stress[1];
-            let expected = n[a].dot(&vectors[nodes[a]]) - edge.gamma * along - edge.gap[a];
+            let expected =
+                n[a].dot(&vectors[nodes[a]]) - edge.gamma * along - edge.geometry.nodes[a].gap;
             if !near(p[a], expected) {
                 return Err(format!("P(v) = {}, by definition {expected}", p[a]));
             }
@@ -67,12 +68,12 @@ fn functionals_on(degree: Degree, plane: Plane, directions: Directions) -> Outco
     Ok(())
 }
 
-fn facets(edge: &ContactFace) -> Vec<Vector2<f64>> {
-    vec![edge.normal; edge.directions.len()]
+fn facets(edge: &Piece) -> Vec<Vector2<f64>> {
+    vec![edge.normal(); edge.geometry.nodes.len()]
 }
 
-fn given(edge: &ContactFace) -> Vec<Vector2<f64>> {
-    edge.directions.clone()
+fn given(edge: &Piece) -> Vec<Vector2<f64>> {
+    edge.geometry.directions().collect()
 }
 
 /// C_h by its definition, an edge counted `factor` of the cosine times; and (11) with kappa for random fields.
@@ -81,9 +82,9 @@ fn kappa_on(degree: Degree, factor: fn(f64) -> f64) -> Outcome {
     let d = discretize(&problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let mut lengths: BTreeMap<usize, f64> = BTreeMap::new();
     for edge in &d.contact {
-        let cosine = edge.directions[0].dot(&edge.directions[1]);
+        let cosine = edge.geometry.nodes[0].direction.dot(&edge.geometry.nodes[1].direction);
         let counted = if degree.number() == 1 { 1.0 } else { factor(cosine) };
-        *lengths.entry(edge.edge.triangle).or_default() += counted * edge.length;
+        *lengths.entry(edge.edge().triangle).or_default() += counted * edge.length;
     }
     // p (p + 1) / 2
     let trace = if degree == Degree::One { 1.0 } else { 3.0 };
@@ -102,7 +103,7 @@ fn kappa_on(degree: Degree, factor: fn(f64) -> f64) -> Outcome {
         let v = random.field(d.space.nodes().len());
         let mut sum = 0.0;
         for edge in &d.contact {
-            let [start, end] = edge.sigma_n(|node| v[node]);
+            let [start, end] = edge.sigma_n(&v);
             let square = (start * start + start * end + end * end) / 3.0;
             sum += edge.gamma * edge.length * square;
         }

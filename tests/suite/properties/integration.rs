@@ -55,7 +55,7 @@ fn kappa_is_one_half(gamma0: Gamma0) -> Outcome {
             let d = discretize(problem, &Method { degree, gamma0, ..Method::default() });
             let mut lengths: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
             for line in &d.map_err(text)?.contact {
-                lengths.entry(line.edge.triangle).or_insert((line.gamma, 0.0)).1 += line.length;
+                lengths.entry(line.edge().triangle).or_insert((line.gamma, 0.0)).1 += line.length;
             }
             for (t, (gamma, length)) in lengths {
                 let stiffness = problem.material.of(t).lambda() + 2.0 * problem.material.of(t).mu();
@@ -254,13 +254,13 @@ fn errors_on(problem: &Problem, sign: f64, inverted: bool) -> Outcome {
         (4.0 * (a * a + b * b) + 16.0 * m * m + 4.0 * m * (a + b) - 2.0 * a * b) / 30.0
     };
     for line in &d.contact {
-        let [start, end] = line.sigma_n(|node| e[node]);
+        let [start, end] = line.sigma_n(&e);
         let gamma = line.gamma;
         let weight = line.length * gamma;
         expected.normal_stress += weight * (start * start + start * end + end * end) / 3.0;
         let share = if inverted { weight } else { line.length / gamma };
         expected.operator += share * squared(three(line.p(&e)).map(|p| p - exact.gap));
-        let [start, end] = line.sigma_n(|node| u[node]);
+        let [start, end] = line.sigma_n(&u);
         let pressed = three(line.p(&v)).map(|p| positive_part(p) / gamma);
         let z = [start + pressed[0], end + pressed[1], (start + end) / 2.0 + pressed[2]];
         expected.contact_residual += weight * squared(z);

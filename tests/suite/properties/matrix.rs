@@ -65,8 +65,8 @@ type Assemble = fn(&Discretization, &Unknowns) -> [LowerTriangle; 2];
 
 fn assembled_over(d: &Discretization, numbering: &Numbering) -> [LowerTriangle; 2] {
     let neighbours = Neighbours::new(&d.space);
-    let stiffness = matrix::assemble_stiffness(d, numbering, &neighbours);
-    [stiffness, matrix::assemble(d, numbering, &neighbours)]
+    let stiffness = matrix::assemble_stiffness(d, numbering, &neighbours).unwrap();
+    [stiffness, matrix::assemble(d, numbering, &neighbours).unwrap()]
 }
 
 fn assembled(d: &Discretization, unknowns: &Unknowns) -> [LowerTriangle; 2] {
@@ -78,7 +78,7 @@ fn an_edge_forgotten(d: &Discretization, unknowns: &Unknowns) -> [LowerTriangle;
     let numbering = unknowns.numbering();
     let [stiffness, _] = assembled_over(d, &numbering);
     let mut whole = stiffness.clone();
-    d.contact[1..].iter().for_each(|edge| whole.add_contact_stress(&numbering, edge));
+    d.contact[1..].iter().for_each(|edge| whole.add_contact_stress(&numbering, edge).unwrap());
     [stiffness, whole]
 }
 

@@ -5,6 +5,7 @@
 //! x, with springs of stiffness 1000: J(x) = 1/2 x^T B x - f^T x + 500 sum \[x_i\]+^2, the example of 4.4.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use signorini::kernel::DoubleDouble;
 use signorini::nalgebra::DMatrix;
@@ -31,8 +32,8 @@ impl ContactEnergy for Springs {
         3
     }
 
-    fn nodes(&self) -> usize {
-        1
+    fn values(&self, e: usize) -> Range<usize> {
+        e..e + 1
     }
 
     fn derivatives(&self, _: usize, p: &[DoubleDouble]) -> (Vec<f64>, DMatrix<f64>) {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use signorini::fem::constraints::Constraints;
 use signorini::fem::{
-    Condition, ContactFace, Degree, Diagonal, Function, Mesh, PointSupport, Problem, Rectangle,
+    Condition, Degree, Diagonal, Function, Mesh, Piece, PointSupport, Problem, Rectangle,
     SharedFunction, Space, contact_line, loads,
 };
 
@@ -162,7 +162,7 @@ fn curved(corners: usize, expected: bool) -> Outcome {
     problem.conditions.insert("rim".to_owned(), contact);
     let space = Space::new(&problem.mesh, Degree::One);
     let line = contact_line::assemble(&problem, &space, 1e-3).map_err(text)?;
-    match line.iter().position(|edge| edge.curved != expected) {
+    match line.iter().position(|edge| edge.geometry.curved != expected) {
         Some(e) => Err(format!("{corners} corners: edge {e} is not what it should be")),
         None => Ok(()),
     }
@@ -181,7 +181,7 @@ fn ordered(times: f64) -> Outcome {
         // Each edge by itself: gamma of kappa = 1 is h_T over the constant of its triangle.
         let local = contact_line::Gamma::Local(1.0);
         let line = contact_line::assemble(&problem, &space, local).map_err(text)?;
-        let h = |e: &ContactFace| problem.mesh.diameter(e.edge.triangle);
+        let h = |e: &Piece| problem.mesh.diameter(e.edge().triangle);
         let mut constants: Vec<f64> = line.iter().map(|edge| h(edge) / edge.gamma).collect();
         constants.sort_by(f64::total_cmp);
         let found = contact_line::Coercivity::new(&problem, Degree::One).map_err(text)?;
@@ -232,7 +232,7 @@ fn chained(sides: &[&str], breaks: usize) -> Outcome {
         problem.conditions.insert("contact".to_owned(), contact);
         let space = Space::new(&problem.mesh, Degree::One);
         let line = contact_line::assemble(&problem, &space, 1e-3).map_err(text)?;
-        let ends = |edge: &ContactFace| problem.mesh.ends(edge.edge);
+        let ends = |edge: &Piece| problem.mesh.ends(edge.edge());
         let found = line.windows(2).filter(|pair| ends(&pair[0])[1] != ends(&pair[1])[0]).count();
         if (line.len(), found) != (12 * sides.len(), breaks) {
             return Err(format!("{} edges with {found} breaks, expected {breaks}", line.len()));

@@ -3,8 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use signorini::fem::element::value_at;
-use signorini::fem::{Condition, ContactFace, Diagonal, Discretization, Mesh, Problem, Rectangle};
+use signorini::fem::{Condition, Diagonal, Discretization, Mesh, Piece, Problem, Rectangle};
 use signorini::kernel::{Material, Plane};
 use signorini::solve::iterate::Evaluated;
 use signorini::solve::{ContactBoundary, Degree, EnergyBalance, Method, Solution, discretize};
@@ -69,11 +68,11 @@ fn stresses_on(degree: Degree, problem: &Problem, plane: Option<Plane>) -> Resul
     }
     for part in &solution.boundaries {
         // Where P > 0, counted at 1000 places of each edge: of two roots each costs one of them.
-        let lines = d.contact.iter().filter(|line| *line.boundary == *part.boundary);
+        let lines = d.contact.iter().filter(|line| **line.boundary() == *part.boundary);
         let [counted, whole] = lines.fold([0.0; 2], |[counted, whole], line| {
             let p = line.p(&u);
             let places = (0..1000).map(|k| (f64::from(k) + 0.5) / 1000.0);
-            let pressed = places.filter(|&s| value_at(&p, s) > 0.0).count();
+            let pressed = places.filter(|&s| line.degree.value_at(&p, s) > 0.0).count();
             [counted + line.length * pressed as f64 / 1000.0, whole + line.length]
         });
         if !((counted - part.length).abs() <= 2e-3 * whole) {
@@ -110,10 +109,10 @@ fn stretches_are_those_of_contact(
 ) -> Result<(), String> {
     let edges = || {
         let all = d.contact.iter().zip(&solution.contact);
-        all.filter(|(line, _)| *line.boundary == *part.boundary)
+        all.filter(|(line, _)| **line.boundary() == *part.boundary)
     };
     let ends =
-        |line: &ContactFace| d.space.mesh().ends(line.edge).map(|v| d.space.mesh().vertices()[v]);
+        |line: &Piece| d.space.mesh().ends(line.edge()).map(|v| d.space.mesh().vertices()[v]);
     let far = |[a, b]: [f64; 2], [x, y]: [f64; 2]| (a - x).hypot(b - y);
     // Of a place on an edge: where its distances from the ends add up to the length.
     let arc = |x: [f64; 2]| {
@@ -139,7 +138,7 @@ fn stretches_are_those_of_contact(
         for s in (0..100).map(|k| (f64::from(k) + 0.5) / 100.0) {
             let place = told.points[0].arc + s * line.length;
             let inside = stretches.iter().any(|&[from, to]| from <= place && place <= to);
-            let pressed = value_at(&p, s);
+            let pressed = line.degree.value_at(&p, s);
             let size = p.iter().map(|p| p.abs()).fold(0.0, f64::max);
             if inside != (pressed > 0.0) && pressed.abs() > 1e-9 * size {
                 return Err(format!("P = {pressed:e} at arc length {place}, of {stretches:?}"));
@@ -272,15 +271,15 @@ fn recovered(degree: Degree, across: bool) -> Outcome {
         .contact
         .iter()
         .map(|line| {
-            let nodes = d.space.edge_nodes(line.edge).into_iter();
-            nodes.map(|node| key(d.space.nodes()[node], line.normal.into())).collect()
+            let nodes = d.space.edge_nodes(line.edge()).into_iter();
+            nodes.map(|node| key(d.space.nodes()[node], line.normal().into())).collect()
         })
         .collect();
     for (line, keys) in d.contact.iter().zip(&keys) {
         let p = line.p(&u);
         for k in 0..PLACES {
             let s = (f64::from(k) + 0.5) / f64::from(PLACES);
-            let pressure = value_at(&p, s).max(0.0) / line.gamma;
+            let pressure = line.degree.value_at(&p, s).max(0.0) / line.gamma;
             for (a, key) in keys.iter().enumerate() {
                 // Start, end, and for P2 the middle, whose hats are those of half edges.
                 let hat = match (degree, a) {

@@ -86,7 +86,7 @@ impl Route for Known<'_, '_, '_> {
         // A(v, v) = a(v, v) - int gamma sigma_n(v)^2.
         let mut energy = d.strain_energy(&field);
         for edge in &d.contact {
-            let [start, end] = edge.sigma_n(|node| field[node]);
+            let [start, end] = edge.sigma_n(&field);
             let square = (start * start + start * end + end * end) / 3.0;
             energy -= edge.gamma * edge.length * square;
         }
@@ -226,8 +226,8 @@ fn left_over(degree: Degree, problem: &Problem, shares: &[f64]) -> Result<f64, S
     let mut forces = sum_of_magnitudes(&d.load);
     for edge in &d.contact {
         let p = edge.p(&outcome.u);
-        let moments = EdgeRule::Exact.integrals(&p).gradient;
-        forces += edge.length / edge.gamma * moments.iter().map(|g| g.abs()).sum::<f64>();
+        let force = edge.contribution(&EdgeRule::Exact, &p).force;
+        forces += force.iter().map(|f| f.abs()).sum::<f64>();
     }
     Ok(free.sum::<f64>() / forces)
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use num_traits::ToPrimitive;
 use signorini::fem::matrix::Numbering;
 use signorini::fem::residual;
-use signorini::fem::{BoundaryEdge, ContactFace, Degree, Discretization};
+use signorini::fem::{BoundaryEdge, Degree, Discretization, Piece};
 use signorini::solve::Solution;
 use signorini::solve::iterate::Evaluated;
 
@@ -125,12 +125,12 @@ pub(super) fn loops<const N: usize>(draw: &Draw, mistake: Mistake) -> Verdict {
     setting.plant(mistake, draw);
     let n = [Exact::ratio(5, 13), Exact::ratio(-12, 13)];
     setting.body.contact.iter_mut().for_each(|side| side.n = n);
-    let edge = |edge: &ContactFace| {
-        let diameter = d.problem.mesh.diameter(edge.edge.triangle);
+    let edge = |edge: &Piece| {
+        let diameter = d.problem.mesh.diameter(edge.edge().triangle);
         let gamma = Exact::of_double(d.gamma0) * Exact::of_double(diameter);
-        residual::with_numbers(&d, edge, (Exact::of_double(edge.length), n.into(), gamma))
+        residual::piece_with(&d, edge, |side, _| (Exact::of_double(side.length), n.into(), gamma))
     };
-    let edges: Vec<ContactFace<Exact>> = d.contact.iter().map(edge).collect();
+    let edges: Vec<Piece<Exact>> = d.contact.iter().map(edge).collect();
     let nodes = d.space.nodes().len();
     let [u, v] = draw.fields(nodes).map(|field| read::<Exact>(&field));
     let definition = Definition::<N>(&setting.body);
@@ -141,8 +141,8 @@ pub(super) fn loops<const N: usize>(draw: &Draw, mistake: Mistake) -> Verdict {
         ensure!([0, 1].iter().all(|&s| found[s as usize] == p0.at(Exact::from(s))));
     }
     for (edge, side) in edges.iter().zip(&mut setting.body.contact) {
-        let solvers =
-            [0, 1, 2].map(|a| edge.gap.get(a).map_or(side.gap[a], |&g| Exact::of_double(g)));
+        let gap = |a: usize| edge.geometry.nodes.get(a).map(|node| Exact::of_double(node.gap));
+        let solvers = [0, 1, 2].map(|a| gap(a).unwrap_or(side.gap[a]));
         ensure!((0..3).all(|a| (solvers[a] - side.gap[a]).abs() <= Exact::of_double(1e-9)));
         side.gap = solvers;
     }
@@ -214,7 +214,7 @@ pub(super) fn contact_edges_follow_each_other(draw: &Draw, d: &Discretization<'_
         sides.values().position(|edges| edges.iter().any(|&e| owner(&triangles, e) == edge))
     };
     d.contact.windows(2).all(|pair| {
-        let [a, b] = [pair[0].edge, pair[1].edge];
+        let [a, b] = [pair[0].edge(), pair[1].edge()];
         side(a) != side(b) || ends(a)[1] == ends(b)[0]
     })
 }

@@ -98,7 +98,7 @@ impl<S: Given> Setting<S> {
         // The integrals are listed edge by edge in the solver's order.
         let place = |side: &Side<S>| {
             let edge = BoundaryEdge { triangle: side.triangle, local: side.local };
-            d.contact.iter().position(|line| line.edge == edge)
+            d.contact.iter().position(|line| line.edge() == edge)
         };
         if d.contact.len() != body.contact.len()
             || body.contact.iter().any(|side| place(side).is_none())

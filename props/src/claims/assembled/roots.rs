@@ -79,12 +79,12 @@ pub(super) fn gamma_is(draw: &Draw, square: impl Fn([Exact; 3], usize) -> Exact)
         let gamma0 = Exact::of_double(d.gamma0);
         for line in &d.contact {
             let vertices =
-                triangles[line.edge.triangle].map(|v| vertices[v].map(Exact::of_double).into());
+                triangles[line.edge().triangle].map(|v| vertices[v].map(Exact::of_double).into());
             let squares = [0, 1, 2].map(|i| {
                 let edge = Triangle { vertices }.edge(i);
                 edge.dot(&edge)
             });
-            ensure!(close(line.gamma, gamma0 * gamma0 * square(squares, line.edge.local)));
+            ensure!(close(line.gamma, gamma0 * gamma0 * square(squares, line.edge().local)));
         }
         Verdict::Holds("always")
     })
