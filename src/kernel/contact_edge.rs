@@ -132,6 +132,26 @@ where
     if E::DEGREE == 1 { S::from(1) } else { S::from(2) - cosine }
 }
 
+/// [`turning_factor`] where both components of the stress count, that along the direction of contact and that across:
+/// int_E |s(v)|^2 is at most the factor times int_E |sigma(v) n|^2, and the factor x + (x^2 - 1)^(1/2), x = (4 - cosine) / 3, of P2 is
+/// attained (docs/theory.md, 11.2).
+#[cfg(not(kani))]
+pub fn turning_factor_of_both<E, S, const N: usize, const M: usize>(
+    cosine: S,
+    root: impl Fn(S) -> S,
+) -> S
+where
+    E: Element<N, M>,
+    S: Scalar,
+{
+    let one = S::from(1);
+    if E::DEGREE == 1 {
+        return one;
+    }
+    let x = (S::from(4) - cosine) / S::from(3);
+    x + root((x * x - one).split(|_| S::from(0), |square| square))
+}
+
 /// The constant c of (n~ . sigma(v) n)^2 <= c sigma(v):eps(v) along an edge with the unit normal n: for one direction of contact d,
 /// d . Q(n) d with the acoustic tensor Q(n), which is A_nnnn for d = n; for directions that turn (`None`) the largest eigenvalue of
 /// Q(n), which serves |sigma(v) n|^2. lambda + 2 mu, which does for all unit vectors d, where A is isotropic.
