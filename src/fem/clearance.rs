@@ -2,6 +2,8 @@
 
 use super::dense::{dot, norm};
 use super::discretization::Discretization;
+use super::grip::across;
+use super::law::Law;
 use super::piece::Piece;
 use super::rigid::{FreeMotion, NEGLIGIBLE, Parts, null_space};
 use super::solvability::{Slides, all, negligible, rows};
@@ -16,21 +18,25 @@ impl Slides {
     pub fn around(d: &Discretization, u: &[[f64; 2]]) -> Option<Slides> {
         let idle = &d.slides.as_ref()?.idle;
         let size = |v: &[f64]| v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        let p: Vec<Vec<f64>> = d.contact.iter().map(|edge| edge.p(u)).collect();
+        let all: Vec<Vec<f64>> = d.contact.iter().map(|edge| edge.p(u)).collect();
+        let p: Vec<&[f64]> = d.contact.iter().zip(&all).map(|(edge, p)| edge.along(p)).collect();
         let degree = d.space.degree();
         let most = |p: &[f64]| degree.bernstein(p).into_iter().fold(0.0, f64::max);
         let largest = p.iter().map(|p| most(p)).fold(0.0, f64::max);
         let far = size(u.as_flattened());
-        let presses = |(p, piece): (&Vec<f64>, &Piece)| {
+        let presses = |((p, all), piece): ((&&[f64], &Vec<f64>), &Piece)| {
             let gap = piece.geometry.gaps().fold(0.0, |m: f64, g| m.max(g.abs()));
             let rounding = 8.0 * f64::EPSILON * (far + gap);
-            let active = piece.contribution(&d.rule, p).active;
+            let active = piece.contribution(&d.rule, all).active;
             most(p) > rounding.max(PRESSES * largest) && active > 0.0
         };
-        let pressing = p.iter().zip(&d.contact).map(presses);
+        let pressing = p.iter().zip(&all).zip(&d.contact).map(presses);
         let pressing: Vec<bool> = pressing.zip(idle).map(|(yes, idle)| yes && !idle).collect();
         let parts = Parts::new(d.space.mesh());
-        let slides = Slides::new(free_where(d, &parts, &pressing), &parts, &d.space);
+        // Friction stops what it does not let go on: the loads are not on the verge of that.
+        let rough = d.contact.iter().map(|piece| matches!(piece.geometry.law, Law::Friction(_)));
+        let stops: Vec<[bool; 2]> = pressing.iter().zip(rough).map(|(&p, r)| [p, r]).collect();
+        let slides = Slides::new(free_where(d, &parts, &stops), &parts, &d.space);
         let (at, basis) = (slides.at(u), &slides.basis);
         let rounding = NEGLIGIBLE.max(d.rounding_of_directions());
         let (mut bounds, mut stopping) = (Vec::new(), Vec::new());
@@ -64,12 +70,21 @@ impl Slides {
     }
 }
 
-/// The motions of `d` that neither supports nor the contact edges that are pressing stop.
-pub(crate) fn free_where(d: &Discretization, parts: &Parts, pressing: &[bool]) -> Vec<FreeMotion> {
+/// The motions of `d` that neither supports nor the contact edges stop that are pressing, or where friction stops what slides along them.
+pub(crate) fn free_where(
+    d: &Discretization,
+    parts: &Parts,
+    stops: &[[bool; 2]],
+) -> Vec<FreeMotion> {
     let mut free = Vec::new();
     for of_part in d.motions.chunk_by(|a, b| a.part == b.part) {
         let count = of_part.len();
-        let rows = all(&rows(of_part, parts, &d.space, &d.contact, |e| pressing[e]));
+        let mut rows = all(&rows(of_part, parts, &d.space, &d.contact, |e| stops[e][0]));
+        let of_part_too =
+            |piece: &Piece| parts.of_triangle()[piece.edge().triangle] == of_part[0].part;
+        for (piece, _) in d.contact.iter().zip(stops).filter(|(p, s)| s[1] && of_part_too(p)) {
+            rows.extend(across(of_part, &d.space, piece));
+        }
         let none = negligible(&rows, count, d.rounding_of_directions());
         let weights = null_space(&rows, count, |value, _| value > none);
         free.extend(weights.iter().map(|weights| parts.combined(of_part, weights)));

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use super::boundary_normals::{SmoothBoundary, SmoothPoint};
 use super::data::{DataError, finite};
 use super::element::Degree;
+use super::friction::{Bound, Friction};
 use super::function::SharedFunction;
 use super::law::Law;
 use super::mesh::{BoundaryEdge, ROUNDED};
@@ -122,14 +123,16 @@ impl ContactLine {
     /// [`DataError::NoContact`], a gap that is not finite, an obstacle on the other side of the body, and unknown boundary names.
     pub fn new(problem: &Problem, space: &Space) -> Result<Self, DataError> {
         let obstacles = Obstacles { problem, smooth: SmoothBoundary::new(&problem.mesh) };
-        let mut pieces: Vec<Arc<PieceGeometry>> = Vec::new();
+        let mut pieces: Vec<PieceGeometry> = Vec::new();
         for (edge, name) in contact_edges(problem)? {
             let boundary = match pieces.last() {
                 Some(last) if &*last.first().boundary == name => Arc::clone(&last.first().boundary),
                 _ => Arc::from(name),
             };
-            pieces.push(Arc::new(obstacles.piece(space, edge, boundary)?));
+            pieces.push(obstacles.piece(space, edge, boundary)?);
         }
+        without_idle_friction(problem, &mut pieces)?;
+        let pieces: Vec<Arc<PieceGeometry>> = pieces.into_iter().map(Arc::new).collect();
         check_sides(problem, &pieces)?;
         Ok(ContactLine { degree: space.degree(), pieces })
     }
@@ -169,12 +172,15 @@ impl ContactLine {
         let mut constants: BTreeMap<usize, f64> = BTreeMap::new();
         for piece in &self.pieces {
             let [start, end] = [0, 1].map(|a| piece.nodes[a].direction);
+            let one = piece.law.components() == 1;
             for &Stretch { edge, .. } in &piece.stretches {
                 let (length, normal) = mesh.length_and_normal(edge);
-                let counted = if start == end {
-                    length
-                } else {
-                    self.degree.turning_factor(start.dot(&end)) * length
+                let counted = match (start == end, one) {
+                    (true, _) => length,
+                    (false, true) => self.degree.turning_factor(start.dot(&end)) * length,
+                    (false, false) => {
+                        self.degree.turning_factor_of_both(start.dot(&end), f64::sqrt) * length
+                    }
                 };
                 let t = edge.triangle;
                 let (area, material) =
@@ -182,7 +188,7 @@ impl ContactLine {
                 let stiffness = traction_stiffness(
                     material,
                     normal,
-                    (start == end).then_some(start),
+                    (start == end && one).then_some(start),
                     f64::sqrt,
                 );
                 *constants.entry(t).or_default() +=
@@ -230,6 +236,29 @@ pub fn assemble(
     gamma: impl Into<Gamma>,
 ) -> Result<Vec<Piece>, DataError> {
     Ok(ContactLine::new(problem, space)?.with_gamma(problem, space, gamma.into()))
+}
+
+/// Takes out friction that bears nothing all along its boundary: there the method is that of contact alone, to the bit.
+///
+/// # Errors
+/// Friction on a boundary without contact.
+fn without_idle_friction(problem: &Problem, pieces: &mut [PieceGeometry]) -> Result<(), DataError> {
+    for name in problem.friction.keys() {
+        if !problem.conditions.get(name).is_some_and(Condition::is_contact) {
+            let what = format!("[boundary.{}]", key(name));
+            return Err(DataError::FrictionWithoutContact { what });
+        }
+        let bears = |piece: &PieceGeometry| match piece.law {
+            Law::Friction(Bound::Tresca(ends)) => ends.iter().any(|&s| s > 0.0),
+            Law::Friction(Bound::Coulomb(mu)) => mu > 0.0,
+            _ => false,
+        };
+        let on_it = |piece: &&mut PieceGeometry| *piece.first().boundary == **name;
+        if !pieces.iter_mut().filter(on_it).any(|piece| bears(piece)) {
+            pieces.iter_mut().filter(on_it).for_each(|piece| piece.law = Law::Contact);
+        }
+    }
+    Ok(())
 }
 
 /// No edge that faces away from its obstacle lies inside it, and no boundary faces away as a whole: else the obstacle is on the
@@ -295,14 +324,41 @@ impl Obstacles<'_> {
             _ => 0.0,
         };
         let positions = space.degree().edge_positions();
+        let law = self.law(&boundary, &nodes)?;
         Ok(PieceGeometry {
             stretches: vec![Stretch { edge, boundary, positions }],
             nodes,
-            law: Law::Contact,
+            law,
             curved: self.smooth.at_ends(edge).is_some(),
             along_normal,
             bulge,
         })
+    }
+
+    /// The law on an edge of the boundary `name` with these nodes.
+    fn law(&self, name: &str, nodes: &[PieceNode]) -> Result<Law, DataError> {
+        match self.problem.friction.get(name) {
+            None => Ok(Law::Contact),
+            Some(&Friction::Coulomb(mu)) if mu >= 0.0 && mu.is_finite() => {
+                Ok(Law::Friction(Bound::Coulomb(mu)))
+            }
+            Some(Friction::Coulomb(mu)) => {
+                let expected = "a number that is not negative";
+                let (what, found) = ("the coefficient of friction", mu.to_string());
+                Err(DataError::Value { what, found, expected })
+            }
+            Some(Friction::Tresca(bound)) => {
+                let what = || format!("[boundary.{}] contact.friction.tresca", key(name));
+                let at = |a: usize| match finite(&**bound, nodes[a].place, what)? {
+                    value if value < 0.0 => {
+                        let (boundary, [x, y]) = (name.to_owned(), nodes[a].place);
+                        Err(DataError::NegativeFriction { boundary, value, x, y })
+                    }
+                    value => Ok(value),
+                };
+                Ok(Law::Friction(Bound::Tresca([at(0)?, at(1)?])))
+            }
+        }
     }
 
     /// Gap and direction at a point of the boundary `name`.

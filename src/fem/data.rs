@@ -49,6 +49,13 @@ pub enum DataError {
         key(obstacle), number(*x), number(*y), quoted(boundary, '\''), number(direction[0]), number(direction[1])
     )]
     WrongSide { obstacle: String, boundary: String, x: f64, y: f64, direction: [f64; 2] },
+    #[error(
+        "[boundary.{}] contact.friction.tresca is {value} at ({}, {}); expected a stress that is not negative at every point of the boundary",
+        key(boundary), number(*x), number(*y)
+    )]
+    NegativeFriction { boundary: String, value: f64, x: f64, y: f64 },
+    #[error("{what} has friction and no contact; expected a boundary with contact, or no friction")]
+    FrictionWithoutContact { what: String },
     #[error("the material is none: {0}")]
     Material(#[from] MaterialError),
     #[error("{what} is {found}; expected {expected}")]

@@ -1,6 +1,8 @@
 //! Method (8) on a mesh: all its parts in one place, and its [residual](super::residual) in doubles. On the free degrees of
 //! freedom the solution makes it zero; on the prescribed ones it is the reaction.
 
+use std::sync::Arc;
+
 use nalgebra::Vector2;
 
 use super::constraints::{Constraints, in_frame};
@@ -8,10 +10,11 @@ use super::contact_line::{Coercivity, ContactLine, Gamma};
 use super::data::DataError;
 use super::dense::inner;
 use super::element::Degree;
-use super::law::EdgeRule;
+use super::friction::Bound;
+use super::law::{EdgeRule, Law};
 use super::loads::{self, LoadVector};
 use super::material;
-use super::piece::Piece;
+use super::piece::{Piece, PieceGeometry};
 use super::problem::Problem;
 use super::rigid::FreeMotion;
 use super::solvability::{self, NotHeld, Slides};
@@ -146,6 +149,30 @@ impl<'a> Discretization<'a> {
             load: self.load.clone(),
             enclosed_load: self.enclosed_load.clone(),
             contact: self.contact.clone(),
+            rule: self.rule.clone(),
+            motions: self.motions.clone(),
+            ..*self
+        }
+    }
+
+    /// The discretization with Tresca's friction where this one has Coulomb's; `bound` tells the slip bound on a piece from its number
+    /// and its coefficient.
+    #[must_use]
+    pub(crate) fn with_slip_bounds(&self, bound: impl Fn(usize, f64) -> f64) -> Self {
+        let mut contact = self.contact.clone();
+        for (e, piece) in contact.iter_mut().enumerate() {
+            if let Law::Friction(Bound::Coulomb(mu)) = piece.geometry.law {
+                let law = Law::Friction(Bound::Tresca([bound(e, mu); 2]));
+                piece.geometry = Arc::new(PieceGeometry { law, ..(*piece.geometry).clone() });
+            }
+        }
+        Discretization {
+            constraints: self.constraints.clone(),
+            slides: self.slides.clone(),
+            space: self.space.clone(),
+            load: self.load.clone(),
+            enclosed_load: self.enclosed_load.clone(),
+            contact,
             rule: self.rule.clone(),
             motions: self.motions.clone(),
             ..*self

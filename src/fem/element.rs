@@ -106,6 +106,11 @@ impl Degree {
         with_element!(self, E => E::at_stiffness_points(f));
     }
 
+    /// [`contact_edge::turning_factor_of_both`].
+    pub fn turning_factor_of_both<S: Scalar>(self, cosine: S, root: impl Fn(S) -> S) -> S {
+        with_element!(self, E => contact_edge::turning_factor_of_both::<E, _, _, _>(cosine, root))
+    }
+
     /// The value at `s` of the polynomial on an edge with the values `p` at its nodes.
     pub fn value_at<S: Scalar>(self, p: &[S], s: S) -> S {
         with_element!(self, E => {

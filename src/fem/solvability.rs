@@ -13,6 +13,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::dense::{dot, inner, least_squares, norm, singular_vectors};
+use super::grip::Grip;
 use super::mesh::NO_ANGLE;
 use super::piece::Piece;
 use super::rigid::{FreeMotion, NEGLIGIBLE, Parts, null_space, subtract};
@@ -20,7 +21,7 @@ use super::space::Space;
 
 /// Loads must go on pressing when they are changed by this share of the largest work of single loads: a body on the verge of tipping
 /// is not held. Nobody knows loads better, and it is ten thousand times what is taken for rounding.
-const MARGIN: f64 = 1e-6;
+pub(super) const MARGIN: f64 = 1e-6;
 
 /// The motions that contact and loads do not hold.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,10 +128,26 @@ pub fn slides(
             pairs.map(|(l, r)| of(l * r)).sum()
         };
         let scale = fields.iter().map(|r| work(f64::abs, r)).fold(0.0, f64::max);
-        // In units of the largest work of single loads.
-        let unit = if scale > 0.0 { scale } else { 1.0 };
+        let grip = Grip::new(of_part, parts, space, contact, &edges);
+        // In units of the largest work of single loads, or of what friction can do.
+        let strength = grip.as_ref().map_or(0.0, Grip::size);
+        let unit = [scale, strength].into_iter().find(|&size| size > 0.0).unwrap_or(1.0);
         let loads: Vec<f64> = fields.iter().map(|r| work(|w| w, r) / unit).collect();
         let none = negligible(&all(&edges), count, rounding);
+        if let Some(grip) = grip {
+            let smooth =
+                edges.iter().filter(|(e, _)| !(grip.pieces.contains(e) && !grip.cones.is_empty()));
+            let normal: Vec<Vec<f64>> = smooth.flat_map(|(_, rows)| rows.clone()).collect();
+            if let Some((weights, driven)) = grip.driven(&normal, &loads, unit, none) {
+                let motion = parts.combined(of_part, &weights);
+                let drive = work(|w| w, &motion.field(parts, space)) / motion.size();
+                return Err(NotHeld { drive: driven.then_some(drive), motions: vec![motion] });
+            }
+            let rows = [all(&edges), grip.rows()].concat();
+            let free = null_space(&rows, count, |value, _| value > none);
+            sliding.extend(free.iter().map(|weights| parts.combined(of_part, weights)));
+            continue;
+        }
         let kept = press(edges.clone(), &loads, none).map_err(|left| match left {
             Some((weights, driven)) => {
                 let motion = parts.combined(of_part, &weights);
@@ -302,7 +319,7 @@ fn orthonormal(fields: impl Iterator<Item = Vec<[f64; 2]>>) -> Vec<Vec<[f64; 2]>
 }
 
 /// The part of `target` that no combination of the rows with weights >= 0 reaches, if it is larger than `tolerance`.
-fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -> Option<Vec<f64>> {
+pub(super) fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -> Option<Vec<f64>> {
     // The rows in use and their weights.
     let mut used: Vec<(usize, f64)> = Vec::new();
     let mut rest = target.to_vec();

@@ -32,7 +32,10 @@ pub(super) fn kappa(d: &Discretization, pieces: &[Piece<PreciseBall>]) -> f64 {
             geometry.directions().map(|n| n.map(PreciseBall::from).into()).collect();
         for (side, stretch) in piece.sides.iter().zip(&geometry.stretches) {
             let t = stretch.edge.triangle;
-            let direction = if geometry.along_normal {
+            let one = geometry.law.components() == 1;
+            let direction = if !one {
+                None
+            } else if geometry.along_normal {
                 Some(side.normal)
             } else {
                 (!geometry.turns()).then_some(along[0].into())
@@ -42,7 +45,17 @@ pub(super) fn kappa(d: &Discretization, pieces: &[Piece<PreciseBall>]) -> f64 {
             } else {
                 let off = along.iter().map(|&n| (dot(n, n) - PreciseBall::from(1)).magnitude());
                 let off = PreciseBall::from(8.0 * off.fold(0.0, larger));
-                let turning = degree.turning_factor(dot(along[0], along[1]));
+                let cosine = dot(along[0], along[1]);
+                let turning = if one {
+                    degree.turning_factor(cosine)
+                } else {
+                    let least = PreciseBall::from((cosine - off).lower());
+                    PreciseBall::from(
+                        degree
+                            .turning_factor_of_both(least, |x| PreciseBall::from(root(x)))
+                            .upper(),
+                    )
+                };
                 turning * (PreciseBall::from(1) + off) + off
             };
             let material = d.problem.material.of(t).map(PreciseBall::from);

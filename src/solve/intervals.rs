@@ -201,9 +201,11 @@ impl EnclosedResidual {
         let mut contact: Vec<(Arc<str>, [PreciseBall; 3], PreciseBall)> = Vec::new();
         for (line, pressure) in lines.iter().zip(&self.pressures) {
             let zero = PreciseBall::from(0);
-            let of = pressure.iter().enumerate().fold([zero; 3], |sum, (a, &p)| {
-                let n = line.direction(a);
-                [sum[0] + p, sum[1] - p * n[0], sum[2] - p * n[1]]
+            let along = line.along(pressure).len();
+            let of = pressure.iter().enumerate().fold([zero; 3], |sum, (i, &p)| {
+                let n = line.direction_of(i);
+                let force = if i < along { sum[0] + p } else { sum[0] };
+                [force, sum[1] - p * n[0], sum[2] - p * n[1]]
             });
             let weight = line.weight();
             match contact.iter_mut().find(|(name, ..)| name == line.boundary()) {

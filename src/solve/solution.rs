@@ -112,6 +112,10 @@ pub struct ContactValues {
     pub lambda: f64,
     /// The recovered pressure ([`super::answers`]), the one to report.
     pub pressure: f64,
+    /// u_t = u . t, t being n~ turned to the left.
+    pub u_t: f64,
+    /// The shear stress of friction along t.
+    pub shear: f64,
 }
 
 /// Scalars of a solution, in the units of the case.
@@ -237,6 +241,8 @@ fn contact_values(
                     sigma_n: (1.0 - positions[a]) * sigma_n[0] + positions[a] * sigma_n[1],
                     lambda: pressure(p[a].head(), edge.gamma) + 0.0,
                     pressure: recovered[a],
+                    u_t: y * direction[0] - x * direction[1],
+                    shear: edge.shear_at(p, a) + 0.0,
                 }
             })
             .collect();
@@ -263,7 +269,8 @@ fn quantities(d: &Discretization, Evaluated { u, p, residual }: &Evaluated) -> Q
     for (edge, p) in d.contact.iter().zip(p) {
         let contact = edge.contribution(&d.rule, p);
         q.contact_force += contact.resultant;
-        for (force, n) in contact.force.iter().zip(edge.geometry.directions()) {
+        for (i, force) in contact.force.iter().enumerate() {
+            let n = edge.direction_of(i);
             for c in 0..2 {
                 q.contact_resultant[c] -= force * n[c];
             }
