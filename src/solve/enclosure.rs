@@ -25,6 +25,7 @@ use super::SolveError;
 use super::balls::{field, free, kappa, length, pieces, root};
 use super::factor::Factor;
 use super::intervals::{Arithmetic, EnclosedResidual, Intervals};
+use super::isolated::{self, Isolated};
 use super::newton::SLIGHT;
 use super::pressed::{self, Pressed, SHARES};
 use super::system::System;
@@ -51,6 +52,20 @@ pub struct Enclosure {
     pub nodes: Vec<f64>,
     /// Intervals of the reported quantities.
     pub intervals: Intervals,
+    /// With Coulomb's friction: near which there is no other solution; without it there is exactly one anywhere.
+    pub isolation: Option<Isolation>,
+}
+
+/// The distance within which the discrete equations with Coulomb's friction have exactly one solution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Isolation {
+    /// There is exactly one whose difference from the displacement has no larger energy norm.
+    pub within: f64,
+    /// That over |u~|_a; `None` for a body without strain.
+    pub relative: Option<f64>,
+    /// There is no other anywhere.
+    pub everywhere: bool,
 }
 
 /// Why nothing is proved.
@@ -74,6 +89,16 @@ pub enum Unproved {
         "kappa is 1 or more when its rounding is counted: it over- or underflows double precision, or is next to 1"
     )]
     NoKappa,
+    #[error(
+        "Coulomb's friction: no distance is proved within which this solution is the only one; where a stretch is just at the limit of sliding or of pressing there need not be one"
+    )]
+    NotIsolated,
+    #[error(
+        "Coulomb's friction: the proof is for up to 2000 contact functionals and 2e8 entries of their compliance; there are {count} functionals"
+    )]
+    TooManyFunctionals { count: usize },
+    #[error("Coulomb's friction: the proof is for a body that its supports hold")]
+    FrictionHolds,
     #[error("the bound over- or underflows double precision")]
     OutOfRange,
     #[error("out of memory")]
@@ -83,12 +108,21 @@ pub enum Unproved {
 impl Unproved {
     /// Returns whether a displacement that is nearer, or better arithmetic, may tell more.
     pub(crate) fn may_be_rounding(&self) -> bool {
-        !matches!(self, Unproved::NotCoercive { .. } | Unproved::NoKappa | Unproved::NotHeld)
+        let by_nature =
+            matches!(self, Unproved::TooManyFunctionals { .. } | Unproved::FrictionHolds);
+        let by_method =
+            matches!(self, Unproved::NotCoercive { .. } | Unproved::NoKappa | Unproved::NotHeld);
+        !(by_nature || by_method)
     }
 
     /// Returns whether (8) is known to have exactly one solution all the same.
     pub fn is_unique(&self) -> bool {
-        !matches!(self, Unproved::HeldByContact | Unproved::NotCoercive { .. } | Unproved::NoKappa)
+        let by_friction = matches!(
+            self,
+            Unproved::NotIsolated | Unproved::TooManyFunctionals { .. } | Unproved::FrictionHolds
+        );
+        let by_contact = matches!(self, Unproved::HeldByContact | Unproved::NotCoercive { .. });
+        !(by_friction || by_contact || *self == Unproved::NoKappa)
     }
 }
 
@@ -118,6 +152,8 @@ pub struct Verifier<'s, 'd, 'p> {
     of_a: Option<Arc<Factor>>,
     /// For what is pressed: the bounds at the nodes, and the factor, once it is needed.
     held: Option<HeldByContact>,
+    /// What the proof with Coulomb's friction knows of the body.
+    known: Option<isolated::Known>,
     /// The sum of the magnitudes of the residual where it was last evaluated.
     pub unbalanced: f64,
     /// The time that it has taken.
@@ -156,6 +192,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             proof,
             of_a,
             held: None,
+            known: None,
             unbalanced: f64::INFINITY,
             time,
         }
@@ -240,6 +277,9 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         let r = free(system, &at.residual);
         self.unbalanced = r.iter().map(|r| r.magnitude()).sum();
         let fields = (u, reported);
+        if d.slides.is_some() && d.has_coulomb() {
+            return Err(Unproved::FrictionHolds);
+        }
         if d.slides.is_none() {
             return self.held_by(
                 &Pressed::nowhere(self.lines.len()),
@@ -289,7 +329,8 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         let known = (at.moved.max(self.proof * size) * coercivity.sqrt()).max(up_to);
         let negligible = SLIGHT * known;
         let first = weighted(r, &crude);
-        let rho = if first <= negligible {
+        let coulomb = d.has_coulomb();
+        let rho = if first <= negligible && !coulomb {
             up(first + up_to)
         } else {
             let factor = match factor {
@@ -308,6 +349,19 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         if !pressed.stay(rho) {
             return Err(Unproved::HeldByContact);
         }
+        let mut isolated = None;
+        if let (true, Some(factor)) = (coulomb, factor) {
+            let arithmetic = Arithmetic::Balls;
+            let product = Product { system, lines: &self.lines, pressed, arithmetic };
+            let times = |z: &[PreciseBall]| product.times(z);
+            let body = isolated::Body { system, factor, times: &times, crude: &crude, coercivity };
+            let known = match &mut self.known {
+                Some(known) => known,
+                none => none.insert(isolated::Known::new(&body, &self.lines)?),
+            };
+            isolated = Some(isolated::isolate(d, known, &self.lines, &at.u, [rho, size])?);
+        }
+        let rho = isolated.map_or(rho, |isolated| isolated.rho);
         let exact = up(rho / coercivity.sqrt());
         let radius = up(exact + at.moved);
         if !radius.is_finite() {
@@ -325,13 +379,27 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             let off = [0, 1].map(|c| exactly[c] - PreciseBall::from(reported[c]));
             *node = up(*node + length(off));
         }
-        let pressure = if pressed.edges().any(|is| is) { rho } else { rho / 2.0 };
+        let pressure = match isolated {
+            Some(isolated) => isolated.pressure,
+            None if pressed.edges().any(|is| is) => rho,
+            None => rho / 2.0,
+        };
         let intervals = at.intervals(d, &self.lines, (&exactly, &nodes), [rho, pressure], exact);
         if !intervals.are_finite() {
             return Err(Unproved::OutOfRange);
         }
         let relative = (size > 0.0).then(|| up(radius / size));
-        Ok(Enclosure { kappa, radius, relative, pressure, nodes, intervals })
+        // In the norm of A as in that of the energy, which is no smaller.
+        let isolation = isolated.filter(|isolated| exact <= isolated.within);
+        if isolation.is_none() && coulomb {
+            return Err(Unproved::NotIsolated);
+        }
+        let isolation = isolation.map(|Isolated { within, everywhere, .. }| Isolation {
+            within,
+            relative: (size > 0.0).then(|| within / size * (1.0 - 4.0 * f64::EPSILON)),
+            everywhere,
+        });
+        Ok(Enclosure { kappa, radius, relative, pressure, nodes, intervals, isolation })
     }
 }
 
@@ -371,7 +439,8 @@ fn stays_off(
     stopping.iter().map(|&e| &lines[e]).all(|line| {
         let on_edge = d.space.edge_nodes(line.edge());
         let far = on_edge.into_iter().map(|node| nodes[node]).fold(0.0, f64::max);
-        pressed::greatest(line.degree, &line.p(u)) + pressed::change(line, far, radius) <= 0.0
+        pressed::greatest(line.degree, line.along(&line.p(u))) + pressed::change(line, far, radius)
+            <= 0.0
     })
 }
 
