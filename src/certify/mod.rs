@@ -52,9 +52,11 @@ pub use signorini_audit::{dual, forces, proof, stresses};
 
 use self::proof::{Piece, Role};
 pub use self::quantities::ProvedQuantities;
+use crate::fem::law::Law;
 use crate::fem::{Degree, Mesh, Problem};
 use crate::kernel::{Ball, Scalar, Triangle};
 use crate::memory;
+use crate::quote::quoted;
 use crate::solve::Solution;
 
 /// The number of times that the stress is improved around every vertex.
@@ -164,6 +166,13 @@ fn certify_near(
     (start, field): (&[[f64; 2]], &[[f64; 2]]),
     asked: &Asked,
 ) -> Result<Continuous, CertifyError> {
+    if let Some(piece) = solution.pieces.iter().find(|p| matches!(p.geometry.law, Law::Friction(_)))
+    {
+        return Err(CertifyError::Unsupported(format!(
+            "the boundary {} has friction; certificates are for contact without friction",
+            quoted(piece.boundary(), '\'')
+        )));
+    }
     // Beside a quadratic v each is cut in four.
     let quadratic = solution.degree == Degree::Two && start.len() > problem.mesh.vertices().len();
     let quarters = if quadratic { 4 } else { 1 };

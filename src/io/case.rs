@@ -8,6 +8,7 @@
 mod body;
 mod boundary;
 mod exact;
+mod friction;
 mod mesh;
 mod method;
 mod source;
@@ -23,6 +24,7 @@ pub use self::body::MaterialEcho;
 use self::body::{only_isotropic, read_loads, read_materials};
 use self::boundary::{read_boundaries, read_points};
 use self::exact::read_exact;
+use self::friction::read_friction;
 use self::mesh::{Meshed, read_mesh};
 use self::method::{read_method, read_quantities, read_settings, read_target};
 use self::source::Source;
@@ -216,6 +218,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
         .optional_section("exact", |exact| read_exact(exact, only_isotropic(&material, &table)?))?;
     let (body_force, surface_forces) = read_loads(root, solution.as_ref(), &mesh)?;
     let (conditions, kinds) = read_boundaries(root, solution.as_ref(), &mesh, thickness)?;
+    let friction = read_friction(root)?;
     let points = read_points(root, &mesh)?;
     let adapt = root.optional_section("adapt", |table| read_target(table, &conditions))?;
     let asked = root.optional_section("certify", |table| read_quantities(table, &conditions))?;
@@ -224,7 +227,15 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
     Ok(Case {
         file: file.to_owned(),
         title,
-        problem: Problem { mesh, material, body_force, surface_forces, conditions, points },
+        problem: Problem {
+            mesh,
+            material,
+            body_force,
+            surface_forces,
+            conditions,
+            friction,
+            points,
+        },
         materials,
         units,
         thickness,

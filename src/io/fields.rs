@@ -88,6 +88,9 @@ fn solution_vtu(
 /// A number at a point of a contact edge, by its name in contact.vtu and contact.csv.
 type ContactNumber = (&'static str, fn(&ContactValues) -> f64);
 
+/// Where there is friction, the slip u_t and the shear stress of friction along t, n~ turned to the left.
+const FRICTION_NUMBERS: [ContactNumber; 2] = [("u_t", |p| p.u_t), ("shear", |p| p.shear)];
+
 /// u . n~, the gap g, n~ . sigma(u) n (negative in compression), the contact pressure lambda^h (never positive), and the
 /// recovered pressure (never negative).
 const CONTACT_NUMBERS: [ContactNumber; 5] = [
@@ -97,6 +100,13 @@ const CONTACT_NUMBERS: [ContactNumber; 5] = [
     ("lambda", |p| p.lambda),
     ("pressure", |p| p.pressure),
 ];
+
+/// The numbers of a solution along Gamma_C.
+fn contact_numbers(s: &Solution) -> Vec<ContactNumber> {
+    let friction = s.boundaries.iter().any(|boundary| boundary.friction.is_some());
+    let more = if friction { &FRICTION_NUMBERS[..] } else { &[] };
+    [&CONTACT_NUMBERS[..], more].concat()
+}
 
 /// The file contact.vtu. Each edge has points of its own, for sigma_n and lambda^h jump from edge to edge.
 fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
@@ -112,8 +122,9 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
         .collect();
     let places: Vec<[f64; 2]> = points.iter().map(|p| s.nodes[p.node]).collect();
     let displacement: Vec<[f64; 2]> = points.iter().map(|p| s.displacement[p.node]).collect();
-    let numbers = CONTACT_NUMBERS
-        .map(|(name, of)| (name, points.iter().map(|p| of(p)).collect::<Vec<f64>>()));
+    let of_points =
+        |(name, of): ContactNumber| (name, points.iter().map(|p| of(p)).collect::<Vec<f64>>());
+    let numbers: Vec<(&str, Vec<f64>)> = contact_numbers(s).into_iter().map(of_points).collect();
     let direction: Vec<[f64; 2]> = points.iter().map(|p| p.direction).collect();
     let mut point_data = vec![DataArray::vectors("displacement", &displacement)];
     point_data.extend(numbers.iter().map(|(name, numbers)| DataArray::scalars(name, numbers)));
@@ -130,14 +141,15 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
 /// A row for each node of each contact edge: arc length from the start of the boundary, place in the undeformed body, the
 /// numbers there. A node between two edges has a row for each, for sigma_n and lambda^h jump there.
 fn contact_csv(s: &Solution) -> Result<String, NotFinite> {
+    let columns = contact_numbers(s);
     let points = s.contact.iter().flat_map(|edge| edge.points.iter().map(move |p| (edge, p)));
     let rows: Vec<(Vec<f64>, &str)> = points
         .map(|(edge, p)| {
             let [x, y] = s.nodes[p.node];
-            let numbers = CONTACT_NUMBERS.iter().map(|(_, of)| of(p));
+            let numbers = columns.iter().map(|(_, of)| of(p));
             ([p.arc, x, y].into_iter().chain(numbers).collect(), &*edge.boundary)
         })
         .collect();
-    let names = CONTACT_NUMBERS.map(|(name, _)| name);
+    let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
     csv::table(&[&["arc", "x", "y"], &names[..], &["boundary"]].concat(), &rows)
 }

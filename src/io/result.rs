@@ -272,6 +272,8 @@ pub struct DiscreteCertificate {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub problem: Option<String>,
     pub unique: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub isolated: Option<f64>,
     pub rigorous: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
@@ -290,7 +292,8 @@ impl From<&Result<Enclosure, Unproved>> for DiscreteCertificate {
                 relative: e.relative.filter(|r| r.is_finite()),
                 pressure: Some(e.pressure),
                 problem: Some("the loads as quadrature gives them".to_owned()),
-                unique: true,
+                unique: e.isolation.is_none_or(|isolation| isolation.everywhere),
+                isolated: e.isolation.and_then(|isolation| isolation.relative),
                 rigorous: true,
                 intervals: Some(e.intervals.clone()),
                 ..Default::default()

@@ -15,6 +15,7 @@ use crate::certify::Continuous;
 use crate::certify::adapt::AdaptedLevel;
 use crate::fem::solvability::Play;
 use crate::quote;
+use crate::solve::answers::BoundaryFriction;
 use crate::solve::{ContactQuadrature, MethodReport, Outline, RouteName, Status};
 
 /// Lines of a name and a text; one without a name goes on with what the one before it is about.
@@ -179,6 +180,9 @@ fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines
         lines.line(name, format!("{boundary}: force {force}{components}, length {length}"));
         let peak = shown.number(part.peak_pressure, Measure::Stress);
         lines.line("", format!("peak pressure {peak}{}", at(part.peak_at)));
+        if let Some(friction) = &part.friction {
+            lines.line("", shear(friction, shown, &at(friction.slip_at)));
+        }
         if verbose {
             let mut words =
                 format!("{boundary}: moment {}", shown.number(part.moment, Measure::Moment));
@@ -189,6 +193,18 @@ fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines
             lines.line("", words);
         }
     }
+}
+
+/// Says what friction does.
+fn shear(friction: &BoundaryFriction, shown: &QuantityFormat, at: &str) -> String {
+    let force = shown.number(friction.shear, Measure::Force);
+    let [sticks, slides, slip] = [friction.sticks, friction.slides, friction.slip]
+        .map(|length| shown.number(length, Measure::Length));
+    let mut words = format!("friction {force}, sticks on {sticks}, slides on {slides}");
+    if friction.slides > 0.0 {
+        words += &format!(", by up to {slip}{at}");
+    }
+    words
 }
 
 /// Writes two numbers, rounded outwards to two digits of their distance, and no fewer than other numbers have: by half of the
@@ -396,6 +412,13 @@ fn enclosed(certificate: &DiscreteCertificate) -> String {
         None => format!("{} of it (in the energy norm)", short(radius)),
     };
     let of = certificate.problem.as_deref().map_or(String::new(), |what| format!(", with {what}"));
+    if let Some(within) = certificate.isolated {
+        let near = format!("1e{}", within.log10().floor());
+        let elsewhere = if certificate.unique { ", and no other anywhere" } else { "" };
+        return format!(
+            "with Coulomb's friction, exactly one solution of the discrete equations within {near} of this one (relative, in the energy norm){elsewhere}; this is within {size}, rounding included{of}"
+        );
+    }
     format!("{solutions}; this is within {size}, rounding included{of}")
 }
 
