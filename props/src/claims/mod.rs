@@ -25,6 +25,7 @@ pub mod error_bound;
 #[cfg(not(kani))]
 pub mod falsehoods;
 pub mod foundations;
+pub mod friction;
 #[cfg(not(kani))]
 pub mod geometry;
 #[cfg(not(kani))]
@@ -84,6 +85,7 @@ pub fn all() -> Vec<Claim> {
         falsehoods::claim(),
         error_bound::claim(),
         quantities::claim(),
+        friction::claim(),
     ];
     claims.sort_by_key(|claim| claim.id.parse::<u32>().expect("the id of a row is a number"));
     claims
@@ -153,5 +155,6 @@ mod tests {
         every_check_of_row_23_passes "23",
         every_check_of_row_24_passes "24",
         every_check_of_row_26_passes "26",
+        every_check_of_row_27_passes "27",
     }
 }
