@@ -1,9 +1,9 @@
 //! Unilateral (Signorini) contact in linear elasticity by Nitsche's method, after Chouly & Hild, *A Nitsche-based method
 //! for unilateral contact problems: numerical analysis*, SIAM J. Numer. Anal. 51 (2013) 1295-1307 ("the paper").
 //!
-//! Linear elastic, small displacements and rotations, plane strain or plane stress. Contact is with rigid obstacles, without friction: they
+//! Linear elastic, small displacements and rotations, plane strain or plane stress. Contact is with rigid obstacles, without friction or with, and between bodies: they
 //! push and never pull; gap and direction are those of the undeformed body. Not computed: 3D, axisymmetry, large displacements or sliding,
-//! contact of two deformable bodies, friction, plasticity and other nonlinear materials, dynamics, thermal strain.
+//! friction between two bodies, plasticity and other nonlinear materials, dynamics, thermal strain.
 //!
 //! A block on a rigid floor, whose right half the load lifts off; more in the folder
 //! `examples`, where `first_contact.rs` is a tutorial.

@@ -95,11 +95,12 @@ pub(crate) fn free_where(
     for of_part in &joined(&d.motions, parts, &d.contact) {
         let count = of_part.len();
         let mut rows = all(&rows(of_part, parts, &d.space, &d.contact, |e| stops[e][0]));
-        let moves = |piece: &Piece| {
+        let is_rough = |piece: &Piece| {
             let part = parts.of_triangle()[piece.edge().triangle];
-            of_part.iter().any(|motion| motion.part == part)
+            let moves = of_part.iter().any(|motion| motion.part == part);
+            moves && matches!(piece.geometry.law, Law::Friction(_))
         };
-        for (piece, _) in d.contact.iter().zip(stops).filter(|(p, s)| s[1] && moves(p)) {
+        for (piece, _) in d.contact.iter().zip(stops).filter(|(p, s)| s[1] && is_rough(p)) {
             rows.extend(across(of_part, parts, &d.space, piece));
         }
         let none = negligible(&rows, count, d.rounding_of_directions());

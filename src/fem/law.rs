@@ -305,7 +305,7 @@ mod tests {
     #[test]
     fn the_force_is_the_slope_of_the_energy_and_the_tangent_that_of_the_force() {
         for (law, degree) in LAWS.into_iter().flat_map(|law| DEGREES.map(|degree| (law, degree))) {
-            let at = |p: &[f64]| law.integrals(&EdgeRule::Exact, degree, None, p);
+            let at = |p: &[f64]| law.integrals(&EdgeRule::Exact, (degree, 1.0), None, p);
             let p = values(law, degree, 0.4);
             let step = 1e-5;
             for i in 0..p.len() {
@@ -329,16 +329,18 @@ mod tests {
     #[test]
     fn the_bregman_distance_is_the_nonlinear_part_of_the_change_of_energy() {
         for (law, degree) in LAWS.into_iter().flat_map(|law| DEGREES.map(|degree| (law, degree))) {
-            let at = |p: &[f64]| law.integrals(&EdgeRule::Exact, degree, None, p);
+            let at = |p: &[f64]| law.integrals(&EdgeRule::Exact, (degree, 1.0), None, p);
             let (p, q) = (values(law, degree, 0.4), values(law, degree, 2.9));
             let gradient = at(&p).gradient;
             let slope: f64 = (0..p.len()).map(|i| gradient[i] * (q[i] - p[i])).sum();
             let expected = at(&q).energy - at(&p).energy - slope;
-            let found = law.bregman(&EdgeRule::Exact, degree, None, &p, &q);
+            let found = law.bregman(&EdgeRule::Exact, (degree, 1.0), None, &p, &q);
             // Numbers of size 1.
             assert!((found - expected).abs() < 1e-14, "{law:?} {degree:?}: {found} {expected}");
             let other = LAWS[usize::from(law == Law::Contact)];
-            assert!((other.bregman(&EdgeRule::Exact, degree, None, &p, &q) - found).abs() > 1e-3);
+            assert!(
+                (other.bregman(&EdgeRule::Exact, (degree, 1.0), None, &p, &q) - found).abs() > 1e-3
+            );
         }
     }
 }

@@ -291,6 +291,10 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         if d.slides.is_none() {
             let nowhere = Pressed::nowhere(self.lines.len());
             let mut best = self.held_by(&nowhere, &at, fields, (&r, arithmetic));
+            // What is proved of Coulomb's friction is in the norm of A alone.
+            if d.has_coulomb() {
+                return best;
+            }
             // Of a slender body that lies on its obstacle A alone has no factor in doubles, or has one by luck.
             let is_enough = |found: &Result<Enclosure, Unproved>, proof: f64| match found {
                 Ok(enclosure) => proof == 0.0 || enclosure.is_within(proof),

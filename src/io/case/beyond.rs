@@ -1,6 +1,6 @@
 //! The keys that other programs have and this one has not, because it does not compute what they ask for.
 
-/// What is not computed, and the keys that ask for it, alone or as the first part of a longer key (`friction_coefficient`).
+/// What is not computed, and the keys that ask for it, alone or as the first part of a longer key (`yield_stress`).
 const BEYOND: [(&str, &[&str]); 7] = [
     ("contact between two bodies", &["master", "slave", "tie", "tied", "self_contact", "bodies"]),
     (
