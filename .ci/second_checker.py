@@ -26,13 +26,20 @@ load.body = ["0", "-0.1"]
 boundary.top.pressure = "0.05 + 0.02*x"
 boundary.bottom.contact = { gap = "0" }
 """
-OWN = {"oblique": OBLIQUE, "slide": SLIDE}
+SMALL = """
+mesh.rectangle = { width = 1, height = 1, nx = 6, ny = 6 }
+material = { lambda = 1e-12, mu = 1e-12 }
+boundary.top.displacement = ["0", "-0.1 + 0.15*x"]
+boundary.bottom.contact = {}
+"""
+OWN = {"oblique": OBLIQUE, "slide": SLIDE, "small": SMALL}
 FORCES = ["--set", 'certify.quantities=["force bottom", "force bottom x 0 0.25 ramp 0.1"]']
 ADAPTED = ["--set", 'adapt.target="10 %"', "--set", "adapt.max_unknowns=2000"]
 P2 = ["--set", "method.degree=2", "--set", "method.gamma0=auto"]
 CASES = {
     "block 1": ["cases/block.toml"], "block 2": ["cases/block.toml", *P2],
     "forces 1": ["cases/block.toml", *FORCES], "forces 2": ["cases/block.toml", *P2, *FORCES],
+    "small 1": ["small"], "small 2": ["small", *P2], "wood 1": ["cases/wood.toml"], "wood 2": ["cases/wood.toml", *P2],
     "gap 1": ["cases/gap.toml"], "gap 2": ["cases/gap.toml", *P2],
     "pin 1": ["cases/pin.toml"], "pin 2": ["cases/pin.toml", *P2],
     "disk": ["cases/disk.toml"], "bracket": ["cases/bracket.toml"], "cantilever": ["cases/cantilever.toml"],
@@ -83,6 +90,12 @@ TAMPERINGS = {
     "a triangle with another edge": lambda h, a: a("triangles")[0, 3:4].__iadd__(np.uint64(1)),
     "a lift that is negative": lambda h, a: number(a("lifts")[0], 3, lambda z: -1),
     "a force between nearer numbers": lambda h, a: number(a("forces")[1], 6, lambda low: low + 0.05 * abs(low) + 1e-9),
+    "a force three times as large": lambda h, a: [number(a("forces")[1], k, lambda end: 3 * end) for k in (6, 7)],
+    "a force whose first end is the larger": lambda h, a: a("forces")[1, 6:].__setitem__(slice(None), a("forces")[1, :5:-1].copy()),
+    "another statement": lambda h, a: h.update(statement="the body is safe"),
+    "a tensor that is stiffer": lambda h, a: number(a("tensors")[0], 0, lambda c: 2 * c),
+    "a tensor that is none": lambda h, a: number(a("tensors")[0], 5, lambda c: -c),
+    "a triangle of another tensor": lambda h, a: (a("tensors"), number(a("triangles")[0], 6, lambda k: k + 7)),
     "a force of a smaller patch": lambda h, a: number(next(row for row in a("forces") if row[2] > 0), 4, lambda to: to - 0.2),
     "a w that is off on the boundary": lambda h, a: [number(row, k, lambda w: w + 1e-3) for row in a("w") for k in (0, 1)],
     "a w that does not begin with 0": lambda h, a: number(a("w")[0], 1, lambda w: w - 1),
@@ -114,6 +127,24 @@ def tampered(folder, out, change):
     return True
 
 
+def without_forces(folder, out):
+    """Writes a certificate without the array of forces, but with what proves them."""
+    header = json.loads((folder / "certificate.json").read_text())
+    words, at = np.frombuffer((folder / "certificate.bin").read_bytes(), "<u8"), 0
+    for entry in header["arrays"]:
+        count = entry["entries"] * len(entry["words"])
+        if entry["name"] == "forces":
+            words = np.delete(words, slice(at, at + count))
+            header["arrays"].remove(entry)
+            header["hash"] = check_bound.hash_of(words.tobytes())
+            out.mkdir(parents=True, exist_ok=True)
+            (out / "certificate.json").write_text(json.dumps(header))
+            (out / "certificate.bin").write_bytes(words.tobytes())
+            return True
+        at += count
+    return False
+
+
 def main(program, folder):
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -128,9 +159,10 @@ def main(program, folder):
         good.append(out)
     wrong = check_bound.main([str(out / "certificate.json") for out in good])
     refused = 0
-    for what, change in TAMPERINGS.items():
+    changes = {what: lambda out, to, change=change: tampered(out, to, change) for what, change in TAMPERINGS.items()}
+    for what, change in {**changes, "what proves forces, but no forces": without_forces}.items():
         for out in good:
-            if not tampered(out, folder / "tampered", change):
+            if not change(out, folder / "tampered"):
                 continue
             try:
                 check_bound.check(folder / "tampered" / "certificate.json")

@@ -16,10 +16,12 @@ import sys
 import numpy as np
 
 WORDS = {"vertices": "ff", "displacement": "ff", "prescribed": "nfnf", "cuts": "nnf", "triangles": "nnnnnnfffffffff",
+         "tensors": "ffffff",
          "edges": "nnnffff", "directions": "nffff", "frames": "nff", "displacement at cuts": "ff",
          "prescribed at cuts": "nfnf", "bulges": "ffff", "lifts": "nnnf", "polygon": "n", "shares": "f",
          "boundaries": "nn", "forces": "nnnfffff", "w": "ff", "w at cuts": "ff", "w bulges": "ff",
          "dual forces": "nff", "dual w": "ff", "dual w at cuts": "ff", "dual w bulges": "ff", "dual edges": "nffff"}
+STATEMENT = "|u - v|_a <= bound for the solution u of the contact problem with these data and the displacement v"
 NEAR = 1e-11  # relative room for rounding
 STOP = 1e-10  # what a support against a free motion may take, in parts of the forces on the boundary
 
@@ -48,7 +50,8 @@ def read(path):
     header = json.loads(path.read_text())
     demand(header["format"] == 10, f"format {header['format']}; expected 10")
     keys = {"format", "title", "statement", "degree", "bound", "arrays", "hash"}
-    demand(keys <= set(header) <= keys | {"boundaries"}, "an unknown key")
+    demand(keys <= set(header) <= keys | {"boundaries", "thickness"}, "an unknown key")
+    demand(header["statement"] == STATEMENT, "it states something else")
     demand(header["degree"] in (1, 2), "a degree other than 1 and 2")
     data = path.with_name("certificate.bin").read_bytes()
     demand(len(data) % 8 == 0 and hash_of(data) == header["hash"], "the hash is another")
@@ -70,6 +73,8 @@ def read(path):
         real[name] = np.ascontiguousarray(block[:, ~n]).view("<f8")
         demand(name == "dual forces" or np.isfinite(real[name]).all(), f"{name}: a number is not finite")
     demand(at == len(words), "words that no array has")
+    of_forces = "boundaries" in header or seen & {name for name in WORDS if "w" in name.split() or name.startswith(("dual", "bound"))}
+    demand("forces" in seen or not of_forces, "what proves forces, without forces")
     return header, whole, real
 
 
@@ -100,6 +105,21 @@ def along(v, d):
     return found
 
 
+def stiffness(moduli, tensors):
+    """C by its action on (e_xx, e_yy, 2 e_xy), of each triangle: from lambda and mu, or from a tensor where mu is 0."""
+    lam, mu = moduli.T
+    whole = np.zeros((len(moduli), 3, 3))
+    whole[:, 0, 0] = whole[:, 1, 1] = lam + 2 * mu
+    whole[:, 0, 1] = whole[:, 1, 0] = lam
+    whole[:, 2, 2] = mu
+    given = mu == 0
+    number = lam[given].astype(int)
+    demand((number == lam[given]) & (0 <= number) & (number < len(tensors)), "no such tensor: triangle")
+    whole[given] = tensors[number][:, [[0, 1, 2], [1, 3, 4], [2, 4, 5]]]
+    demand(np.linalg.eigvalsh(whole).min(1) > 0, "a law that is not positive definite: triangle")
+    return whole
+
+
 class Body:
     """What a certificate is of, by its arrays."""
 
@@ -116,15 +136,13 @@ class Body:
 
         self.x = with_cuts(vertices)
         self.corners, self.sides = whole["triangles"][:, :3], whole["triangles"][:, 3:]
-        self.lame, self.body, self.oscillation = real["triangles"][:, :2], real["triangles"][:, 2:8], real["triangles"][:, 8]
-        self.body = self.body.reshape(-1, 3, 2)
+        self.body, self.oscillation = real["triangles"][:, 2:8].reshape(-1, 3, 2), real["triangles"][:, 8]
+        self.stiffness = stiffness(real["triangles"][:, :2], real["tensors"])
         self.ends, self.role = whole["edges"][:, :2], whole["edges"][:, 2]
         self.numbers = real["edges"].reshape(-1, 2, 2)
         edges = len(self.ends)
         demand(len(self.corners) > 0 and (self.corners < len(self.x)).all() and (self.sides < edges).all()
                and (self.ends < len(self.x)).all() and (self.role < 8).all(), "an index that names nothing")
-        demand(self.lame[:, 1] > 0, "mu > 0 does not hold: triangle")
-        demand(self.lame.sum(1) > 0, "lambda + mu > 0 does not hold: triangle")
         demand(self.oscillation >= 0, "a negative oscillation: triangle")
         self.direction = np.zeros((edges, 2, 2))
         self.has_direction = np.zeros(edges, bool)
@@ -444,12 +462,8 @@ class Stresses:
         push = push.transpose(2, 0, 1) / j[:, None, None]
         # grad l by rows.
         self.gradients = np.concatenate([-inverse.sum(1, keepdims=True), inverse], 1)
-        self.lame = body.lame.T[:, :, None]
-        # s : C^-1 s = (xx^2 + yy^2 + 2 xy^2 - lambda / (2 (lambda + mu)) (xx + yy)^2) / (2 mu) as a sum of squares.
-        lam, mu = self.lame
-        mean = np.sqrt(mu / (lam + mu))[:, :, None]
-        unit = np.array([[1, 1, 0], [1, -1, 0], [0, 0, 2]]) / 2
-        self.weigh = unit[None] * np.concatenate([mean, np.ones_like(mean), np.ones_like(mean)], 1) / np.sqrt(mu)[:, :, None]
+        # s . C^-1 s = |L^-1 s|^2 with C = L L^T.
+        self.weigh = np.linalg.inv(np.linalg.cholesky(body.stiffness))
         self.root = np.linalg.cholesky(MASS).T
         tau = np.einsum("tab,tnb->tna", push, start.reshape(-1, 18, 3))
         apart = self.of(body, body.v, body.bulge) - self.weighed(tau[..., None])[..., 0]
@@ -473,10 +487,8 @@ class Stresses:
                 there = 4 * self.reference.places[:, p]
                 slope = slope + there[:, None, None] * (bulge[:, i, :, None] * self.gradients[:, q, None, :])[:, None]
         slope = np.broadcast_to(slope, (len(self.j), 18, 2, 2))
-        lam, mu = self.lame
-        trace = slope[..., 0, 0] + slope[..., 1, 1]
-        sigma = np.stack([2 * mu * slope[..., 0, 0] + lam * trace, 2 * mu * slope[..., 1, 1] + lam * trace,
-                          mu * (slope[..., 0, 1] + slope[..., 1, 0])], -1)
+        strain = np.stack([slope[..., 0, 0], slope[..., 1, 1], slope[..., 0, 1] + slope[..., 1, 0]], -1)
+        sigma = np.einsum("tab,tnb->tna", body.stiffness, strain)
         return self.weighed(sigma[..., None])[..., 0]
 
 
@@ -518,7 +530,7 @@ class Forces:
         points, bulge = all_w[0]
         points = self.check_supports(points, bulge, np.zeros((edges, 2, 2)))
         w0 = self.on_contact(points, bulge)
-        demand(w0 >= -NEAR, "w0 pulls on Gamma_C: number")
+        demand(w0 >= -NEAR * np.abs(points).max(), "w0 pulls on Gamma_C: number")
         self.cover, self.cover_force = np.maximum(w0, 0), 0.0
         of_w0 = self.enclose(points, bulge, np.zeros((2, 2)))
         self.cover_force = of_w0[1]
@@ -565,7 +577,7 @@ class Forces:
         """w is the affine motion where the body is held; at a point that is held along an oblique direction it is made so."""
         body = self.body
         points = points.copy()
-        size = 1 + np.abs(points).max()
+        size = max(np.abs(points).max(), np.abs(motion).max())
         for k in range(2):
             at = body.ends[:, k]
             here = np.flatnonzero((body.role == 7) & (at < len(body.frame)))
@@ -620,7 +632,7 @@ class Forces:
                     beyond[1, inside] = np.maximum(beyond[1, inside], off)
         omega = phi - self.on_contact(points, bulge)
         off = np.stack([-(omega + beyond[0][:, None]), omega + beyond[1][:, None]])
-        off[off <= NEAR * (1 + np.abs(phi).max(initial=0))] = 0
+        off[off <= NEAR * max(np.abs(phi).max(initial=0), np.abs(points).max())] = 0
         # By multiples of the gap, and of w0, for each side; the cheaper one on each edge.
         found = np.zeros((2, 2))
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -635,33 +647,38 @@ class Forces:
         return found
 
     def loads(self, points, bulge):
-        """The work of the loads on a displacement, that of the body force apart."""
+        """The work of the loads on a displacement, that of the body force apart; and the size of its terms."""
         body = self.body
         w = points[body.corners]
         total, f = w.sum(1, keepdims=True), body.body
         inner = dot(f, total + w).sum(1) / 12 + dot(2 * f.sum(1, keepdims=True) - f, bulge[body.sides]).sum(1) / 15
-        inner = (body.area * inner).sum()
+        inner, size = (body.area * inner).sum(), (body.area * np.abs(inner)).sum()
         given = np.where(np.isin(body.role, (4, 5))[:, None, None], body.edge_forces, 0)
         supported = body.role == 7
         d = body.direction[supported]
         given[supported] = body.edge_forces[supported] - d * body.numbers[supported, 0, :, None]
-        return inner, inner + self.work(given, points, bulge)
+        on_edges, of_edges = self.work(given, points, bulge)
+        return inner, inner + on_edges, size + of_edges
 
     def work(self, force, points, bulge):
-        """Of forces on the edges of the boundary."""
+        """Of forces on the edges of the boundary, and the size of its terms."""
         w = points[self.body.ends]
         p, q = force[:, 0], force[:, 1]
         works = (dot(2 * p + q, w[:, 0]) + dot(p + 2 * q, w[:, 1])) / 6 + dot(p + q, bulge) / 3
-        return works[self.body.role > 0].sum()
+        works = works[self.body.role > 0]
+        return works.sum(), np.abs(works).sum()
 
     def enclose(self, points, bulge, missed):
-        """Between what the force lies by L(w) - int m : eps(w)."""
-        inner, loads = self.loads(points, bulge)
+        """Between what the force lies by L(w) - int m : eps(w), and the size of the terms."""
+        inner, loads, size = self.loads(points, bulge)
         of_w = self.stresses.of(self.body, points, bulge)
         norm = np.sqrt((of_w**2).sum())
-        middle = loads - ((self.of_v * of_w).sum() + inner + self.work(self.body.edge_forces, points, bulge)) / 2
+        work, of_work = self.work(self.body.edge_forces, points, bulge)
+        energy = self.of_v * of_w
+        middle = loads - (energy.sum() + inner + work) / 2
+        size += of_work + np.abs(energy).sum()
         away = [reach(norm, missed[0, side], self.m) + missed[1, side] * self.cover_force + self.loose * norm for side in range(2)]
-        return np.array([middle - away[0], middle + away[1]])
+        return np.array([middle - away[0], middle + away[1], size])
 
     def pairs(self):
         """What forces lie between by dual pairs."""
@@ -719,7 +736,10 @@ class Forces:
         points, bulge = dual.v, dual.bulge
         of_w = stresses.of(dual, points, bulge)
         eta, norm = np.sqrt((stresses.apart**2).sum()), np.sqrt((of_w**2).sum())
-        middle = self.loads(points, bulge)[1] - (self.of_v * of_w).sum() + (self.stresses.apart * stresses.apart).sum() / 2
+        _, loads, size = self.loads(points, bulge)
+        energy, product = self.of_v * of_w, self.stresses.apart * stresses.apart
+        middle = loads - energy.sum() + product.sum() / 2
+        size += np.abs(energy).sum() + np.abs(product).sum()
         # |E| r at both ends of the edges of Gamma_C.
         on = body.contact
         r = dot(dual.edge_forces[on], body.contact_d) * pressed[on, None]
@@ -732,14 +752,15 @@ class Forces:
         missed = self.missed(force, points, bulge)
         loose = 2 * self.loose * (norm + eta / 2)
         away = [reach(eta, max(most[s], missed[0, s]), self.m) + missed[1, s] * self.cover_force + loose for s in range(2)]
-        return np.array([middle - away[0], middle + away[1]])
+        return np.array([middle - away[0], middle + away[1], size])
 
     def check(self):
         """Verifies what is claimed."""
         claimed = np.concatenate([self.real["forces"][:, 3:], self.real["dual forces"]])
         found = np.array(self.found + self.of_pairs)
+        demand(claimed[:, 0] <= claimed[:, 1], "a force between numbers of which the first is the larger: force")
         finite = np.where(np.isfinite(found), found, 0)
-        room = 1e-8 * np.abs(finite[:, 1] - finite[:, 0]) + 1e-10 * (1 + np.abs(finite).max(1))
+        room = 1e-8 * np.abs(finite[:, 1] - finite[:, 0]) + NEAR * finite[:, 2]
         demand((claimed[:, 0] <= found[:, 0] + room) & (found[:, 1] <= claimed[:, 1] + room),
                "a force that is not proved to lie between what is claimed: force")
 

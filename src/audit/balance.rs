@@ -148,11 +148,17 @@ impl SpanningTree {
     }
 }
 
-/// The edge is inside a triangle that was cut, elsewhere than in the middle of an edge.
+/// The edge is inside a triangle that was cut: it ends on an edge elsewhere than in its middle, or joins a vertex with a place between
+/// two others.
 fn is_cut(certificate: &Certificate, e: usize) -> bool {
-    let cut =
-        |p: &usize| p.checked_sub(certificate.vertices.len()).map(|cut| certificate.cuts[cut].at);
-    certificate.edges[e].ends.iter().filter_map(cut).any(|at| at != 0.5)
+    let ends = certificate.edges[e].ends;
+    let cut = |p: usize| p.checked_sub(certificate.vertices.len()).map(|cut| certificate.cuts[cut]);
+    let across = |from: usize, to: usize| {
+        cut(from).is_none() && cut(to).is_some_and(|cut| !cut.ends.contains(&from))
+    };
+    ends.into_iter().filter_map(cut).any(|cut| cut.at != 0.5)
+        || across(ends[0], ends[1])
+        || across(ends[1], ends[0])
 }
 
 /// The triangles at the edges that are held in both components and no shorter than half of the longest: over a short one a

@@ -32,6 +32,9 @@ pub struct Header {
     pub degree: u8,
     /// |u - v|_a is at most this.
     pub bound: f64,
+    /// The thickness of the body, if it is known: the forces of the arrays are those of a body that is 1 thick.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thickness: Option<f64>,
     /// The boundaries on which there are forces, and all others.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub boundaries: Vec<String>,
@@ -72,6 +75,17 @@ pub enum Refused {
     Rejected(#[from] Rejection),
 }
 
+/// A force of the true solution, or a moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProvedForce {
+    /// In words.
+    pub name: String,
+    /// Whether it is a moment.
+    pub is_moment: bool,
+    /// The numbers that it lies between, for a body that is 1 thick.
+    pub between: [f64; 2],
+}
+
 /// The findings of an audit.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -90,7 +104,7 @@ pub struct Audit {
 
 impl Audit {
     /// The forces that are proved, by their names, with what they lie between: those of obstacles and supports on the body.
-    pub fn forces(&self) -> impl Iterator<Item = (String, [f64; 2])> {
+    pub fn forces(&self) -> impl Iterator<Item = ProvedForce> {
         let forces = &self.forces;
         let between = forces.between.iter().flat_map(|between| &between.liftings);
         let pairs = forces.between.as_ref().map_or(&[][..], |between| &between.pairs);
@@ -113,7 +127,9 @@ impl Audit {
                 Motion::Axis(c) => (["force x", "force y"][c].to_owned(), [-high, -low]),
                 Motion::Turn => ("moment".to_owned(), [-high, -low]),
             };
-            (format!("{kind} {what} of {name:?}"), ends)
+            let is_moment = target.motion == Motion::Turn;
+            let name = format!("{kind} {what} of {name:?}");
+            ProvedForce { name, is_moment, between: ends }
         })
     }
 }
@@ -143,6 +159,7 @@ pub fn encode(
         degree: if certificate.curved.is_some() { 2 } else { 1 },
         // Two doubles more: whoever reads the decimals of a number may be off by one.
         bound: certificate.with_lifts(proof.bound).next_up().next_up(),
+        thickness: None,
         boundaries,
         arrays,
         hash: hash(&bytes),
@@ -300,7 +317,12 @@ fn forces(
         between.push(ends);
     }
     let Some((&of_cover, between)) = between.split_first() else {
-        return Ok(Evidence::default());
+        let alone = !names.is_empty() || of.iter().any(Option::is_some);
+        return if alone {
+            Err("boundaries without forces".to_owned())
+        } else {
+            Ok(Evidence::default())
+        };
     };
     let named = certificate.edges.iter().zip(&of).all(|(edge, of)| !is_named(edge) || of.is_some());
     if !named || targets[0].motion != Motion::Along(None) {

@@ -27,8 +27,12 @@ use crate::solve::{
 /// The share of the square of the bound that the marked triangles have. With more, levels are fewer and grow faster.
 pub const THETA: f64 = 0.5;
 
-/// After so many levels in a row whose bound is no smaller than one before, finer meshes are not tried.
+/// After so many levels in a row whose bound is no smaller than one before, finer meshes are not tried, if the bound says
+/// something and the meshes are not far smaller than is allowed: a coarse mesh may need more levels to see what it has to.
 const NO_BETTER: usize = 3;
+
+/// A mesh with less than this part of the unknowns that are allowed is far smaller.
+const FAR_SMALLER: f64 = 0.05;
 
 /// When to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -183,8 +187,9 @@ pub fn adapt_to(
             Ok(certified) => certified,
             Err(error) => {
                 let unmet = Some(format!("level {level} has no certificate: {error}"));
-                let this =
-                    || Best { problem, solution, certified: Err(error), level, off: f64::INFINITY };
+                let (off, reached) = (f64::INFINITY, f64::INFINITY);
+                let certified = Err(error);
+                let this = || Best { problem, solution, certified, level, off, reached };
                 break (before.unwrap_or_else(this), unmet);
             }
         };
@@ -218,13 +223,22 @@ pub fn adapt_to(
         start = finer.iter().map(|f| f.prolonged(&problem.mesh, &solution.displacement)).next();
         let best = match before.take() {
             Some(best) if !met && best.off <= off => best,
-            _ => Best { problem: problem.clone(), solution, certified: Ok(certified), level, off },
+            _ => Best {
+                problem: problem.clone(),
+                solution,
+                certified: Ok(certified),
+                level,
+                off,
+                reached,
+            },
         };
         let finer = match finer {
             Ok(finer) => finer,
             Err(unmet) => break (best, unmet),
         };
-        if level >= best.level + NO_BETTER {
+        let far_smaller = FAR_SMALLER * target.max_unknowns as f64;
+        let is_small = (unknowns(&problem.mesh, method.degree) as f64) < far_smaller;
+        if level >= best.level + NO_BETTER && best.reached <= 1.0 && !is_small {
             let what = if force.is_some() { "what the force lies between" } else { "the bound" };
             break (best, Some(format!("{what} has not come nearer for {NO_BETTER} levels")));
         }
@@ -247,6 +261,8 @@ struct Best {
     certified: Result<Continuous, CertifyError>,
     level: usize,
     off: f64,
+    /// What the target compares.
+    reached: f64,
 }
 
 /// The interval of a boundary's contact force, or why it is not known.

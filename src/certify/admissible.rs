@@ -8,6 +8,7 @@ use super::contact::Contact;
 use super::field::Field;
 use super::parts::{Free, ProblemParts, held_along};
 use crate::fem::BoundaryEdge;
+use crate::fem::mesh::length;
 
 /// v: u with the prescribed values, and pushed out of the obstacle at the vertices of Gamma_C and, if it is quadratic, between
 /// them; on the edge k of Gamma_C by `further[k]` more than doubles ask for.
@@ -82,12 +83,28 @@ pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Fi
     }
     if let Some(bulges) = &mut field.bulges {
         parts.hold_between(bulges);
+        let number = |edge: BoundaryEdge| parts.mesh.triangle_edges()[edge.triangle][edge.local];
+        let at_ends = |v: &[[f64; 2]], edge: BoundaryEdge| {
+            parts.mesh.ends(edge).map(|vertex| Vector2::from(v[vertex]))
+        };
         for (edge, further) in parts.contact.iter().zip(further) {
-            let BoundaryEdge { triangle, local } = edge.edge;
-            let bulge = &mut bulges[parts.mesh.triangle_edges()[triangle][local]];
-            let at_ends =
-                parts.mesh.ends(edge.edge).map(|vertex| Vector2::from(field.vertices[vertex]));
-            push_between(edge, at_ends, bulge, (size, *further));
+            let ends = parts.mesh.ends(edge.edge);
+            let bulge = Vector2::from(bulges[number(edge.edge)]);
+            let over =
+                Over::new(edge, (at_ends(&field.vertices, edge.edge), bulge), (size, *further));
+            let modulus = parts.material(edge.edge.triangle).mu();
+            let free = ends.map(|vertex| matches!(parts.free_at(vertex), Free::All));
+            if let Some((k, step)) = over.at_an_end(edge, modulus, free) {
+                let v = &mut field.vertices[ends[k]];
+                *v = (Vector2::from(*v) - edge.directions[k] * step).into();
+            }
+        }
+        for (edge, further) in parts.contact.iter().zip(further) {
+            let bulge = &mut bulges[number(edge.edge)];
+            let v = (at_ends(&field.vertices, edge.edge), Vector2::from(*bulge));
+            let over = Over::new(edge, v, (size, *further));
+            let mean = (edge.directions[0] + edge.directions[1]) / 2.0;
+            *bulge = (Vector2::from(*bulge) - mean * over.between(edge)).into();
             if *further == 0.0 && !edge.turns() {
                 touch(edge.directions[0], edge.gap_bulge, size + edge.gap[0].abs(), bulge);
             }
@@ -159,32 +176,92 @@ fn out_of(walls: &[Wall], v: Vector2<f64>, free: Free) -> Vector2<f64> {
     nearest.or_else(farthest).unwrap_or(v)
 }
 
-/// Makes the Bernstein coefficients of v . d - g between the ends of an edge of Gamma_C negative, by the bulge of v, which is at
-/// most `size`, and `further` than that.
-fn push_between(
-    edge: &Contact,
-    v: [Vector2<f64>; 2],
-    bulge: &mut [f64; 2],
-    (size, further): (f64, f64),
-) {
-    let ([d, e], [g, h]) = (edge.directions, edge.gap);
-    let (mean, own) = ((d + e) / 2.0, Vector2::from(*bulge));
-    let middle = (v[0] + v[1]) / 2.0 + own * 2.0;
-    let between = (g + h) / 2.0 + 2.0 * edge.gap_bulge;
-    let tilted = if is_tilted(d) { size } else { 0.0 };
-    let largest = v[0].dot(&d).abs() + v[1].dot(&e).abs() + own.dot(&d).abs() + tilted;
-    let scale = largest + g.abs() + h.abs() + edge.gap_bulge.abs();
-    let margin = 64.0 * f64::EPSILON * scale + further;
-    let step = if edge.turns() {
-        // v . d is a cubic: three times its coefficients.
-        let one = 2.0 * (middle.dot(&d) - between) + v[0].dot(&e) - g;
-        let other = 2.0 * (middle.dot(&e) - between) + v[1].dot(&d) - h;
-        let step = |beyond: f64, along: f64| (beyond + 6.0 * margin) / (4.0 * along);
-        step(one, mean.dot(&d)).max(step(other, mean.dot(&e)))
-    } else {
-        (middle.dot(&d) - between + 2.0 * margin) / (2.0 * d.dot(&d))
+/// The Bernstein coefficients of v . d - g on the parts of an edge of Gamma_C, where they are verified, and the margin by which they
+/// are to be negative.
+struct Over {
+    coefficients: Vec<f64>,
+    margin: f64,
+}
+
+/// The Bernstein coefficients of v . d - g on the part of an edge from s to t, for v and g by their own on the whole edge; of degree 3,
+/// or of degree 2 where d does not turn.
+fn coefficients(
+    v: &[Vector2<f64>; 3],
+    d: &[Vector2<f64>; 2],
+    g: &[f64; 3],
+    [s, t]: [f64; 2],
+) -> Vec<f64> {
+    // Each argument of the blossom takes one step of de Casteljau's.
+    let weights = |a: f64, b: f64| [(1.0 - a) * (1.0 - b), (1.0 - a) * b + a * (1.0 - b), a * b];
+    let v =
+        |a: f64, b: f64| -> Vector2<f64> { v.iter().zip(weights(a, b)).map(|(v, w)| *v * w).sum() };
+    let g = |a: f64, b: f64| g.iter().zip(weights(a, b)).map(|(g, w)| g * w).sum::<f64>();
+    if d[0] == d[1] {
+        return [(s, s), (s, t), (t, t)].map(|(a, b)| v(a, b).dot(&d[0]) - g(a, b)).to_vec();
+    }
+    let d = |a: f64| d[0] * (1.0 - a) + d[1] * a;
+    let ends = |a: f64| v(a, a).dot(&d(a)) - g(a, a);
+    let inner = |a: f64, b: f64| {
+        (2.0 * v(a, b).dot(&d(a)) + v(a, a).dot(&d(b)) - g(a, a) - 2.0 * g(a, b)) / 3.0
     };
-    if step > 0.0 {
-        *bulge = (own - mean * step).into();
+    vec![ends(s), inner(s, t), inner(t, s), ends(t)]
+}
+
+impl Over {
+    fn new(
+        edge: &Contact,
+        (v, bulge): ([Vector2<f64>; 2], Vector2<f64>),
+        (size, further): (f64, f64),
+    ) -> Over {
+        let (d, [g, h]) = (edge.directions, edge.gap);
+        let middle = (v[0] + v[1]) / 2.0 + bulge * 2.0;
+        let gap = [g, (g + h) / 2.0 + 2.0 * edge.gap_bulge, h];
+        let of_part = |part| coefficients(&[v[0], middle, v[1]], &d, &gap, part);
+        let tilted = if is_tilted(d[0]) || is_tilted(d[1]) { size } else { 0.0 };
+        let largest = v[0].dot(&d[0]).abs() + v[1].dot(&d[1]).abs() + bulge.dot(&d[0]).abs();
+        let scale = largest + tilted + g.abs() + h.abs() + edge.gap_bulge.abs();
+        Over {
+            coefficients: edge.pieces().into_iter().flat_map(of_part).collect(),
+            margin: 64.0 * f64::EPSILON * scale + further,
+        }
+    }
+
+    /// The least multiple of a change of v with these coefficients that makes all negative where the change is not 0.
+    fn step(&self, edge: &Contact, change: &[Vector2<f64>; 3]) -> f64 {
+        let of_part = |part| coefficients(change, &edge.directions, &[0.0; 3], part);
+        let effects = edge.pieces().into_iter().flat_map(of_part);
+        let all = self.coefficients.iter().zip(effects);
+        let steps = all.filter(|(_, effect)| *effect > 1e-6);
+        steps.fold(0.0, |step: f64, (c, effect)| step.max((c + 2.0 * self.margin) / effect))
+    }
+
+    /// The change of the bulge, along the mean of the directions.
+    fn between(&self, edge: &Contact) -> f64 {
+        let mean = (edge.directions[0] + edge.directions[1]) / 2.0;
+        self.step(edge, &[Vector2::zeros(), mean * 2.0, Vector2::zeros()])
+    }
+
+    /// The end of the edge at which v had better be pushed out, and how far: where contact ends near it, v goes through the obstacle
+    /// behind it by far less than its slope is off, to which a bulge would have to answer. A bulge b costs an energy of some
+    /// 16 mu b^2 / 3, a shift by b some mu b^2, and the work of the force there.
+    fn at_an_end(&self, edge: &Contact, modulus: f64, free: [bool; 2]) -> Option<(usize, f64)> {
+        let by_bulge = self.between(edge);
+        let shift = |k: usize| {
+            let d = edge.directions[k];
+            let change = if k == 0 {
+                [d, d / 2.0, Vector2::zeros()]
+            } else {
+                [Vector2::zeros(), d / 2.0, d]
+            };
+            let step = self.step(edge, &change);
+            let force = length(edge.on_edge()[k]);
+            (k, step, modulus * step * step + 4.0 * force * step)
+        };
+        let most = 16.0 / 3.0 * modulus * by_bulge * by_bulge;
+        let better = (0..2)
+            .filter(|&k| free[k])
+            .map(shift)
+            .filter(|(_, step, cost)| *cost < most && *step > 0.0);
+        better.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(k, step, _)| (k, step))
     }
 }

@@ -15,14 +15,21 @@ use super::forces::Evidence;
 use super::oscillation::{self, Oscillation};
 use super::parts::{Boundary, ProblemParts};
 use crate::fem::mesh::bisection::Refinement;
+use crate::fem::mesh::length;
 use crate::fem::{BoundaryEdge, Degree, Mesh, MeshError, Problem, Space, contact_line};
 use crate::kernel::{Material, Triangle};
 
 /// Numbers that differ by this, in units of the largest of their kind, are the same.
 const ROUNDING: f64 = 1e-11;
 
-/// Places that are this far outside a triangle, in units of it, lie in it.
-const OUTSIDE: f64 = 1e-9;
+/// The part of a triangle by which places outside it lie in it: what is the same for other numbers, and the rounding of its own
+/// coordinates.
+fn room(mesh: &Mesh, t: usize) -> f64 {
+    let triangle = mesh.triangle(t);
+    let far = triangle.vertices.iter().fold(0.0, |far: f64, x| far.max(x.amax()));
+    let longest = (0..3).map(|i| length(triangle.edge(i))).fold(0.0, f64::max);
+    ROUNDING + 16.0 * f64::EPSILON * far * longest / triangle.double_area()
+}
 
 /// Why a certificate is not one of a problem.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -64,7 +71,8 @@ pub fn compare(
     // The data don't depend on gamma0.
     let space = Space::new(&problem.mesh, degree);
     let pieces = contact_line::assemble(&problem, &space, 1.0).map_err(CertifyError::Data)?;
-    let parts = ProblemParts::new(&problem, degree, &pieces, &vec![[0.0; 2]; nodes])?;
+    let at_rest = (&*vec![[0.0; 2]; nodes], false);
+    let parts = ProblemParts::new(&problem, degree, &pieces, at_rest)?;
     let (lengths, loads) = sizes(certificate);
     let sides = sides(&problem.mesh);
     let comparison = Comparison { certificate, parts: &parts, sides, lengths, loads };
@@ -128,7 +136,8 @@ fn refinement(
                 let beyond = || outside("triangle", i, "lies in no triangle of the case's mesh");
                 let middle = (x + y + z) / 3.0;
                 let (origin, _) = mesh.locate(middle.into()).ok_or_else(beyond)?;
-                let inside = |x| coordinates(mesh, origin, x).iter().all(|&l| l >= -OUTSIDE);
+                let room = room(mesh, origin);
+                let inside = |x| coordinates(mesh, origin, x).iter().all(|&l| l >= -room);
                 if ![x, y, z].into_iter().all(inside) {
                     return Err(beyond());
                 }
@@ -143,7 +152,7 @@ fn refinement(
     }
     for (t, area) in areas.iter().enumerate() {
         let whole = mesh.triangle(t).double_area();
-        if !((area - whole).abs() <= OUTSIDE * whole) {
+        if !((area - whole).abs() <= 4.0 * room(mesh, t) * whole) {
             return Err(outside("triangle", t, "of the case's mesh is not covered once"));
         }
     }
@@ -194,7 +203,8 @@ fn named(
     let mut named: BTreeMap<String, Vec<[usize; 2]>> = BTreeMap::new();
     for (t, ends) in alone.into_values() {
         let l = ends.map(|k| coordinates(mesh, origin[t], certificate.vertices[k].into()));
-        let side = (0..3).find(|&i| l.iter().all(|l| l[i].abs() <= OUTSIDE));
+        let room = room(mesh, origin[t]);
+        let side = (0..3).find(|&i| l.iter().all(|l| l[i].abs() <= room));
         let names = side.and_then(|local| names.get(&(origin[t], local))).ok_or_else(|| {
             outside("vertex", ends[0], "begins an edge that is on no boundary of the case")
         })?;

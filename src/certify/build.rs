@@ -149,18 +149,18 @@ impl Built {
     }
 }
 
-/// The certificate of the stress of `u` and of the displacement `v`.
-pub(super) fn build(parts: &ProblemParts, u: &Field, v: &Field) -> Built {
+/// The certificate of the stress of `y`, a displacement under the pressures of `parts`, and of the displacement `v`.
+pub(super) fn build(parts: &ProblemParts, y: &Field, v: &Field) -> Built {
     let mesh = parts.mesh;
     let data = Data::new(parts.problem);
     let whole: Vec<Triangle<f64>> = (0..mesh.triangles().len()).map(|t| mesh.triangle(t)).collect();
-    let stress = stresses(parts, u, &whole);
+    let stress = stresses(parts, y, &whole);
     let bodies: Vec<[Vector2<f64>; 3]> =
         whole.iter().enumerate().map(|(t, triangle)| data.body_on(t, triangle)).collect();
     let moments = moments(parts, &bodies, &whole, &stress);
     let quadratic = v.bulges.is_some();
     // A stress that is constant on the triangles says nothing of their quarters.
-    let quartered = quadratic && u.bulges.is_some();
+    let quartered = quadratic && y.bulges.is_some();
     let mut built = Built {
         certificate: Certificate {
             vertices: mesh.vertices().to_vec(),
@@ -289,8 +289,7 @@ fn add_edges(
                 (&mut role, parts.boundary.get(&e))
             {
                 let edge = &parts.contact[k];
-                *pressure =
-                    if *quartered { edge.on_halves[half].0 } else { edge.pressure }.values[0];
+                *pressure = edge.pressure[half].values[0];
             }
             certificate.edges.push(Edge { ends, role });
             if let Some(curved) = &mut certificate.curved {
@@ -309,11 +308,7 @@ fn on_contact(parts: &ProblemParts, quartered: bool, e: usize) -> Option<(Profil
     }
     let Some(&Boundary::Contact(k)) = parts.boundary.get(&(e % count)) else { return None };
     let edge = &parts.contact[k];
-    Some(if quartered {
-        (edge.on_halves[half].0, edge.gap_bulge / 4.0)
-    } else {
-        (edge.pressure, edge.gap_bulge)
-    })
+    Some((edge.pressure[half], edge.gap_bulge / if quartered { 4.0 } else { 1.0 }))
 }
 
 /// A part of triangle `t`, cut where contact ends on one of its edges.

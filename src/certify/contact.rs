@@ -3,16 +3,17 @@
 //! Take lambda^h = -(1/gamma) \[P(u^h)\]+. A triangle whose contact edge holds the end of contact is cut there, so that
 //! lambda^h is affine on the edges. For P2 it is quadratic, and the affine pressure with its force and its centroid would be
 //! a tension at one end where the centroid is not in the middle third: then it acts on three times the way to the centroid
-//! only, and the triangle is cut there ([`Profile`]). Force and moment are those of lambda^h, unless that way is too short to
-//! cut a triangle there. Where n~ turns along an edge, tau n is affine along it only if the pressure is constant: then it is
-//! the mean of lambda^h.
+//! only, and the triangle is cut there ([`Profile`]). Where n~ turns along an edge, tau n is affine along it only if the
+//! pressure is constant: then it acts on twice the way to the centroid, or on all of the edge where that is nearly all. Beside a quadratic v each half of an edge has a pressure of its own.
+//! Whatever the moments of these pressures lack of those of lambda^h, the displacement that tau is built from is one under these
+//! (`pressed`).
 
 use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use crate::fem::{BoundaryEdge, EdgeRule, Piece, Problem};
-use crate::kernel::contact_edge::integral_of_product;
+use super::parts::is_curved;
+use crate::fem::{BoundaryEdge, Degree, EdgeRule, Piece, Problem};
 use crate::kernel::edge_integral::positive_interval;
 
 /// An edge of Gamma_C with what the solution says there.
@@ -27,13 +28,8 @@ pub(super) struct Contact {
     pub gap: [f64; 2],
     /// Its value in the middle less their mean; 0 where it is known to be affine.
     pub gap_bulge: f64,
-    /// int lambda^h n~ phi for them.
-    pub moments: [Vector2<f64>; 2],
-    /// c_E
-    pub excess: Vector2<f64>,
-    pub pressure: Profile,
-    /// Pressure and moments on both halves of the edge.
-    pub on_halves: [(Profile, [Vector2<f64>; 2]); 2],
+    /// The pressure on the edge, or on each of its halves.
+    pub pressure: Vec<Profile>,
 }
 
 /// tau_n along an edge of Gamma_C: affine, or with a jump at a place between the ends.
@@ -66,8 +62,9 @@ impl Profile {
 
     /// The pressure with the moments `m` of a lambda^h that is not affine; `starts` tells whether P is positive at the start,
     /// `end` is the place where it changes its sign, if there is one only. Affine up to the end of contact, if the centroid
-    /// is in the middle third of that; else up to three times the way to the centroid.
-    fn of_moments(m: [f64; 2], starts: bool, end: Option<f64>) -> Profile {
+    /// is in the middle third of that; else up to three times the way to the centroid. If it is to be `constant`, up to twice
+    /// that way; or, where that is all of the edge, with another value on each half.
+    fn of_moments(m: [f64; 2], starts: bool, end: Option<f64>, constant: bool) -> Profile {
         let force = m[0] + m[1];
         if !(force < 0.0) {
             return Profile::whole([0.0; 2]);
@@ -76,15 +73,26 @@ impl Profile {
         let turned = if end.is_some() { !starts } else { m[1] < m[0] };
         let centroid = if turned { m[0] } else { m[1] } / force;
         let end = end.map_or(1.0, |end| if turned { 1.0 - end } else { end });
-        let reach = match end.min(3.0 * centroid) {
+        let farthest = centroid * if constant { 2.0 } else { 3.0 };
+        let reach = match end.min(farthest) {
             x if x <= 1.0 - LEAST_PART => x.max(LEAST_PART),
             // Three halves of the way would be enough.
-            _ if 3.0 * centroid < 1.0 => 1.0 - LEAST_PART,
+            _ if farthest < 1.0 && !constant => 1.0 - LEAST_PART,
             _ => 1.0,
         };
-        let place = (centroid / reach).clamp(1.0 / 3.0, 2.0 / 3.0);
         let mean = force / reach;
-        let ends = [mean * (4.0 - 6.0 * place), mean * (6.0 * place - 2.0)].map(|p| p.min(0.0));
+        if constant && reach == 1.0 {
+            // The centroid of the halves' forces is that of all.
+            let place = if turned { 1.0 - centroid } else { centroid }.clamp(0.25, 0.75);
+            let [p, q] = [mean * (3.0 - 4.0 * place), mean * (4.0 * place - 1.0)];
+            return Profile { cut: Some(0.5), values: [[p; 2], [q; 2]] };
+        }
+        let ends = if constant {
+            [mean; 2]
+        } else {
+            let place = (centroid / reach).clamp(1.0 / 3.0, 2.0 / 3.0);
+            [mean * (4.0 - 6.0 * place), mean * (6.0 * place - 2.0)].map(|p| p.min(0.0))
+        };
         match (reach < 1.0, turned) {
             (false, false) => Profile::whole(ends),
             (false, true) => Profile::whole([ends[1], ends[0]]),
@@ -97,72 +105,40 @@ impl Profile {
 }
 
 impl Contact {
-    pub fn new(problem: &Problem, edge: &Piece, u: &[[f64; 2]]) -> Contact {
+    /// `halved` tells whether each half has a pressure of its own.
+    pub fn new(problem: &Problem, edge: &Piece, u: &[[f64; 2]], halved: bool) -> Contact {
         let (geometry, degree, p) = (&edge.geometry, edge.degree, edge.p(u));
-        // int \[P\]+ N_a; a hat function is N_a and half of that of the middle.
-        let nodal = |p: &[f64]| EdgeRule::Exact.integrals(degree, None, p).gradient;
-        let with_hats = |p: &[f64]| {
-            let nodal = nodal(p);
-            let middle = nodal.get(2).copied();
-            [0, 1].map(|a| middle.map_or(nodal[a], |m| nodal[a] + m / 2.0))
-        };
-        let positive = with_hats(&p);
-        let all_directions: Vec<Vector2<f64>> = geometry.directions().collect();
-        let directions = [all_directions[0], all_directions[1]];
-        // On a part of the edge, `share` of its length, with P and the directions at its nodes.
-        let BoundaryEdge { triangle, local } = edge.edge();
-        let normal = problem.mesh.triangle(triangle).scaled_normal(local);
-        let moments = |p: &[f64], directions: &[Vector2<f64>], share: f64| {
-            if geometry.along_normal {
-                return with_hats(p).map(|p| normal * -(share * p / edge.gamma));
-            }
-            let nodal = nodal(p);
-            let along = |a: usize, p: f64| directions[a] * -(share * edge.length * p / edge.gamma);
-            [0, 1].map(|a| {
-                let own = along(a, nodal[a]);
-                nodal.get(2).map_or(own, |m| own + along(2, m / 2.0))
-            })
-        };
-        let sigma_n = edge.sigma_n(u);
-        let excess = Vector2::from([0, 1].map(|c| {
-            let stress = integral_of_product(sigma_n, directions.map(|d| d[c]));
-            -(positive[0] * directions[0][c] + positive[1] * directions[1][c]) - edge.gamma * stress
-        }));
-        let gap = [geometry.nodes[0].gap, geometry.nodes[1].gap];
+        let directions = [0, 1].map(|a| geometry.nodes[a].direction);
+        let gap = [0, 1].map(|a| geometry.nodes[a].gap);
         let turns = geometry.turns();
+        let curved = problem.conditions.get(&**edge.boundary()).is_some_and(is_curved);
         let gap_bulge = match geometry.nodes.get(2) {
             // The direction in the middle is the mean of those at the ends, a little shorter than 1.
-            Some(middle) if turns => {
+            Some(middle) if turns || curved => {
                 let mean = (directions[0] + directions[1]) / 2.0;
                 middle.gap * mean.dot(&middle.direction) - (gap[0] + gap[1]) / 2.0
             }
             _ => geometry.bulge,
         };
-        let profile = |p: &[f64]| {
-            let positive = with_hats(p);
-            if turns {
-                // The mean: then tau n is affine.
-                Profile::whole([-((positive[0] + positive[1]) / edge.gamma); 2])
-            } else if let &[start, end] = p {
-                Profile::of_affine([start, end], edge.gamma)
-            } else {
+        // Where P has these values at the nodes.
+        let profile = |p: &[f64]| match p {
+            &[start, end] if !turns => Profile::of_affine([start, end], edge.gamma),
+            _ => {
                 let end = match degree.roots(p)[..] {
                     [root] => Some(root),
                     _ => None,
                 };
-                Profile::of_moments(positive.map(|p| -(p / edge.gamma)), p[0] > 0.0, end)
+                let moments = with_hats(degree, p).map(|p| -(p / edge.gamma));
+                Profile::of_moments(moments, p[0] > 0.0, end, turns)
             }
         };
-        let on_halves = [0.0, 0.5].map(|start| {
-            let shapes: Vec<Vec<f64>> = (degree.edge_positions().into_iter())
-                .map(|s| degree.edge_values(start + s / 2.0))
-                .collect();
-            let here = |n: &Vec<f64>| n.iter().zip(&p).map(|(n, p)| n * p).sum::<f64>();
-            let here: Vec<f64> = shapes.iter().map(here).collect();
-            let direction = |n: &Vec<f64>| n.iter().zip(&all_directions).map(|(n, d)| d * *n).sum();
-            let directions: Vec<Vector2<f64>> = shapes.iter().map(direction).collect();
-            (profile(&here), moments(&here, &directions, 0.5))
-        });
+        let on_half = |start: f64| {
+            let at = |s: f64| {
+                let shapes = degree.edge_values(start + s / 2.0);
+                shapes.iter().zip(&p).map(|(n, p)| n * p).sum::<f64>()
+            };
+            profile(&degree.edge_positions().into_iter().map(at).collect::<Vec<f64>>())
+        };
         Contact {
             edge: edge.edge(),
             boundary: Arc::clone(edge.boundary()),
@@ -171,11 +147,76 @@ impl Contact {
             directions,
             gap,
             gap_bulge,
-            moments: moments(&p, &all_directions, 1.0),
-            excess,
-            pressure: profile(&p),
-            on_halves,
+            pressure: if halved { vec![on_half(0.0), on_half(0.5)] } else { vec![profile(&p)] },
         }
+    }
+
+    /// The parts of the edge on which the pressure is affine: from where to where, in units of it, and at both ends the pressure
+    /// and the traction.
+    fn parts(&self) -> impl Iterator<Item = ([f64; 2], [f64; 2], [Vector2<f64>; 2])> {
+        let share = 1.0 / self.pressure.len() as f64;
+        self.pressure.iter().enumerate().flat_map(move |(i, profile)| {
+            let start = share * i as f64;
+            let at = profile.cut.unwrap_or(1.0);
+            let parts = [([0.0, at], profile.values[0]), ([at, 1.0], profile.values[1])];
+            let parts = parts.into_iter().take(if profile.cut.is_some() { 2 } else { 1 });
+            parts.map(move |(ends, pressure)| {
+                let ends = ends.map(|s| start + share * s);
+                let [d, e] = self.directions;
+                let along = [0, 1].map(|k| (d * (1.0 - ends[k]) + e * ends[k]) * pressure[k]);
+                (ends, pressure, along)
+            })
+        })
+    }
+
+    /// The parts of the edge that are edges of the certificate.
+    pub fn pieces(&self) -> Vec<[f64; 2]> {
+        self.parts().map(|(ends, ..)| ends).collect()
+    }
+
+    /// int p d phi over the part of the edge between `from` and `to` for these functions phi of degree 2 or less, of the place on
+    /// the edge from 0 to 1: Simpson's rule is exact.
+    fn moments<const N: usize>(
+        &self,
+        [from, to]: [f64; 2],
+        phi: impl Fn(f64) -> [f64; N],
+    ) -> [Vector2<f64>; N] {
+        let mut moments = [Vector2::zeros(); N];
+        for ([s, t], _, [q, r]) in
+            self.parts().filter(|(ends, ..)| ends[0] >= from && ends[1] <= to)
+        {
+            let weight = self.length * (t - s) / 6.0;
+            for (x, q, times) in [(s, q, 1.0), ((s + t) / 2.0, (q + r) / 2.0, 4.0), (t, r, 1.0)] {
+                let phi = phi(x);
+                (0..N).for_each(|k| moments[k] += q * (phi[k] * times * weight));
+            }
+        }
+        moments
+    }
+
+    /// int p d phi for the hat functions of the ends, and for 4 s (1 - s).
+    pub fn on_edge(&self) -> [Vector2<f64>; 3] {
+        self.moments([0.0, 1.0], |s| [1.0 - s, s, 4.0 * s * (1.0 - s)])
+    }
+
+    /// int p d phi over the part of this number for the hat functions of its ends.
+    pub fn on_part(&self, number: usize) -> [Vector2<f64>; 2] {
+        let count = self.pressure.len() as f64;
+        let [from, to] = [number, number + 1].map(|k| k as f64 / count);
+        self.moments([from, to], |s| [(to - s) * count, (s - from) * count])
+    }
+
+    /// int p, which is not positive, and int p d . r over it for a motion that is affine along the edge.
+    pub fn against(&self, ends: [Vector2<f64>; 2]) -> [f64; 2] {
+        let [a, b, _] = self.on_edge();
+        let force = self.parts().map(|([s, t], [p, q], _)| self.length * (t - s) * (p + q) / 2.0);
+        [force.sum(), a.dot(&ends[0]) + b.dot(&ends[1])]
+    }
+
+    /// Multiplies the pressure.
+    pub fn scale(&mut self, factor: f64) {
+        let values = self.pressure.iter_mut().flat_map(|profile| &mut profile.values);
+        values.flatten().for_each(|p| *p *= factor);
     }
 
     /// The directions, if they are not the normal.
@@ -189,9 +230,16 @@ impl Contact {
     }
 }
 
+/// int \[P\]+ phi for the hat functions of the ends of an edge, in units of its length.
+fn with_hats(degree: Degree, p: &[f64]) -> [f64; 2] {
+    let nodal = EdgeRule::Exact.integrals(degree, None, p).gradient;
+    // A hat function is N_a and half of that of the middle.
+    let middle = nodal.get(2).copied().unwrap_or_default();
+    [0, 1].map(|a| nodal[a] + middle / 2.0)
+}
+
 /// Contact that ends this near an end of its edge, in units of the edge, leaves it whole: the triangles would be slivers.
 pub(super) const NEAR_THE_END: f64 = 1e-3;
 
-/// The least part of an edge that is cut off where lambda^h is not affine: a sliver bounds badly, and the force of what is
-/// shorter has so little moment that the balance of the triangles may carry it.
+/// The least part of an edge that is cut off where lambda^h is not affine: a sliver bounds badly.
 pub(super) const LEAST_PART: f64 = 0.15;

@@ -10,7 +10,6 @@ use nalgebra::Vector2;
 use super::SWEEPS_FOR_FORCES;
 use super::build::{Built, build};
 use super::certificate::{Certificate, Cut, Role, is_oblique};
-use super::errors::CertifyError;
 use super::field::Field;
 use super::forces::{ForceTarget, Lifting, Motion};
 use super::parts::{Boundary, ProblemParts};
@@ -18,6 +17,7 @@ use super::sweeps::improve;
 use crate::fem::matrix::{LowerTriangle, Neighbours, Numbering};
 use crate::fem::mesh::length;
 use crate::fem::residual::add_internal_forces;
+use crate::fem::rigid::{Parts, free_motions, pins};
 use crate::fem::{BoundaryEdge, Degree, Problem, Space};
 use crate::solve::SolveError;
 use crate::solve::factor::Factor;
@@ -63,7 +63,7 @@ impl<'a> Lifter<'a> {
         degree: Degree,
         names: &'a [String],
         open: &[bool],
-    ) -> Result<Self, CertifyError> {
+    ) -> Result<Self, String> {
         let space = Space::new(parts.mesh, degree);
         let mut demands: BTreeMap<usize, Vec<Prescription>> = BTreeMap::new();
         let mut add = |edge: BoundaryEdge,
@@ -120,6 +120,16 @@ impl<'a> Lifter<'a> {
                 _ => [None; 2],
             };
         }
+        // A motion that neither supports nor the directions of contact stop, as a part turns about its pin, changes no force.
+        let bodies = Parts::new(parts.mesh);
+        let held = |node: usize| {
+            demands.get(&node).into_iter().flatten().map(|demand| demand.direction.into())
+        };
+        let motions = free_motions(&bodies, &space, held, PARALLEL, false);
+        let fields: Vec<_> = motions.iter().map(|motion| motion.field(&bodies, &space)).collect();
+        for (node, c) in pins(&fields, |node, _| !demands.contains_key(&node)) {
+            prescribed[node][c] = Some(0.0);
+        }
         let neighbours = Neighbours::new(&space);
         let order = nested_dissection(space.nodes(), &neighbours);
         let numbering = Numbering::in_frames(&order, &prescribed, frames);
@@ -127,9 +137,7 @@ impl<'a> Lifter<'a> {
         let assembled = matrix.add_stiffness(&space, &parts.problem.material, &numbering);
         let factor = assembled.map_err(SolveError::from).and_then(|()| Factor::new(&matrix));
         let factor = factor.map_err(|error| {
-            CertifyError::Unsupported(format!(
-                "no displacement of least energy for the forces: {error}"
-            ))
+            format!("no displacement of least energy to prove forces with: {error}")
         })?;
         Ok(Lifter { parts, names, space, demands, numbering, factor })
     }

@@ -7,6 +7,7 @@
 //! | `proof` | the checker, of the crate `signorini-audit`: it evaluates a certificate |
 //! | `parts`, `contact`, `field`, `data` | the problem and its discrete solution, as certificates see them |
 //! | `admissible` | v |
+//! | `pressed` | y, the displacement under the pressures of tau |
 //! | `tractions`, `quarters`, `divide`, `build` | tau: moments of tractions; the triangles in four; those that are cut; all together |
 //! | `sweeps` | a better tau |
 //! | `oscillation` | data outside the exact class |
@@ -29,6 +30,7 @@ mod field;
 mod lifting;
 mod oscillation;
 mod parts;
+mod pressed;
 #[doc(hidden)]
 pub mod quantities;
 mod quarters;
@@ -197,16 +199,17 @@ fn certify_near(
     let per_triangle =
         if asked.forces.is_empty() { PER_TRIANGLE } else { per_triangle_with_forces(triangles) };
     memory::check(quarters * per_triangle * triangles as u64)?;
-    let parts =
-        ProblemParts::new(problem, solution.degree, &solution.pieces, &solution.displacement)?;
+    let u = &*solution.displacement;
+    let mut parts = ProblemParts::new(problem, solution.degree, &solution.pieces, (u, quadratic))?;
+    let y = pressed::displacement(&mut parts, solution.degree, u)?;
     let mesh = &problem.mesh;
-    let [u, start, w] = [&solution.displacement, start, field].map(|nodal| Field::new(mesh, nodal));
+    let [y, start, w] = [&y, start, field].map(|nodal| Field::new(mesh, nodal));
     let missed = parts.missed(&w?);
-    let (u, start) = (u?, start?);
+    let (y, start) = (y?, start?);
     let mut further = vec![0.0; parts.contact.len()];
     let mut outside = || {
         let v = admissible::admissible(&parts, &start, &further);
-        let built = build::build(&parts, &u, &v);
+        let built = build::build(&parts, &y, &v);
         let found = built.penetrations(&parts);
         found.iter().for_each(|&(k, by)| further[k] += 2.0 * by);
         (v, built, found.is_empty())

@@ -16,6 +16,7 @@
 //! These integrals are by quadrature, so a bound that contains one is not rigorous: [`Oscillation::reason`] says so.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -25,8 +26,8 @@ use super::data::{Data, POINTS, bulge_of, cancellation, is_within, length_and_no
 use super::parts::{Boundary, ProblemParts};
 use crate::fem::material::least_eigenvalue;
 use crate::fem::mesh::length;
-use crate::fem::{Condition, SharedFunction, quadrature};
-use crate::kernel::{Material, Triangle};
+use crate::fem::{Condition, Distance, Function, Obstacle, SharedFunction, quadrature};
+use crate::kernel::{Ball, Enclosing, Material, Triangle};
 use crate::quote::quoted;
 
 /// The parts of a problem's data that a certificate leaves out.
@@ -41,7 +42,7 @@ pub(super) struct Oscillation {
 impl Oscillation {
     /// `quadratic` tells whether v is, so that it follows data of degree 2.
     pub fn new(parts: &ProblemParts, quadratic: bool) -> Self {
-        let (given, turning) = (given(parts, quadratic), parts.turning());
+        let (given, between) = (given(parts, quadratic), parts.known_at_nodes());
         let inexact = given.iter().filter_map(|given| {
             let degree = given.degree?;
             let exact = given.functions.iter().all(|f| is_within(f, degree));
@@ -51,8 +52,8 @@ impl Oscillation {
         let inexact: Vec<String> = inexact.collect();
         let measured = (!inexact.is_empty())
             .then(|| format!("{}: its oscillation is measured by quadrature", inexact.join("; ")));
-        let named = (!turning.is_empty()).then(|| {
-            let names: Vec<String> = turning.iter().map(|name| quoted(name, '\'')).collect();
+        let named = (!between.is_empty()).then(|| {
+            let names: Vec<String> = between.iter().map(|name| quoted(name, '\'')).collect();
             format!(
                 "the problem that is bounded has on {} a direction and a gap that are {} between its vertices",
                 names.join(", "),
@@ -106,9 +107,9 @@ impl Oscillation {
 }
 
 /// Functions that a problem gives.
-struct Given<'a> {
+struct Given {
     name: String,
-    functions: Vec<&'a SharedFunction>,
+    functions: Vec<SharedFunction>,
     /// The degree up to which they are in the exact class; `None` where the certificate has values at vertices only.
     degree: Option<u32>,
     /// Where they act.
@@ -116,11 +117,13 @@ struct Given<'a> {
 }
 
 /// All that a problem gives, for a v that may be `quadratic`.
-fn given<'a>(parts: &ProblemParts<'a>, quadratic: bool) -> Vec<Given<'a>> {
+fn given(parts: &ProblemParts, quadratic: bool) -> Vec<Given> {
     let (problem, mesh, turning) = (parts.problem, parts.mesh, parts.turning());
-    let force = |name: String, force: &'a [SharedFunction; 2], vertices: Vec<usize>| {
-        let functions = force.iter().collect();
-        Given { name, functions, degree: Some(1), vertices }
+    let force = |name: String, force: &[SharedFunction; 2], vertices: Vec<usize>| Given {
+        name,
+        functions: force.to_vec(),
+        degree: Some(1),
+        vertices,
     };
     let all = (0..mesh.vertices().len()).collect();
     let mut given = vec![force("the body force".to_owned(), &problem.body_force, all)];
@@ -131,7 +134,7 @@ fn given<'a>(parts: &ProblemParts<'a>, quadratic: bool) -> Vec<Given<'a>> {
     }
     let of_v = Some(if quadratic { 2 } else { 1 });
     for (name, condition) in &problem.conditions {
-        let mut add = |what: &str, functions: Vec<&'a SharedFunction>, degree| {
+        let mut add = |what: &str, functions: Vec<SharedFunction>, degree| {
             let edges = mesh.edges_of(name).unwrap_or_default().iter();
             let vertices = edges.flat_map(|&edge| mesh.ends(edge)).collect();
             given.push(Given {
@@ -142,26 +145,56 @@ fn given<'a>(parts: &ProblemParts<'a>, quadratic: bool) -> Vec<Given<'a>> {
             });
         };
         match condition {
-            Condition::Displacement(u) => add("displacement", u.iter().flatten().collect(), of_v),
+            Condition::Displacement(u) => {
+                add("displacement", u.iter().flatten().cloned().collect(), of_v);
+            }
             Condition::Mixed { displacement, traction } => {
                 let acts = |c: &usize| displacement[*c].is_none();
-                let acting = (0..2).filter(acts).map(|c| &traction[c]).collect();
+                let acting = (0..2).filter(acts).map(|c| traction[c].clone()).collect();
                 add("traction", acting, Some(1));
-                add("displacement", displacement.iter().flatten().collect(), of_v);
+                add("displacement", displacement.iter().flatten().cloned().collect(), of_v);
             }
             Condition::Support { normal, tangential } => {
-                add("displacement", [normal, tangential].into_iter().flatten().collect(), of_v);
+                let functions = [normal, tangential].into_iter().flatten().cloned();
+                add("displacement", functions.collect(), of_v);
             }
-            Condition::Traction(traction) => add("traction", traction.iter().collect(), Some(1)),
-            Condition::Pressure(p) => add("pressure", vec![p], Some(1)),
+            Condition::Traction(traction) => add("traction", traction.to_vec(), Some(1)),
+            Condition::Pressure(p) => add("pressure", vec![p.clone()], Some(1)),
             Condition::Contact { gap } => {
-                add("gap", vec![gap], of_v.filter(|_| !turning.contains(name.as_str())));
+                let degree = of_v.filter(|_| !turning.contains(name.as_str()));
+                add("gap", vec![gap.clone()], degree);
             }
-            // A plane's distance is affine; other distances turn.
-            Condition::Obstacle(..) => {}
+            Condition::Obstacle(_, Obstacle::Plane { point, normal }) => {
+                let distance = DistanceToPlane { point: *point, normal: *normal };
+                add("distance", vec![Arc::new(distance)], None);
+            }
+            Condition::Obstacle(_, Obstacle::Distance(distance)) => {
+                add("distance", vec![Arc::<dyn Distance>::clone(distance)], None);
+            }
+            // A gap is the difference of two lengths, or a length.
+            Condition::Obstacle(_, Obstacle::Circle { .. } | Obstacle::Path { .. }) => {}
         }
     }
     given
+}
+
+/// (x - p) . m
+struct DistanceToPlane {
+    point: [f64; 2],
+    normal: [f64; 2],
+}
+
+impl Function for DistanceToPlane {
+    fn at(&self, x: [f64; 2]) -> f64 {
+        let DistanceToPlane { point: p, normal: m } = self;
+        (x[0] - p[0]) * m[0] + (x[1] - p[1]) * m[1]
+    }
+
+    fn enclosed(&self, x: [f64; 2]) -> Option<Ball> {
+        let from = [0, 1].map(|c| Ball::exactly(x[c]) - Ball::exactly(self.point[c]));
+        let [along, beside] = [0, 1].map(|c| from[c] * Ball::exactly(self.normal[c]));
+        Some(along + beside)
+    }
 }
 
 /// K and h_T of a triangle: |grad (w - r)| <= K |eps(w)|, |w - r| <= K (h_T / pi) |eps(w)|.

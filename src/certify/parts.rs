@@ -11,7 +11,9 @@ use super::errors::CertifyError;
 use super::field::Field;
 use crate::fem::boundary_normals::SmoothBoundary;
 use crate::fem::constraints::Constraints;
-use crate::fem::{BoundaryEdge, Condition, Degree, Mesh, Piece, Problem, SharedFunction, Space};
+use crate::fem::{
+    BoundaryEdge, Condition, Degree, Mesh, Obstacle, Piece, Problem, SharedFunction, Space,
+};
 use crate::kernel::Material;
 use crate::quote::quoted;
 
@@ -48,18 +50,20 @@ pub(super) struct ProblemParts<'a> {
 }
 
 impl<'a> ProblemParts<'a> {
+    /// `halved` tells whether v is quadratic beside a solution that is.
+    ///
     /// # Errors
     /// Conditions that no composite stress can satisfy.
     pub fn new(
         problem: &'a Problem,
         degree: Degree,
         pieces: &[Piece],
-        displacement: &[[f64; 2]],
+        (displacement, halved): (&[[f64; 2]], bool),
     ) -> Result<Self, CertifyError> {
         let space = Space::new(&problem.mesh, degree);
         let constraints = Constraints::new(problem, &space)?;
         let contact: Vec<Contact> =
-            pieces.iter().map(|edge| Contact::new(problem, edge, displacement)).collect();
+            pieces.iter().map(|edge| Contact::new(problem, edge, displacement, halved)).collect();
         let unsupported = |why: String| Err(CertifyError::Unsupported(why));
         if let Some(point) = problem.points.first() {
             return unsupported(format!(
@@ -288,6 +292,13 @@ impl<'a> ProblemParts<'a> {
         turning.map(|edge| &*edge.boundary).collect()
     }
 
+    /// The contact boundaries of which direction and gap are known at the nodes only: those that turn, and those whose obstacle is
+    /// neither a plane nor a distance that is affine by its expression.
+    pub fn known_at_nodes(&self) -> BTreeSet<&str> {
+        let curved = self.problem.conditions.iter().filter(|(_, condition)| is_curved(condition));
+        self.turning().into_iter().chain(curved.map(|(name, _)| name.as_str())).collect()
+    }
+
     /// The material of triangle `t`.
     pub fn material(&self, t: usize) -> &Material<f64> {
         self.problem.material.of(t)
@@ -335,6 +346,18 @@ pub(super) fn held_along(d: [f64; 2], w: f64, v: [f64; 2]) -> [f64; 2] {
 /// Which components are given.
 fn is_some(functions: &[Option<SharedFunction>; 2]) -> [bool; 2] {
     functions.each_ref().map(Option::is_some)
+}
+
+/// Returns whether an obstacle's distance is not known to be affine.
+pub(super) fn is_curved(condition: &Condition) -> bool {
+    match condition {
+        Condition::Obstacle(_, Obstacle::Plane { .. }) => false,
+        Condition::Obstacle(_, Obstacle::Distance(distance)) => {
+            distance.degree().is_none_or(|degree| degree > 1)
+        }
+        Condition::Obstacle(..) => true,
+        _ => false,
+    }
 }
 
 /// The function is 0, and known to be.

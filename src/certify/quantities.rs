@@ -29,7 +29,7 @@ use super::lifting::Lifter;
 use super::parts::{Boundary, ProblemParts};
 use super::proof::Proof;
 use crate::fem::Degree;
-use crate::fem::mesh::length;
+use crate::fem::dense::least_squares;
 use crate::kernel::{Ball, Enclosing};
 use crate::solve::Solution;
 
@@ -148,8 +148,8 @@ pub enum Limit {
 /// Parts of the largest gap, and of the largest pressure, from which stretches are made.
 const LEVELS: [f64; 3] = [0.5, 0.125, 0.03125];
 
-/// A stretch says something if it has less than this part of the boundary's force, or of the opening that its displacement
-/// could have.
+/// A stretch says something if it has less than this part of the boundary's force, or of the opening that it would have if it
+/// were moved by what the boundary's displacement has beyond a rigid motion.
 const TELLING: f64 = 0.1;
 
 /// Where contact can hardly act, and where the body can hardly be off the obstacle.
@@ -176,9 +176,7 @@ pub(super) fn zones<S: Enclosing>(
             .iter()
             .map(|s| (pressure(s)[0] + pressure(s)[1]) / 2.0 * (s.to - s.from))
             .sum();
-        let moved = stations.iter().flat_map(|s| certificate.edges[s.edge].ends);
-        let moved =
-            moved.map(|p| state.v.points[p].map(|x| x.upper().abs()).amax()).fold(0.0, f64::max);
+        let bent = beyond_rigid(certificate, state, &stations);
         let mut add = |sizes: &[f64], limit: fn(f64) -> Limit, telling: &dyn Fn(f64) -> f64| {
             let largest = sizes.iter().copied().fold(0.0, f64::max);
             let mut last = Vec::new();
@@ -198,9 +196,42 @@ pub(super) fn zones<S: Enclosing>(
             }
         };
         add(&gaps, Limit::Force, &|_| if force > 0.0 { force } else { f64::INFINITY });
-        add(&pressures, Limit::Opening, &|length| length * moved);
+        add(&pressures, Limit::Opening, &|length| length * bent);
     }
     zones
+}
+
+/// The largest length of v at the ends of these edges less the rigid motion that is nearest to it there.
+fn beyond_rigid<S: Enclosing>(
+    certificate: &Certificate,
+    state: &Balanced<S>,
+    stations: &[Station],
+) -> f64 {
+    let middle = |x: S| (x.lower() + x.upper()) / 2.0;
+    let ends: Vec<usize> = stations.iter().flat_map(|s| certificate.edges[s.edge].ends).collect();
+    let (places, v): (Vec<Vector2<f64>>, Vec<Vector2<f64>>) =
+        ends.iter().map(|&p| (state.points[p].map(middle), state.v.points[p].map(middle))).unzip();
+    let count = places.len() as f64;
+    let centre = places.iter().sum::<Vector2<f64>>() / count;
+    let column = |of: &dyn Fn(Vector2<f64>) -> Vector2<f64>| -> Vec<f64> {
+        places.iter().flat_map(|&x| <[f64; 2]>::from(of(x - centre))).collect()
+    };
+    let motions = [
+        column(&|_| Vector2::x()),
+        column(&|_| Vector2::y()),
+        column(&|x| Vector2::new(-x.y, x.x)),
+    ];
+    let all: Vec<f64> = v.iter().flat_map(|&v| <[f64; 2]>::from(v)).collect();
+    let weights = least_squares(motions.to_vec(), &all);
+    let left = |k: usize| {
+        let of = |c: usize| -> f64 {
+            let moved: f64 =
+                motions.iter().zip(&weights).map(|(motion, w)| w * motion[2 * k + c]).sum();
+            all[2 * k + c] - moved
+        };
+        of(0).hypot(of(1))
+    };
+    (0..places.len()).map(left).fold(0.0, f64::max)
 }
 
 /// The stretches of stations, from the first to before the last, that have a property and hang together.
@@ -308,7 +339,7 @@ fn open(parts: &ProblemParts, v: &Field, mean: Mean) -> Vec<bool> {
     };
     let force = |boundary: &str| -> f64 {
         let of = parts.contact.iter().filter(|edge| &*edge.boundary == boundary);
-        of.map(|edge| length(edge.moments[0] + edge.moments[1])).sum()
+        of.map(|edge| -edge.against([Vector2::zeros(); 2])[0]).sum()
     };
     let names: BTreeSet<&str> = parts.contact.iter().map(|edge| &*edge.boundary).collect();
     let least: BTreeMap<&str, f64> = names
@@ -326,13 +357,8 @@ fn open(parts: &ProblemParts, v: &Field, mean: Mean) -> Vec<bool> {
 fn off_contact(parts: &ProblemParts, beyond: i32) -> Vec<bool> {
     let is_full =
         |profile: &Profile| profile.cut.is_none() && profile.values[0].iter().all(|&p| p < 0.0);
-    let mut open: Vec<bool> = parts
-        .contact
-        .iter()
-        .map(|edge| {
-            !(is_full(&edge.pressure) || edge.on_halves.iter().all(|(half, _)| is_full(half)))
-        })
-        .collect();
+    let mut open: Vec<bool> =
+        parts.contact.iter().map(|edge| !edge.pressure.iter().all(is_full)).collect();
     let ends: Vec<[usize; 2]> =
         parts.contact.iter().map(|edge| parts.mesh.ends(edge.edge)).collect();
     let grows = beyond < 0;
@@ -497,7 +523,7 @@ fn list(
     let lifter = match Lifter::new(parts, degree, names, open) {
         Ok(lifter) => lifter,
         Err(error) => {
-            let why = |(name, boundary, weight)| (name, boundary, weight, Err(error.to_string()));
+            let why = |(name, boundary, weight)| (name, boundary, weight, Err(error.clone()));
             return (asked.into_iter().map(why).collect(), Evidence::default(), Vec::new());
         }
     };

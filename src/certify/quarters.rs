@@ -86,7 +86,7 @@ fn outward(
         Role::Pressed(p) => p.map(|p| normal * -p),
         Role::Contact { .. } => match parts.boundary.get(&(e % count)) {
             Some(&Boundary::Contact(k)) => {
-                force_of(&parts.contact[k].on_halves[e / count].1).map(Vector2::from)
+                force_of(&parts.contact[k].on_part(e / count)).map(Vector2::from)
             }
             _ => [Vector2::zeros(); 2],
         },

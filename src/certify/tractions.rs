@@ -1,20 +1,17 @@
 //! The moments of tau's tractions with the hat functions, from the discrete solution.
 //!
-//! Take lambda^h = -(1/gamma) \[P(u^h)\]+ and on each triangle s_T = sigma(u^h) + sum_E C (c_E (x) n) / |T|, with
-//! c_E = int_E gamma (lambda^h - sigma_n(u^h)) n~ over its edges on Gamma_C (n~ = n, or the direction of contact). Then (8)
-//! for P1 reads int s : eps(v) = L(v) + int lambda^h v_n: Nitsche's terms have gone into the stress. Tested with a hat
-//! function phi_a it says that around each vertex a there are moments M_E of tractions, one for each edge E at a, with
+//! Let y in V^h be the displacement under the loads and the pressures p of the certificate (`pressed`): a(y, v) = L(v) + int p d . v
+//! for all v in V^h. Tested with a hat function phi_a, which is in V^h for P1 and P2, it says that around each vertex a there
+//! are moments M_E of tractions, one for each edge E at a, with
 //!
 //! sum_{E of T at a} M_E = |T| s_T grad phi_a - int_T f phi_a   for the triangles T around a
 //!
-//! (M_E towards the outside of T): going round a, the differences of neighbouring moments are known. The one that is free
-//! is chosen such that they are near those of the mean stress; where the boundary prescribes a traction, it is known. The
-//! affine traction with the moments M_a, M_b is 4 M_a - 2 M_b at a, per unit of the edge's parameter.
-//!
-//! Hat functions are in the space of P2, too: there s_T is the mean of sigma(u^h) with the same terms, and the moments are to be
-//! near those of the affine stress sigma(u^h), which is nearer to the true one than its means are.
+//! (M_E towards the outside of T, s_T the mean of sigma(y)): going round a, the differences of neighbouring moments are known.
+//! The one that is free is chosen such that they are near those of sigma(y), which is affine for P2; where the boundary
+//! prescribes a traction, it is known. The affine traction with the moments M_a, M_b is 4 M_a - 2 M_b at a, per unit of the
+//! edge's parameter.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Vector2;
 
 use super::certificate::{Role, turned};
 use super::field::Field;
@@ -23,26 +20,19 @@ use crate::fem::mesh::length;
 use crate::kernel::Triangle;
 use crate::kernel::composite::Affine;
 
-/// s_T on each triangle, and beside it what sigma(u) has beyond its mean.
+/// s_T on each triangle, and beside it what sigma(y) has beyond its mean.
 pub(super) fn stresses(
     parts: &ProblemParts,
-    u: &Field,
+    y: &Field,
     triangles: &[Triangle<f64>],
 ) -> Vec<Affine<f64>> {
-    let of_u = |(t, triangle): (usize, &Triangle<f64>)| {
-        let sigma = u.stress(parts.mesh, parts.material(t), t, triangle);
+    let of_y = |(t, triangle): (usize, &Triangle<f64>)| {
+        let sigma = y.stress(parts.mesh, parts.material(t), t, triangle);
         let mean = sigma.mean();
         let beyond = sigma.beyond.map(|_| [0, 1, 2].map(|i| sigma.at_corner(i) - mean));
         Affine { base: mean, beyond }
     };
-    let mut stress: Vec<Affine<f64>> = triangles.iter().enumerate().map(of_u).collect();
-    for edge in &parts.contact {
-        let (t, n) = (edge.edge.triangle, edge.normal);
-        let factor = edge.length / (triangles[t].double_area() / 2.0);
-        let strain = Matrix2::from_fn(|i, j| factor * edge.excess[i] * n[j]);
-        stress[t].base = stress[t].base + parts.material(t).stress(strain);
-    }
-    stress
+    triangles.iter().enumerate().map(of_y).collect()
 }
 
 /// The moments of the traction on each edge with the hat functions of its ends, towards the outside of the first triangle
@@ -121,7 +111,8 @@ pub(super) fn moments(
             }
             Some(Boundary::Contact(k)) => {
                 known[e] = Known::All;
-                moments[e] = parts.contact[*k].moments;
+                let [a, b, _] = parts.contact[*k].on_edge();
+                moments[e] = [a, b];
             }
         }
     }
@@ -185,6 +176,12 @@ fn combined(
     }
 }
 
+/// int f phi over a triangle, f affine with these values at its vertices, phi the hat function of vertex `l`:
+/// |T| / 12 (f_0 + f_1 + f_2 + f_l).
+pub(super) fn load(body: &[Vector2<f64>; 3], triangle: &Triangle<f64>, l: usize) -> Vector2<f64> {
+    (body[0] + body[1] + body[2] + body[l]) * (triangle.double_area() / 24.0)
+}
+
 /// The data of the triangles around a vertex.
 struct Around<'a> {
     corners: &'a [[usize; 3]],
@@ -204,10 +201,8 @@ impl Around<'_> {
         self.owners[e].into_iter().flatten().map(|(other, _)| other).find(|&other| other != t)
     }
 
-    /// int f phi over triangle `t`, phi the hat function of its vertex `l`: |T| / 12 (f_0 + f_1 + f_2 + f_l).
     fn load(&self, t: usize, l: usize) -> Vector2<f64> {
-        let body = &self.bodies[t];
-        (body[0] + body[1] + body[2] + body[l]) * (self.triangles[t].double_area() / 24.0)
+        load(&self.bodies[t], &self.triangles[t], l)
     }
 
     /// Edge `e` as the place of its moment at vertex `a`, and 1 if its moments point outside `t`, else -1.

@@ -28,10 +28,11 @@ pub struct Arguments {
     pub verbose: bool,
 }
 
-const SCOPE: &str = "Linear elastic, small displacements and rotations, plane strain or plane stress. Contact is with rigid obstacles, \
-                     without friction: they push and never pull; gap and direction are those of the undeformed body.\n\
-                     Not computed: 3D, axisymmetry, large displacements or sliding, contact of two deformable bodies, friction, \
-                     plasticity and other nonlinear materials, dynamics, thermal strain.\n\
+const SCOPE: &str = "Linear elastic, small displacements and rotations, plane strain, plane stress or bodies of revolution. Contact is \
+                     with rigid obstacles and between deformable bodies, without friction: they push and never pull; gap and direction \
+                     are those of the undeformed bodies.\n\
+                     Not computed: 3D, large displacements or sliding, friction, plasticity and other nonlinear materials, dynamics, \
+                     thermal strain.\n\
                      docs/case.md of the sources lists the keys of a case file.";
 
 const EXIT_CODES: &str = "Exit codes: 0 solved and proved; 1 no result: it could not be computed or written, or a certificate was not accepted; \
@@ -197,7 +198,7 @@ pub struct SolveOptions {
     #[arg(long)]
     pub json: bool,
     /// Also bound the distance to the true solution, and write the proof to certificate.json and certificate.bin, for
-    /// `signorini audit`; takes about as long again as the solution
+    /// `signorini audit`; with the forces between two numbers it takes one to five times as long as the solution
     #[arg(long)]
     pub certificate: bool,
     /// Refine the mesh until the error is proved to be at most this: "5 %" of the energy norm, or "force NAME 2 %" of the contact

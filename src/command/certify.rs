@@ -6,7 +6,8 @@ use signorini::certify::binding::compare;
 use signorini::certify::certify_field;
 use signorini::io::Failure;
 use signorini::io::field::read_field;
-use signorini::io::{Case, certificate, outputs, summary};
+use signorini::io::summary::{self, AuditedCase};
+use signorini::io::{Case, certificate, outputs};
 use signorini::quote;
 use signorini::solve::{Course, solve_along};
 
@@ -57,12 +58,20 @@ pub fn audit(
     });
     let case = case.transpose()?;
     let audit = certificate::audit(path)?;
-    let Some(Case { problem, file, .. }) = case else {
+    let Some(Case { problem, file, title, units, thickness, .. }) = case else {
         return Ok(summarised(&summary::audited(&audit, None), quiet));
     };
-    let reason = compare(problem, &audit.certificate, &audit.forces).map_err(|difference| {
+    let none_of_it = |difference: String| {
         let [path, file] = [path, &file].map(quote::path);
         Failure::failed(format!("{path}: not a certificate of {file}: {difference}"))
-    })?;
-    Ok(summarised(&summary::audited(&audit, Some((&file, reason.as_deref()))), quiet))
+    };
+    if audit.header.thickness != thickness {
+        let said = |t: Option<f64>| t.map_or("no thickness".to_owned(), |t| format!("{t:?}"));
+        let [found, expected] = [audit.header.thickness, thickness].map(said);
+        return Err(none_of_it(format!("the body has {found}; the case says {expected}")));
+    }
+    let reason = compare(problem, &audit.certificate, &audit.forces)
+        .map_err(|difference| none_of_it(difference.to_string()))?;
+    let case = AuditedCase { file, title, units };
+    Ok(summarised(&summary::audited(&audit, Some((&case, reason.as_deref()))), quiet))
 }

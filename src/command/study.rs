@@ -12,6 +12,8 @@ use super::arguments::{CaseArguments, StudyOptions};
 use super::progress::Phases;
 use super::{Done, folder, read, summarised};
 
+const UNMEASURED: &str = "[exact]: near its singular point the exact solution is beyond the range of doubles, so its errors cannot be measured; expected a corner with an angle that is not so near to pi, such as omega = 2.7";
+
 pub fn run(
     arguments: &CaseArguments,
     options: &StudyOptions,
@@ -39,6 +41,9 @@ pub fn run(
             let study = convergence::ladder(&case, *degree, *perturbed)
                 .and_then(|ladder| convergence::climb(ladder, levels, || enter(1)))
                 .map_err(|failure| failure.of(&case.file))?;
+            if !study.levels.iter().all(|level| level.errors.is_finite()) {
+                return Err(Failure::failed(UNMEASURED).of(&case.file));
+            }
             studies.push(study);
         }
     }

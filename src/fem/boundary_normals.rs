@@ -40,11 +40,13 @@ pub struct SmoothPoint {
     pub normal: Vector2<f64>,
 }
 
-/// A vertex of the outline: the edge before, the edge after and the angle by which it turns left.
+/// A vertex of the outline: the edge before, the edge after, the angle by which it turns left, and whether that is no angle but
+/// the rounding of vertices, as on a straight side after many bisections.
 struct Passage {
     before: usize,
     after: usize,
     bend: f64,
+    straight: bool,
 }
 
 impl SmoothBoundary {
@@ -52,7 +54,9 @@ impl SmoothBoundary {
     pub fn new(mesh: &Mesh) -> Self {
         let outline = mesh.outline();
         let ends: Vec<[usize; 2]> = outline.iter().map(|&edge| mesh.ends(edge)).collect();
-        let normals = smooth_normals(&ends, |vertex| mesh.vertices()[vertex].into());
+        let place = |vertex: usize| mesh.vertices()[vertex].into();
+        let rounding = |e: usize| mesh.turned_by_rounding([outline[e]]);
+        let normals = smooth_normals(&ends, place, rounding);
         let listed = outline
             .iter()
             .zip(normals)
@@ -86,10 +90,11 @@ impl SmoothBoundary {
 }
 
 /// The normals at both ends of each edge of a line, which runs from vertex to vertex, its normals on its right; `None` where both are
-/// that of the facet.
+/// that of the facet. `rounding` is by how much that of vertices may turn an edge.
 pub(crate) fn smooth_normals(
     ends: &[[usize; 2]],
     place: impl Fn(usize) -> Vector2<f64>,
+    rounding: impl Fn(usize) -> f64,
 ) -> Vec<Option<[Vector2<f64>; 2]>> {
     let facet = |&[a, b]: &[usize; 2]| {
         let along = place(b) - place(a);
@@ -108,15 +113,19 @@ pub(crate) fn smooth_normals(
         let (&[before], &[after]) = (&before[..], &after[..]) else { return None };
         let (n, m) = (facets[before].1, facets[after].1);
         let bend = n.perp(&m).atan2(n.dot(&m));
-        Some(Passage { before, after, bend })
+        let straight = bend.abs() <= NO_ANGLE.max(rounding(before)).max(rounding(after));
+        Some(Passage { before, after, bend, straight })
     };
     let bend_at = |vertex: usize| passage(vertex).map_or(f64::INFINITY, |p| p.bend);
+    let straight = |vertex: usize| passage(vertex).is_some_and(|p| p.straight);
 
     // The normal that both edges share at a vertex, where they share one.
     let mut shared: BTreeMap<usize, Vector2<f64>> = BTreeMap::new();
     for &vertex in around.keys() {
-        let Some(Passage { before, after, bend }) = passage(vertex) else { continue };
-        if bend.abs() <= NO_ANGLE || bend.abs() > SMOOTH.to_radians() {
+        let Some(Passage { before, after, bend, straight: false }) = passage(vertex) else {
+            continue;
+        };
+        if bend.abs() > SMOOTH.to_radians() {
             continue;
         }
         let [previous, _] = ends[before];
@@ -124,7 +133,7 @@ pub(crate) fn smooth_normals(
         let (behind, ahead) = (bend_at(previous), bend_at(next));
         let arc_starts = |beyond: f64| beyond * bend > 0.0 && bend.abs() <= beyond.abs();
         let ((a, n), (b, m)) = (facets[before], facets[after]);
-        let normal = match (behind.abs() <= NO_ANGLE, ahead.abs() <= NO_ANGLE) {
+        let normal = match (straight(previous), straight(next)) {
             (true, true) => None,
             (true, false) => arc_starts(ahead).then_some(n),
             (false, true) => arc_starts(behind).then_some(m),
@@ -133,7 +142,6 @@ pub(crate) fn smooth_normals(
         shared.extend(normal.map(|normal| (vertex, normal)));
     }
 
-    let straight = |vertex: usize| bend_at(vertex).abs() <= NO_ANGLE;
     let both = |(ends, &(_, facet)): (&[usize; 2], &(f64, Vector2<f64>))| {
         let own = ends.map(|vertex| shared.get(&vertex).copied());
         Some(match own {
@@ -281,6 +289,34 @@ mod tests {
         let mesh = fan(&rim);
         let smooth = SmoothBoundary::new(&mesh);
         assert!(mesh.outline().iter().all(|&e| smooth.at_ends(e).is_none()));
+    }
+
+    /// A triangle whose oblique side ends at `corner`, bisected there again and again.
+    fn bisected(times: usize) -> Mesh {
+        let corners = vec![[0.1, 0.2], [3.3, 0.7], [1.7, 2.9]];
+        let mut mesh = Mesh::new(corners, vec![[0, 1, 2]], []).unwrap();
+        let mut newest = mesh.opposite_longest();
+        for _ in 0..times {
+            let place = |t: usize| mesh.triangles()[t].contains(&1);
+            let marked: Vec<usize> = (0..mesh.triangles().len()).filter(|&t| place(t)).collect();
+            mesh = mesh.bisected(&newest, &marked).unwrap().mesh;
+            newest = vec![0; mesh.triangles().len()];
+        }
+        mesh
+    }
+
+    #[test]
+    fn a_straight_side_is_straight_after_many_bisections() {
+        let mesh = bisected(30);
+        let smooth = SmoothBoundary::new(&mesh);
+        assert!(mesh.outline().iter().all(|&e| smooth.at_ends(e).is_none()));
+        // Control: the normals of its edges differ by more than the tolerance for coarse meshes.
+        let normals = mesh.outline().iter().map(|&edge| mesh.length_and_normal(edge).1);
+        let sides: Vec<Vector2<f64>> = normals.collect();
+        let differ = |n: &Vector2<f64>| {
+            sides.iter().map(|m| n.perp(m).abs()).any(|sine| NO_ANGLE < sine && sine < 1e-3)
+        };
+        assert!(sides.iter().any(differ));
     }
 
     #[test]

@@ -84,28 +84,27 @@ fn contact_edges(problem: &Problem) -> Result<Vec<(BoundaryEdge, &str)>, DataErr
     let mut edges = Vec::new();
     for (name, condition) in &problem.conditions {
         if condition.is_contact() {
-            let chained = chains(problem, problem.mesh.edges_of(name)?);
+            let own = problem.mesh.edges_of(name)?.to_vec();
+            let chained = chains(own, |&edge| problem.mesh.ends(edge));
             edges.extend(chained.into_iter().map(|edge| (edge, name.as_str())));
         }
     }
     if edges.is_empty() && problem.pairs.is_empty() { Err(DataError::NoContact) } else { Ok(edges) }
 }
 
-/// Sorts edges into chains: each is followed by the one that starts where it ends, if there is one.
-fn chains(problem: &Problem, edges: &[BoundaryEdge]) -> Vec<BoundaryEdge> {
-    let ends = |edge: BoundaryEdge| problem.mesh.ends(edge);
-    let mut from: BTreeMap<usize, BoundaryEdge> = edges.iter().map(|&e| (ends(e)[0], e)).collect();
-    let targets: Vec<usize> = edges.iter().map(|&e| ends(e)[1]).collect();
+/// Sorts edges or pieces into chains: each is followed by the one that starts where it ends, if there is one.
+fn chains<T, K: Ord + Copy>(items: Vec<T>, ends: impl Fn(&T) -> [K; 2]) -> Vec<T> {
+    let targets: BTreeSet<K> = items.iter().map(|item| ends(item)[1]).collect();
+    let mut from: BTreeMap<K, T> = items.into_iter().map(|item| (ends(&item)[0], item)).collect();
     // First the chains that have a beginning, then the closed ones.
-    let mut starts: Vec<usize> = from.keys().copied().collect();
-    let is_target: std::collections::BTreeSet<usize> = targets.into_iter().collect();
-    starts.sort_by_key(|start| is_target.contains(start));
-    let mut chained = Vec::with_capacity(edges.len());
+    let mut starts: Vec<K> = from.keys().copied().collect();
+    starts.sort_by_key(|start| targets.contains(start));
+    let mut chained = Vec::with_capacity(from.len());
     for start in starts {
         let mut next = from.remove(&start);
-        while let Some(edge) = next {
-            chained.push(edge);
-            next = from.remove(&ends(edge)[1]);
+        while let Some(item) = next {
+            next = from.remove(&ends(&item)[1]);
+            chained.push(item);
         }
     }
     chained
@@ -140,8 +139,13 @@ impl ContactLine {
         let of_pairs = pairs::of_problem(problem, &obstacles.smooth, degree)?;
         for (pair, of_pair) in problem.pairs.iter().zip(of_pairs) {
             let names = pair.boundaries.each_ref().map(|name| Arc::from(name.as_str()));
-            let between = |piece| Arc::new(obstacles.piece_between(&names, pair.law, piece));
-            pieces.extend(of_pair.into_iter().map(between));
+            let between = |piece| obstacles.piece_between(&names, pair.law, piece);
+            let of_pair: Vec<PieceGeometry> = of_pair.into_iter().map(between).collect();
+            let place = |piece: &PieceGeometry, a: usize| {
+                piece.first().place(&problem.mesh, a).map(f64::to_bits)
+            };
+            let chained = chains(of_pair, |piece| [0, 1].map(|a| place(piece, a)));
+            pieces.extend(chained.into_iter().map(Arc::new));
         }
         Ok(ContactLine { degree, pieces })
     }

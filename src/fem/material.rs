@@ -379,7 +379,7 @@ mod tests {
         let c = [lambda + 2.0 * mu, lambda, 0.0, lambda + 2.0 * mu, 0.0, mu];
         let tensor = Material::tensor(c, Some([nu, nu, 0.0])).of_revolution(young);
         let least = least_eigenvalue(&tensor);
-        assert!(1.0 <= least && least <= 2.0, "{least}");
+        assert!((1.0..=2.0).contains(&least), "{least}");
     }
 
     #[test]

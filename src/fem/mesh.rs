@@ -66,7 +66,7 @@ pub struct BoundaryEdge {
 
 impl BoundaryEdge {
     /// Values at the corners of its triangle as those at its start, at its end and opposite.
-    pub(crate) fn from_its_ends<T: Copy>(self, corners: [T; 3]) -> [T; 3] {
+    pub(crate) fn ends_first<T: Copy>(self, corners: [T; 3]) -> [T; 3] {
         [1, 2, 0].map(|k| corners[(self.local + k) % 3])
     }
 }

@@ -18,7 +18,7 @@ mod function;
 #[doc(hidden)]
 pub mod graded_quadrature;
 mod grip;
-mod groups;
+pub(crate) mod groups;
 pub(crate) mod held;
 #[doc(hidden)]
 pub mod korn;

@@ -161,7 +161,7 @@ impl Path {
         let count = points.len();
         let ends: Vec<[usize; 2]> =
             (0..if closed { count } else { count - 1 }).map(|k| [k, (k + 1) % count]).collect();
-        let normals = smooth_normals(&ends, |k| points[k]);
+        let normals = smooth_normals(&ends, |k| points[k], |_| 0.0);
         let sides = ends.iter().zip(normals).map(|(&[k, l], normals)| {
             let ends = [points[k], points[l]];
             let Some(normals) = normals else {

@@ -101,7 +101,7 @@ impl PieceGeometry {
         corners: impl Fn(BoundaryEdge) -> Option<[S; 3]>,
     ) -> Option<PieceRadii<S>> {
         let at_ends = |stretch: &Stretch| {
-            let [start, end, _] = stretch.edge.from_its_ends(corners(stretch.edge)?);
+            let [start, end, _] = stretch.edge.ends_first(corners(stretch.edge)?);
             let at = |a: usize| {
                 let place = <S as From<f64>>::from(stretch.positions[a]);
                 edge_integral::radius([start, end], place)
@@ -115,7 +115,7 @@ impl PieceGeometry {
         Some(PieceRadii {
             of_piece: if each.len() == 1 { each[0] } else { [half(0), half(1)] },
             of_side: each[i],
-            of_triangle: edge.from_its_ends(corners(edge)?),
+            of_triangle: edge.ends_first(corners(edge)?),
         })
     }
 

@@ -29,13 +29,9 @@ pub(super) fn check(problem: &Problem) -> Result<(), DataError> {
         return wrong("the plane", "axisymmetric for some materials only".to_owned(), expected);
     }
     let (mesh, near) = (&problem.mesh, nearness(&problem.mesh));
-    for [x, y] in mesh
-        .vertices()
-        .iter()
-        .map(|x| x.map(number))
-        .zip(mesh.vertices())
-        .filter_map(|(shown, x)| (x[0] < 0.0 || (x[0] > 0.0 && x[0] <= near)).then_some(shown))
-    {
+    let is_off = |x: &&[f64; 2]| x[0] < 0.0 || (x[0] > 0.0 && x[0] <= near);
+    if let Some(x) = mesh.vertices().iter().find(is_off) {
+        let [x, y] = x.map(number);
         let expected = "r = 0 on the axis and r > 0 elsewhere: x is the distance from the axis, which is x = 0, and y the place along it";
         return wrong("the body of revolution", format!("a vertex at ({x}, {y})"), expected);
     }

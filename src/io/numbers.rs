@@ -32,6 +32,11 @@ pub fn ticks(min: f64, max: f64) -> Vec<(f64, String)> {
     (first as i64..=last as i64).map(|i| (tick(i), short(tick(i), 12))).collect()
 }
 
+/// A number of this many significant digits that is not below `x`, for `x >= 0`.
+pub fn above(x: f64, digits: usize) -> String {
+    short(x + 0.5 * 10_f64.powi(1 - digits as i32) * x, digits)
+}
+
 /// `x` with this many significant digits, without the zeros at their end; with an exponent where the size asks for it.
 pub fn short(x: f64, digits: usize) -> String {
     let after_the_first = digits.saturating_sub(1);

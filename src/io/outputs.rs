@@ -86,7 +86,7 @@ pub fn write(
     }
     if let (Some(continuous), true) = (continuous, extra.certificate || case.asks_for_certificate())
     {
-        stage_certificate(&mut output, &case.title, continuous)?;
+        stage_certificate(&mut output, case, continuous)?;
     }
     results.seconds.write = start.elapsed().as_secs_f64();
     output.stage_made("result.json", result_json(&results))?;
@@ -123,7 +123,7 @@ pub fn write_certified(
         cell_data: &[DataArray::scalars("error_bound", &certified.indicators)],
     });
     output.stage_made(CERTIFIED, grid)?;
-    stage_certificate(&mut output, &case.title, certified)?;
+    stage_certificate(&mut output, case, certified)?;
     output.publish()
 }
 
@@ -144,12 +144,13 @@ fn at_nodes(values: &[[f64; 2]], nodes: usize, space: &Space) -> Vec<[f64; 2]> {
 
 fn stage_certificate(
     output: &mut Output,
-    title: &str,
+    case: &Case,
     certified: &Continuous,
 ) -> Result<(), Failure> {
     let forces = &certified.quantities.evidence;
-    let (header, arrays) =
-        certificate::encode(title, &certified.certificate, &certified.proof, forces);
+    let (mut header, arrays) =
+        certificate::encode(&case.title, &certified.certificate, &certified.proof, forces);
+    header.thickness = case.thickness;
     let text = serde_json::to_vec_pretty(&header)
         .map_err(|_| NotFinite { place: certificate::FILES[0].to_owned() });
     output.stage_made(certificate::FILES[0], text)?;

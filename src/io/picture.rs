@@ -203,6 +203,7 @@ mod tests {
     use super::draw::{RED, distance, short, viridis};
     use super::scene::{ContactSample, ContactSurface};
     use super::*;
+    use crate::certify::quantities::{Limit, Zone};
     use crate::fem::{Diagonal, Rectangle};
     use svg::Document;
     use svg::node::element::tag::Type;
@@ -241,6 +242,7 @@ mod tests {
                 rigid: true,
                 parts: vec![part],
                 zones: None,
+                reserved: false,
             }],
             supports: Vec::new(),
             loads: Vec::new(),
@@ -560,5 +562,34 @@ mod tests {
         }
         far.stretch = Some(1e3);
         assert!(picture(&far).is_ok(), "control");
+    }
+
+    #[test]
+    fn the_strip_says_what_is_bounded_by_how_much_and_with_which_reservation() {
+        let zone = |from: f64, to: f64, limit| {
+            let boundary = "floor".to_owned();
+            Zone { boundary, from, to, ends: [[from, 0.0], [to, 0.0]], limit }
+        };
+        let said = |zones: Vec<Zone>, reserved: bool| {
+            let mut scene = block(4);
+            (scene.contact[0].zones, scene.contact[0].reserved) = (Some(zones), reserved);
+            words(&drawn(&scene)).join(" | ")
+        };
+        let zones = || {
+            vec![
+                zone(0.0, 0.4, Limit::Opening(0.004)),
+                zone(0.1, 0.3, Limit::Opening(0.001)),
+                zone(0.6, 1.0, Limit::Force(0.02)),
+            ]
+        };
+        let proved = said(zones(), false);
+        for words in ["proved:", "mean opening ≤ 0.01", "mean pressure ≤ 0.05", "not known"] {
+            assert!(proved.contains(words), "{words}: {proved}");
+        }
+        let reserved = said(zones(), true);
+        assert!(reserved.contains("with a reservation:") && !reserved.contains("proved:"));
+        // Control: where nothing is bounded, nothing is said to be.
+        let nothing = said(Vec::new(), false);
+        assert!(!nothing.contains("proved:") && !nothing.contains("opening"), "{nothing}");
     }
 }

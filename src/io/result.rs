@@ -321,6 +321,8 @@ pub struct DiscreteCertificate {
     pub pressure: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub problem: Option<String>,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub hardly_strains: bool,
     pub unique: bool,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub isolated: Option<f64>,
@@ -340,6 +342,7 @@ impl From<&Result<Enclosure, Unproved>> for DiscreteCertificate {
                 radius: Some(e.radius),
                 // A body at rest has no energy to compare with.
                 relative: e.relative.filter(|r| r.is_finite()),
+                hardly_strains: e.hardly_strains,
                 pressure: Some(e.pressure),
                 problem: Some("the loads as quadrature gives them".to_owned()),
                 unique: e.isolation.is_none_or(|isolation| isolation.everywhere),

@@ -385,8 +385,18 @@ fn of_problem(problem: Option<&str>) -> String {
     problem.map_or(String::new(), |problem| format!(", of the problem with {problem}"))
 }
 
-/// The summary of a certificate that was verified.
-pub fn audited(audit: &Audit, case: Option<(&Path, Option<&str>)>) -> String {
+/// What the summary of an audit says of the case that a certificate is of.
+pub struct AuditedCase {
+    /// Its file.
+    pub file: PathBuf,
+    /// Its title.
+    pub title: String,
+    /// Its units.
+    pub units: Option<Units>,
+}
+
+/// The summary of a certificate that was verified, and compared with a case; `reason` says why it is not rigorous for that.
+pub fn audited(audit: &Audit, case: Option<(&AuditedCase, Option<&str>)>) -> String {
     let Audit { header, certificate, proof, reservations, .. } = audit;
     let mut lines = Lines::default();
     let (triangles, edges) = (certificate.pieces.len(), certificate.edges.len());
@@ -395,8 +405,8 @@ pub fn audited(audit: &Audit, case: Option<(&Path, Option<&str>)>) -> String {
     let problem = match case {
         Some((case, _)) => {
             format!(
-                "that of {}: its mesh, materials, supports, loads and obstacles",
-                quote::path(case)
+                "that of {}: its mesh, thickness, materials, supports, loads and obstacles",
+                quote::path(&case.file)
             )
         }
         None => "that of the numbers in this file; --case CASE.toml compares them with a case"
@@ -407,9 +417,14 @@ pub fn audited(audit: &Audit, case: Option<(&Path, Option<&str>)>) -> String {
     let size = Some(relative).filter(|r| r.is_finite());
     let size = size.map_or(String::new(), |r| format!(", {} % of |v|_a", numbers::short(r, 2)));
     lines.line("bound", format!("{}{size}", short(header.bound)));
-    for (i, (name, ends)) in audit.forces().enumerate() {
+    let units = case.and_then(|(case, _)| case.units.clone());
+    let shown = QuantityFormat { units, thickness: header.thickness, no_force: 0.0 };
+    let thickness = header.thickness.unwrap_or(1.0);
+    for (i, force) in audit.forces().enumerate() {
         let heading = if i == 0 { "forces" } else { "" };
-        lines.line(heading, format!("{}: {}", quote::line(&name), between(ends)));
+        let measure = if force.is_moment { Measure::Moment } else { Measure::Force };
+        let ends = shown.with_unit(between(force.between.map(|end| thickness * end)), measure);
+        lines.line(heading, format!("{}: {ends}", quote::line(&force.name)));
     }
     let problem = of_problem(certificate.problem(proof).as_deref());
     let reservation = match case {
@@ -421,7 +436,16 @@ pub fn audited(audit: &Audit, case: Option<(&Path, Option<&str>)>) -> String {
         None => format!("yes, rounding included{problem}"),
     };
     lines.line("rigorous", rigorous);
-    lines.under(&header.title)
+    match case {
+        Some((case, _)) => lines.under(&case.title),
+        None => {
+            lines.line(
+                "title",
+                format!("{}, as the file has it", quote::quoted(&header.title, '"')),
+            );
+            lines.under("A certificate")
+        }
+    }
 }
 
 /// The most digits that a double has.
@@ -468,6 +492,8 @@ fn enclosed(certificate: &DiscreteCertificate) -> String {
         }
         None => format!("{} of it (in the energy norm)", short(radius)),
     };
+    let at_rest = certificate.relative.is_none() && radius > 0.0 && certificate.hardly_strains;
+    let size = if at_rest { format!("{size}; the body hardly strains") } else { size };
     let of = certificate.problem.as_deref().map_or(String::new(), |what| format!(", with {what}"));
     if let Some(within) = certificate.isolated {
         let near = format!("1e{}", within.log10().floor());

@@ -84,8 +84,7 @@ impl Outcome {
 
     /// The relative radius of the enclosure; infinite without one.
     pub fn radius(&self) -> f64 {
-        let known = self.enclosure.as_ref().ok().and_then(|e| e.relative);
-        known.unwrap_or(f64::INFINITY)
+        self.enclosure.as_ref().map_or(f64::INFINITY, Enclosure::in_parts)
     }
 
     /// Returns whether it is nearer to the exact solution as far as is proved, or else has the smaller residual.

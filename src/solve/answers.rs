@@ -12,7 +12,8 @@
 //! up to one, so 0 <= p_a <= max(-lambda^h), and sum p_a phi_a has the same integral as -lambda^h on every part of Gamma_C,
 //! to rounding. -lambda^h jumps from edge to edge by what sigma_n does; the mean takes out the jumps. It is of second order
 //! where the pressure is smooth and neighbouring edges differ little in length (docs/parts.md has the numbers). At a corner,
-//! where the direction of contact jumps, each side has its own value.
+//! where the direction of contact jumps, each side has its own value. Between two bodies the hats are those of the edges of the
+//! body that has more of them.
 //!
 //! On a curved line the edge is a chord, off the boundary by delta = s (|E| - s) / 2R at s, and u there is off by delta times
 //! the derivative of u along n: a wave along the line with the period of the edges, of order |E|^2, which sigma_n of P2 sees
@@ -20,7 +21,7 @@
 //! for theirs, so they take it out; those of half edges would keep it. So on a curved edge only its ends have a hat, and the
 //! value in the middle is the mean of theirs.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
@@ -171,7 +172,7 @@ pub fn largest_strain(d: &Discretization, u: &[[f64; 2]]) -> (f64, [f64; 2]) {
     (strain, mesh.triangle(t).point([1.0 / 3.0; 3]).into())
 }
 
-/// The recovered pressure at the nodes of each edge, in the order of the edge's nodes.
+/// The recovered pressure at the nodes of each piece, in the order of the piece's nodes.
 pub(crate) fn recovered_pressure(d: &Discretization, p: &[Vec<DoubleDouble>]) -> Vec<Vec<f64>> {
     let groups = groups(d);
     let count = groups.iter().flatten().max().map_or(0, |last| last + 1);
@@ -187,12 +188,59 @@ pub(crate) fn recovered_pressure(d: &Discretization, p: &[Vec<DoubleDouble>]) ->
         }
     }
     let mean = |group: usize| work[group] / weight[group];
-    let on_edge = |groups: &Vec<usize>| {
-        let middle = (mean(groups[0]) + mean(groups[1])) / 2.0;
+    let on_edge = |groups: &Vec<usize>| -> Vec<f64> {
+        let Some(&[start, end]) = groups.first_chunk() else { return Vec::new() };
+        let middle = (mean(start) + mean(end)) / 2.0;
         let value = |&group: &usize| if weight[group] > 0.0 { mean(group) } else { middle };
         groups.iter().map(value).collect()
     };
-    groups.iter().map(on_edge).collect()
+    let mut recovered: Vec<Vec<f64>> = groups.iter().map(on_edge).collect();
+    let all: Vec<(usize, &Piece)> = d.contact.iter().enumerate().collect();
+    for pair in all.chunk_by(|(_, a), (_, b)| a.is_of_same_boundary(b)) {
+        if pair[0].1.partner().is_some() {
+            recover_between(d, p, pair, &mut recovered);
+        }
+    }
+    recovered
+}
+
+/// The recovered pressure on the pieces of a pair of bodies, by the hats of whole edges of that body which has more of them: a piece
+/// may be far shorter than any edge, and lambda^h jumps from one to the next.
+fn recover_between(
+    d: &Discretization,
+    p: &[Vec<DoubleDouble>],
+    pieces: &[(usize, &Piece)],
+    recovered: &mut [Vec<f64>],
+) {
+    let mesh = d.space.mesh();
+    let edges = |i: usize| {
+        let of = |(_, piece): &(usize, &Piece)| {
+            let edge = piece.geometry.stretches[i].edge;
+            (edge.triangle, edge.local)
+        };
+        pieces.iter().map(of).collect::<BTreeSet<(usize, usize)>>().len()
+    };
+    let side = usize::from(edges(1) > edges(0));
+    let mut sums: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
+    for &(e, piece) in pieces {
+        let stretch = &piece.geometry.stretches[side];
+        let [start, end, _] = hat_integrals(piece, &p[e], &d.rule, Hats::Whole);
+        let [from, to] = [stretch.positions[0], stretch.positions[1]];
+        let later = [from * start + to * end, (from + to) / 2.0];
+        let whole = [start + end, 1.0];
+        let earlier = [0, 1].map(|k| whole[k] - later[k]);
+        for (vertex, [work, share]) in mesh.ends(stretch.edge).into_iter().zip([earlier, later]) {
+            let sum = sums.entry(vertex).or_default();
+            sum[0] += piece.weight() * work;
+            sum[1] += piece.length * share;
+        }
+    }
+    let mean = |vertex: usize| sums.get(&vertex).map_or(0.0, |[work, share]| work / share);
+    for &(e, piece) in pieces {
+        let stretch = &piece.geometry.stretches[side];
+        let [start, end] = mesh.ends(stretch.edge).map(mean);
+        recovered[e] = stretch.positions.iter().map(|s| (1.0 - s) * start + s * end).collect();
+    }
 }
 
 /// The hat functions of an edge's nodes.
@@ -269,18 +317,20 @@ fn hat_integrals(piece: &Piece, fine: &[DoubleDouble], rule: &EdgeRule, hats: Ha
     sums
 }
 
-/// The numbers of the values at the nodes of each edge: neighbours on one boundary share that of their common node unless
-/// the direction of contact jumps there.
+/// The numbers of the values at the nodes of each edge that faces an obstacle: neighbours on one boundary share that of their common
+/// node unless the direction of contact jumps there.
 fn groups(d: &Discretization) -> Vec<Vec<usize>> {
-    let mut of_end: BTreeMap<Place, Vec<Group>> = BTreeMap::new();
+    let mut of_end: BTreeMap<(usize, &str), Vec<Group>> = BTreeMap::new();
     let mut count = 0;
     let mut groups = Vec::with_capacity(d.contact.len());
     for edge in &d.contact {
-        let nodes = edge.geometry.nodes.len();
+        if edge.partner().is_some() {
+            groups.push(Vec::new());
+            continue;
+        }
+        let nodes = d.space.edge_nodes(edge.edge());
         let group = |a: usize| {
-            let place = edge.geometry.first().place(d.space.mesh(), a).map(f64::to_bits);
-            let names = (&**edge.boundary(), edge.partner().map(|name| &**name));
-            let known = of_end.entry((place, names)).or_default();
+            let known = of_end.entry((nodes[a], &**edge.boundary())).or_default();
             let direction = edge.geometry.nodes[a].direction;
             match known.iter().find(|(other, _)| same(*other, direction)) {
                 Some(&(_, group)) => group,
@@ -291,13 +341,10 @@ fn groups(d: &Discretization) -> Vec<Vec<usize>> {
                 }
             }
         };
-        groups.push((0..nodes).map(group).collect());
+        groups.push((0..nodes.len()).map(group).collect());
     }
     groups
 }
-
-/// The place of a node, the name of its boundary and that of the other body's.
-type Place<'a> = ([u64; 2], (&'a str, Option<&'a str>));
 
 /// A direction of contact at a node, and the number of the value there.
 type Group = (Vector2<f64>, usize);

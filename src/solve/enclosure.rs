@@ -32,6 +32,7 @@ use super::system::System;
 use super::times::Stopwatch;
 use crate::fem::korn::Korn;
 use crate::fem::residual;
+use crate::fem::rigid::NEGLIGIBLE;
 use crate::fem::solvability::Slides;
 use crate::fem::{Discretization, Piece};
 use crate::kernel::DoubleDouble;
@@ -45,8 +46,12 @@ pub struct Enclosure {
     pub kappa: f64,
     /// |u~ - u^h|_a at most.
     pub radius: f64,
-    /// The radius over |u~|_a; `None` for a body without strain.
+    /// The radius over |u~|_a; `None` for a body that hardly strains.
     pub relative: Option<f64>,
+    /// The strains are surely below 1e-10 of the displacement over the size of the body: what there is of them is rounding.
+    pub hardly_strains: bool,
+    /// The energy norm of the body if it strained by its displacement over its size, or by 1 where that is less.
+    pub if_strained: f64,
     /// The norm of gamma^{1/2} (lambda~ - lambda^h) on Gamma_C at most.
     pub pressure: f64,
     /// The length of u~ - u^h at each node at most.
@@ -352,7 +357,9 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         };
         let crude = crude_norms(system, korn, coercivity);
         let up_to = up(at.off / coercivity.sqrt());
-        let size = system.size(at.energy.lower().max(0.0).sqrt() * (1.0 - 2.0 * f64::EPSILON), u);
+        let norm = at.energy.lower().max(0.0).sqrt() * (1.0 - 2.0 * f64::EPSILON);
+        let if_strained = system.norm_if_strained(u);
+        let size = if norm > NEGLIGIBLE * if_strained { norm } else { if_strained };
         let known = (at.moved.max(self.proof * size) * coercivity.sqrt()).max(up_to);
         let negligible = SLIGHT * known;
         let first = weighted(r, &crude);
@@ -417,26 +424,49 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         if !intervals.are_finite() {
             return Err(Unproved::OutOfRange);
         }
-        let relative = (size > 0.0).then(|| up(radius / size));
         // In the norm of A as in that of the energy, which is no smaller.
         let isolation = isolated.filter(|isolated| exact <= isolated.within);
         if isolation.is_none() && coulomb {
             return Err(Unproved::NotIsolated);
         }
+        let hardly_strains = up(root(at.energy) + radius) <= NEGLIGIBLE * if_strained;
+        let is_measured = !hardly_strains && norm > 0.0;
         let isolation = isolation.map(|Isolated { within, everywhere, .. }| Isolation {
             within,
-            relative: (size > 0.0).then(|| within / size * (1.0 - 4.0 * f64::EPSILON)),
+            relative: is_measured.then(|| within / up(root(at.energy)) * (1.0 - f64::EPSILON)),
             everywhere,
         });
-        Ok(Enclosure { kappa, radius, relative, pressure, nodes, intervals, isolation })
+        let relative = is_measured.then(|| up(radius / norm));
+        Ok(Enclosure {
+            kappa,
+            radius,
+            relative,
+            hardly_strains,
+            if_strained,
+            pressure,
+            nodes,
+            intervals,
+            isolation,
+        })
     }
 }
 
 impl Enclosure {
-    /// Returns whether the relative radius is at most `proof`. A body at rest has no energy to compare with: its radius is to be
-    /// that of rounding alone.
+    /// The radius over |u~|_a or, for a body that hardly strains, over what that would be if it did; infinite where neither is known. A
+    /// body at rest has no energy to compare with: a radius of rounding alone is none.
+    pub fn in_parts(&self) -> f64 {
+        if self.radius < LEAST_NORM {
+            0.0
+        } else if self.hardly_strains {
+            self.radius / self.if_strained
+        } else {
+            self.relative.unwrap_or(f64::INFINITY)
+        }
+    }
+
+    /// Returns whether the radius is at most this part.
     pub(crate) fn is_within(&self, proof: f64) -> bool {
-        self.radius < LEAST_NORM || self.relative.is_some_and(|relative| relative <= proof)
+        self.in_parts() <= proof
     }
 }
 

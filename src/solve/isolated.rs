@@ -228,7 +228,9 @@ impl OnPiece<'_> {
         let change = up(self.reach * r * (1.0 + 1e-12));
         let all = certain(d, self.piece, &self.p, change);
         let sure: f64 = all.iter().map(|(piece, _)| piece.share.lower().max(0.0)).sum();
-        (1.0 - sure * (1.0 - 1e-14)).clamp(0.0, 1.0)
+        let left = (1.0 - sure * (1.0 - 1e-14)).clamp(0.0, 1.0);
+        // H0 leaves the insets of its own, longer stretches out: of each end of some eight.
+        if left > INSET { (left + 16.0 * INSET).min(1.0) } else { left }
     }
 
     /// The block of H0: the integrals over where a state is certain to stay within R.

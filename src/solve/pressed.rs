@@ -93,9 +93,11 @@ pub struct Pressed {
     parts: Vec<PressedPart>,
 }
 
-/// What may be in S of one component on a piece: the piece, the numbers of the component's values, and stretches with the least
-/// that P is there, or is within the bound of friction.
-type Found = (usize, Range<usize>, Vec<(f64, EdgePiece)>);
+/// A stretch with the least that P is on it, or is within the bound of friction.
+type Measured = (f64, EdgePiece);
+
+/// What may be in S of one component on a piece: the piece, the numbers of the component's values, and stretches of it.
+type Found = (usize, Range<usize>, Vec<Measured>);
 
 impl EdgePiece {
     /// The pieces of an edge on which all of these polynomials are positive; `inset` is the share of a stretch that is left out at a
@@ -198,7 +200,7 @@ impl PressedPart {
     fn new(
         (edge, line): (usize, &Piece<PreciseBall>),
         values: Range<usize>,
-        stretches: &[&(f64, EdgePiece)],
+        stretches: &[&Measured],
     ) -> Option<Self> {
         let mut mass = vec![vec![PreciseBall::from(0); values.len()]; values.len()];
         stretches.iter().for_each(|(_, piece)| add(&mut mass, &piece.mass));
@@ -206,7 +208,7 @@ impl PressedPart {
         let bounds = stretches.iter().map(|(least, piece)| [*least, most(piece)]).collect();
         // In the plane the most of the square of P0 is above that of the stress, which is affine.
         let of_stress = SAFETY * root_of(line) * line.radii.map_or(0.0, |_| stress_factor(line));
-        let at_ends = |(_, piece): &&(f64, EdgePiece)| {
+        let at_ends = |(_, piece): &&Measured| {
             let (ends, most) = (piece.coefficients.iter().take(2), most(piece).max(of_stress));
             ends.map(|shapes| (shapes.clone(), most)).collect::<Vec<_>>()
         };
@@ -233,7 +235,7 @@ impl Pressed {
         share: f64,
     ) -> Self {
         let degree = d.space.degree();
-        let positive = |line: &Piece<PreciseBall>, all: &[Row]| -> Vec<(f64, EdgePiece)> {
+        let positive = |line: &Piece<PreciseBall>, all: &[Row]| -> Vec<Measured> {
             let pieces = EdgePiece::positive((degree, &d.rule), line.radii, all, INSET);
             pieces.into_iter().map(|piece| (piece.least(all), piece)).collect()
         };

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::answers::{self, ContactBoundary, EnergyBalance};
 use super::enclosure::{Enclosure, Unproved};
+use super::intervals::{Intervals, Range};
 use super::iterate::Evaluated;
 use super::whole::of_the_whole;
 use super::{MethodReport, NewtonReport, Report, Verdict};
@@ -209,10 +210,15 @@ impl Solution {
     pub fn new(d: &Discretization, evaluated: Evaluated, report: Report) -> Self {
         let stress = mean_stresses(d, &evaluated.u);
         let of_revolution = d.problem.material.are_of_revolution();
-        let quantities = quantities(d, &evaluated);
+        let mut quantities = quantities(d, &evaluated);
         let Evaluated { u, p, residual } = evaluated;
         let recovered = answers::recovered_pressure(d, &p);
         let (largest_strain, largest_strain_at) = answers::largest_strain(d, &u);
+        let balance = answers::energy_balance(d, &u, &p, &residual, quantities.energy);
+        let mut boundaries = answers::contact_boundaries(d, &u, &p, &recovered);
+        if let Ok(enclosure) = &report.enclosure {
+            put_between(&enclosure.intervals, &mut quantities, &mut boundaries);
+        }
         let solution = Solution {
             degree: d.space.degree(),
             nodes: d.space.nodes().to_vec(),
@@ -222,10 +228,10 @@ impl Solution {
             stress,
             contact: contact_values(d, &u, &p, &recovered),
             between: piece_values(d, &u, &p, &recovered),
-            boundaries: answers::contact_boundaries(d, &u, &p, &recovered),
+            boundaries,
             largest_strain,
             largest_strain_at,
-            balance: answers::energy_balance(d, &u, &p, &residual, quantities.energy),
+            balance,
             pieces: d.contact.clone(),
             gamma: GammaReport::new(d),
             newton: report.newton,
@@ -258,6 +264,33 @@ impl Solution {
             size.max(self.displacement[j][0].abs()).max(self.displacement[j][1].abs())
         });
         sum * (1.0 + 1e-14) + 1e-14 * size
+    }
+}
+
+/// Moves numbers that are outside their proved intervals by their own rounding, as the energy of a body that hardly strains is,
+/// to the nearer ends.
+fn put_between(
+    proved: &Intervals,
+    quantities: &mut Quantities,
+    boundaries: &mut [ContactBoundary],
+) {
+    let put = |value: &mut f64, [low, high]: Range| *value = value.max(low).min(high);
+    put(&mut quantities.energy, proved.energy);
+    put(&mut quantities.max_displacement, proved.max_displacement);
+    for (name, reaction) in &mut quantities.reactions {
+        let intervals = proved.reactions.get(name).into_iter().flatten();
+        reaction.iter_mut().zip(intervals).for_each(|(r, &range)| put(r, range));
+    }
+    for part in boundaries {
+        let Some(of) = proved
+            .contact
+            .iter()
+            .find(|of| of.boundary == part.boundary && of.partner == part.partner)
+        else {
+            continue;
+        };
+        put(&mut part.force, of.force);
+        part.resultant.iter_mut().zip(of.resultant).for_each(|(r, range)| put(r, range));
     }
 }
 

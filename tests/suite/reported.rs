@@ -321,3 +321,28 @@ fn steps_that_run_out_on_a_finer_level_of_adapt_lose_nothing() {
     assert_eq!(levels[1]["bound"], result["certificate"]["continuous"]["bound"]);
     adapted(4, 4);
 }
+
+/// A block tilted onto a floor, by its distance.
+const STRIP: &str = r#"
+mesh.rectangle = { width = 1, height = 1, nx = 32, ny = 32 }
+material = { lambda = 1, mu = 1 }
+boundary.top.displacement = ["0", "-0.1 + 0.15*x"]
+obstacle.o = { distance = "y" }
+boundary.bottom.contact = { obstacle = "o" }
+"#;
+
+#[test]
+fn the_strip_of_a_bound_with_a_reservation_says_so() {
+    let round = STRIP.replace("distance = \"y\"", "distance = \"y + 0*sin(x)\"");
+    let folder = with_files("strip", &[("plane.toml", STRIP), ("round.toml", &round)]);
+    let said_below = |case: &str| {
+        said(&folder, &["solve", case, "--certificate", "--report", "--out", "out"], 0);
+        let read = |file: &str| fs::read_to_string(folder.join("out").join(file)).unwrap();
+        let (picture, report) = (read("picture.svg"), read("report.html"));
+        let has = |words: &str| picture.contains(words) && report.contains(words);
+        assert!(has("mean opening ≤") && has("mean pressure ≤"), "{case}");
+        [has("proved:"), has("with a reservation:")]
+    };
+    assert_eq!(said_below("round.toml"), [false, true]);
+    assert_eq!(said_below("plane.toml"), [true, false], "control");
+}

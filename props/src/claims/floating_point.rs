@@ -108,7 +108,7 @@ harnesses! {
     /// The false twin: whatever the divisor.
     fails control_quotients_by_balls_have_no_end_for_all_finite_doubles([1.0, 1.0, 0.5, 9.0]) {
         let (a, c, r, most): (f64, f64, f64, f64) = (any(), any(), any(), any());
-        assume(a == 1.0 && c == 1.0 && r >= 0.0 && r <= 0.5);
+        assume(a == 1.0 && c == 1.0 && (0.0..=0.5).contains(&r));
         assume(most < f64::INFINITY);
         let quotient = Ball::exactly(a) / Ball::around(c, r);
         assert!(!quotient.is_positive() && !quotient.is_at_most(most));

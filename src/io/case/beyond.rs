@@ -1,8 +1,7 @@
-//! The keys that other programs have and this one has not, because it does not compute what they ask for.
+//! The keys that other programs have and this one has not: what they ask for is not computed, or has another key.
 
 /// What is not computed, and the keys that ask for it, alone or as the first part of a longer key (`yield_stress`).
-const BEYOND: [(&str, &[&str]); 7] = [
-    ("contact between two bodies", &["master", "slave", "tie", "tied", "self_contact", "bodies"]),
+const BEYOND: [(&str, &[&str]); 5] = [
     (
         "plasticity",
         &["yield", "sigma_y", "plastic", "plasticity", "hardening", "hardness", "ultimate"],
@@ -35,7 +34,6 @@ const BEYOND: [(&str, &[&str]); 7] = [
             "dt",
         ],
     ),
-    ("axisymmetry", &["axisymmetric", "axisymmetry", "axisym"]),
     ("thermal strain", &["temperature", "thermal", "expansion", "alpha"]),
     (
         "a large displacement or rotation",
@@ -43,14 +41,28 @@ const BEYOND: [(&str, &[&str]); 7] = [
     ),
 ];
 
-/// Says what `word` asks for that is not computed, if it does.
-pub(super) fn not_computed(word: &str) -> Option<String> {
+/// What other keys ask for, and the keys that other programs have for that.
+const ELSEWHERE: [(&str, &[&str]); 2] = [
+    (
+        "two boundaries that touch each other are a [[pair]]",
+        &["master", "slave", "tie", "tied", "self_contact", "bodies"],
+    ),
+    (
+        "a body of revolution has body.plane = \"axisymmetric\"",
+        &["axisymmetric", "axisymmetry", "axisym"],
+    ),
+];
+
+/// Says that what `word` asks for is not computed, or which key asks for it here, if one of these is so.
+pub(super) fn not_here(word: &str) -> Option<String> {
     let word = word.to_lowercase().replace(['-', ' '], "_");
     let asks = |key: &&str| {
         word.strip_prefix(*key).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
     };
-    let (what, _) = BEYOND.iter().find(|(_, keys)| keys.iter().any(|key| asks(&key)))?;
-    Some(format!("{what} is not computed by this program"))
+    let is_asked = |(_, keys): &&(&str, &[&str])| keys.iter().any(asks);
+    let beyond = BEYOND.iter().find(is_asked);
+    let beyond = beyond.map(|(what, _)| format!("{what} is not computed by this program"));
+    beyond.or_else(|| ELSEWHERE.iter().find(is_asked).map(|(remedy, _)| (*remedy).to_owned()))
 }
 
 #[cfg(test)]
@@ -59,18 +71,16 @@ mod tests {
 
     #[test]
     fn keys_that_ask_for_what_is_not_computed_are_told_from_others() {
-        for (key, what) in [
-            ("Yield-Stress", "plasticity"),
-            ("yield", "plasticity"),
-            ("density", "dynamics"),
-            ("axisymmetric", "axisymmetry"),
-            ("master", "contact between two bodies"),
-        ] {
-            let said = not_computed(key);
+        for (key, what) in
+            [("Yield-Stress", "plasticity"), ("yield", "plasticity"), ("density", "dynamics")]
+        {
+            let said = not_here(key);
             assert_eq!(said, Some(format!("{what} is not computed by this program")), "{key}");
         }
+        assert!(not_here("master").is_some_and(|said| said.ends_with("are a [[pair]]")));
+        assert!(not_here("axisymmetric").is_some_and(|said| said.contains("body.plane")));
         for key in ["nonsense", "yung", "tolerence", "densities", "timeout"] {
-            assert_eq!(not_computed(key), None, "{key}");
+            assert_eq!(not_here(key), None, "{key}");
         }
     }
 }

@@ -167,7 +167,7 @@ impl<'s> Table<'s> {
             name => format!(" in {name}"),
         };
         let (shown, known) = (quoted(key.get_ref(), '\''), listed(known, "or"));
-        let beyond = beyond::not_computed(key.get_ref());
+        let beyond = beyond::not_here(key.get_ref());
         let beyond = beyond.map_or(String::new(), |what| format!(": {what}"));
         let said = format!("unknown key {shown}{within}{beyond}; expected {known}");
         Err(self.at.source.wrong(Some(key.span().start), said.into()))
@@ -271,7 +271,7 @@ impl<'s> Value<'s> {
         found.map(|word| word.1).ok_or_else(|| {
             let words: Vec<String> = words.iter().map(|word| quoted(word.0, '"')).collect();
             let words: Vec<&str> = words.iter().map(String::as_str).collect();
-            let beyond = self.as_text().and_then(beyond::not_computed);
+            let beyond = self.as_text().and_then(beyond::not_here);
             let beyond = beyond.map_or(String::new(), |what| format!(" ({what})"));
             self.wrong(&(listed(&words, "or") + &beyond))
         })

@@ -1,6 +1,6 @@
 //! A panel for each contact boundary: its pressure over the arc length, the peak marked; below it, where there is a
-//! certificate, a strip that says what is proved: where the body surely presses, where it is surely nearly open, and where
-//! neither is known.
+//! certificate, a strip that says what is bounded and by what: the opening where the body presses, in the mean over a stretch,
+//! the pressure where it is off the obstacle, and neither elsewhere.
 //!
 //! A boundary of which only a small part is in contact is shown around that part.
 
@@ -14,7 +14,7 @@ use super::draw::{
 };
 use super::scene::{ContactSample, ContactSurface, Scene};
 use crate::certify::quantities::{Limit, Zone};
-use crate::io::numbers::ticks;
+use crate::io::numbers::{self, ticks};
 
 /// The height of a panel on the page, and the space between two in a row.
 const HEIGHT: f64 = 214.0;
@@ -93,7 +93,8 @@ fn panel(
     let caption = anchored("middle", caption, [left + width / 2.0, bottom + 36.0]);
     let mut group = Group::new().add(title).add(caption.set("font-size", 12)).add(grid);
     if let Some(zones) = &surface.zones {
-        group = group.add(strip(zones, &axes));
+        let units = units.as_ref().map_or(["", ""], |[stress, length]| [stress, length]);
+        group = group.add(strip((zones, surface.reserved), units, &axes));
     }
     match peak {
         Some(peak) => {
@@ -110,25 +111,42 @@ fn panel(
     group
 }
 
-/// Draws the proved zones as a strip, with the words for its colours.
-fn strip(zones: &[Zone], axes: &Axes) -> Group {
-    let ([left, _], [bottom, _]) = (axes.x.page, axes.y.page);
+/// Draws the zones as a strip, with the bounds that its colours stand for: of each kind the largest of those that are seen.
+fn strip((zones, reserved): (&[Zone], bool), [stress, length]: [&str; 2], axes: &Axes) -> Group {
+    let ([left, right], [bottom, _]) = (axes.x.page, axes.y.page);
     let [low, high] = axes.x.range;
     let bar = |[from, to]: [f64; 2], fill: &str| {
         let [from, to] = [from, to].map(|arc| axes.x.at(arc.clamp(low, high)));
         rectangle([from, bottom + 1.0], [to - from, STRIP]).set("fill", fill)
     };
     let mut group = Group::new().add(bar(axes.x.range, LIGHT));
-    for zone in zones {
-        let pressed = matches!(zone.limit, Limit::Opening(_));
-        group.append(bar([zone.from, zone.to], if pressed { RED } else { OPEN }));
+    let mut most = [None::<f64>; 2];
+    for zone in zones.iter().filter(|zone| zone.from < high && zone.to > low) {
+        let (kind, integral) = match zone.limit {
+            Limit::Opening(integral) => (0, integral),
+            Limit::Force(integral) => (1, integral),
+        };
+        let mean = integral / (zone.to - zone.from);
+        most[kind] = Some(most[kind].map_or(mean, |most| most.max(mean)));
+        group.append(bar([zone.from, zone.to], [RED, OPEN][kind]));
     }
-    let words = [("proved: pressed", RED), ("nearly open", OPEN), ("not known", GREY)];
+    let bound = |kind: usize, what: &str, unit: &str| {
+        let words = |mean: f64| format!("mean {what} ≤ {} {unit}", numbers::above(mean, 2));
+        most[kind].map(|mean| (words(mean).trim_end().to_owned(), [RED, OPEN][kind]))
+    };
+    let head = if reserved { "with a reservation:" } else { "proved:" };
+    let bounds = [bound(0, "opening", length), bound(1, "pressure", stress)];
+    let head = bounds.iter().any(Option::is_some).then(|| (head.to_owned(), GREY));
+    let words: Vec<(String, &str)> = (head.into_iter().chain(bounds.into_iter().flatten()))
+        .chain([("not known".to_owned(), GREY)])
+        .collect();
+    let all = words.iter().map(|(words, _)| words.as_str()).collect::<Vec<_>>().join("  ");
+    let size = fitting(&all, 11.0, right - left);
     let mut left = left;
     for (words, fill) in words {
         let place = [left, bottom + 50.0];
-        group.append(text(words, place).set("font-size", 11).set("fill", fill));
-        left += width_of(words, 11.0) + 14.0;
+        left += width_of(&words, size) + 1.3 * size;
+        group.append(text(&words, place).set("font-size", size).set("fill", fill));
     }
     group
 }

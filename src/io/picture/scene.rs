@@ -62,8 +62,10 @@ pub(super) struct ContactSurface {
     /// Its connected parts, each from start to end, the body on its left. Where the pressure jumps there are two samples at
     /// one place.
     pub(super) parts: Vec<Vec<ContactSample>>,
-    /// The proved zones of it; `None` without a certificate.
+    /// The zones of its certificate, if it has one.
     pub(super) zones: Option<Vec<Zone>>,
+    /// The certificate has a reservation, or is one of another problem than is meant.
+    pub(super) reserved: bool,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -283,6 +285,7 @@ fn contact_surfaces(case: &Case, s: &Solution, results: &Results) -> Vec<Contact
                 case.problem.conditions.get(&name),
                 Some(Condition::Obstacle(_, Obstacle::Plane { .. } | Obstacle::Circle { .. }))
             ),
+            reserved: proved.is_some_and(|c| !c.rigorous || c.problem.is_some()),
             name,
         });
     }
@@ -325,6 +328,7 @@ fn pairs(s: &Solution, results: &Results) -> Vec<ContactSurface> {
                 .collect(),
             rigid: false,
             zones: None,
+            reserved: false,
             name: carries.map_or_else(|| first.to_string(), ContactBoundary::label),
         }
     };

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::{NO_LENGTH, Words, named_obstacle, obstacle_of, place, size};
 use crate::fem::boundary_normals::{SMOOTH, SmoothBoundary};
+use crate::fem::groups::groups;
 use crate::fem::mesh::ROUNDED;
 use crate::fem::rigid::Parts;
 use crate::fem::{BoundaryEdge, ContactLine, Degree, Mesh, Pair, Problem, Space};
@@ -30,7 +31,16 @@ const NO_COUPLING: f64 = 1e-9;
 pub(super) fn separate_bodies(problem: &Problem, solution: Option<&Solution>) -> Option<String> {
     let mesh = &problem.mesh;
     let parts = Parts::new(mesh);
-    if parts.count() < 2 {
+    let part_of = |name: &str| {
+        let edge = mesh.edges_of(name).ok()?.first()?;
+        Some(parts.of_triangle()[edge.triangle])
+    };
+    let linked = problem.pairs.iter().filter_map(|pair| {
+        let [first, second] = &pair.boundaries;
+        Some([part_of(first)?, part_of(second)?])
+    });
+    let apart: BTreeSet<usize> = groups(parts.count(), linked).into_iter().collect();
+    if apart.len() < 2 {
         return None;
     }
     let idle = solution.map_or(String::new(), |solution| {
@@ -48,8 +58,8 @@ pub(super) fn separate_bodies(problem: &Problem, solution: Option<&Solution>) ->
         }
     });
     Some(format!(
-        "the mesh has {} separate bodies: each meets its own rigid obstacles only, contact between them is not computed{idle}",
-        parts.count()
+        "the mesh has {} separate bodies: each meets its own rigid obstacles only; those that touch each other are a [[pair]]{idle}",
+        apart.len()
     ))
 }
 

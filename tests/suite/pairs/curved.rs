@@ -92,7 +92,8 @@ fn control_the_gap_between_polygons_is_noticed() {
     let mut d = discretize(&problem, &method(Degree::One)).unwrap();
     d.contact = plant(&d);
     let [found, ..] = pressures(&d, &u);
-    assert!((found - 1.0).abs() > 0.02, "{found}");
+    // The mean pressure is off by 1.5e-3 at most with the gap between the circles.
+    assert!((found - 1.0).abs() > 5e-3, "{found}");
 }
 
 /// How far the displacements of both orders of the bodies are apart, with pieces changed.
@@ -111,10 +112,7 @@ fn on_curved_boundaries_the_order_of_the_bodies_does_not_matter() {
     // The controls: the direction is the first body's, or the middle that of its side.
     let first_normal = |d: &Discretization| {
         with_geometry(d, |geometry| {
-            let [start, end] = geometry.stretches[0].positions[..2] else { return };
-            let mesh = d.space.mesh();
-            let (_, normal) = mesh.length_and_normal(geometry.stretches[0].edge);
-            let _ = (start, end);
+            let (_, normal) = d.space.mesh().length_and_normal(geometry.stretches[0].edge);
             geometry.nodes.iter_mut().for_each(|node| node.direction = normal);
         })
     };

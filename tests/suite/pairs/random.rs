@@ -134,11 +134,13 @@ fn two_bodies_that_nothing_holds_are_said_to_move_together() {
         &[Pair::new("lower.top", "upper.bottom")],
     )
     .with("lower.bottom", Condition::pressure(|_| 1.0))
-    .with("upper.top", Condition::pressure(|_| 1.0));
+    .with("upper.top", Condition::pressure(|_| 0.9));
     let error = solve(&problem, &method(Degree::One), &Settings::default()).unwrap_err();
     let said = error.to_string();
     assert!(said.contains("both bodies move together"), "{said}");
-    // The control: with the lower one held, the upper one slides, and the pressure holds it otherwise.
+    // The controls: loads that balance drive nothing; and with the lower one held, the upper one slides, and no more.
+    let balanced = problem.clone().with("upper.top", Condition::pressure(|_| 1.0));
+    assert_eq!(proved(&balanced, &method(Degree::One)).plays.len(), 4);
     let held = problem.with("lower.bottom", Condition::clamped());
     let s = proved(&held, &method(Degree::One));
     assert_eq!(s.plays.len(), 1, "{:?}", s.plays);

@@ -129,7 +129,7 @@ fn a_tube_in_a_sleeve_converges_as_it_should() {
 /// The smooth solution with an end of contact at r = c: q = 8 [r - c]+^5, k = 3 [c^2 - r^2]+^3, (lambda + 2 mu) p = -k,
 /// u = (-z q', q + z p).
 fn with_an_end_of_contact(n: usize, degree: Degree) -> (f64, [f64; 2]) {
-    const C: f64 = 0.5;
+    const C: f64 = 0.75;
     let (lambda, mu) = (1.0, 1.0);
     let stiffness = lambda + 2.0 * mu;
     // q', q'', q''' and q.
@@ -179,7 +179,7 @@ fn a_smooth_solution_with_an_end_of_contact_has_orders_1_2_and_2_3() {
             let found = order(coarse.1[k], fine.1[k]);
             assert_abs_diff_eq!(found, expected, epsilon = 0.12);
         }
-        assert!(fine.0.abs() < 0.2, "{}", fine.0);
+        assert!(fine.0.abs() < if p == 1.0 { 0.03 } else { 1e-3 }, "{}", fine.0);
     }
 }
 
@@ -221,11 +221,12 @@ fn lengths_times_a_power_of_two_give_the_same_to_the_bit() {
     };
     for degree in DEGREES {
         let one = scaled(0, degree);
-        let other = scaled(5, degree);
+        // The root of the scale of the matrix, E r, is a power of two as well.
+        let other = scaled(4, degree);
         for (a, b) in one.displacement.iter().zip(&other.displacement) {
-            assert_eq!(a.map(|c| c * 32.0), *b);
+            assert_eq!(a.map(|c| c * 16.0), *b);
         }
-        assert_eq!(one.quantities.contact_force * 1024.0, other.quantities.contact_force);
+        assert_eq!(one.quantities.contact_force * 256.0, other.quantities.contact_force);
     }
 }
 

@@ -64,20 +64,16 @@ fn a_single_row_of_triangles_that_may_turn_is_refused_and_two_rows_may_not() {
         [("bottom".to_owned(), vec![[0, 1]])],
     )
     .unwrap();
-    let alone = Problem::of(row, elastic(1.0, 0.3)).with("bottom", Condition::contact(|_| 0.0));
-    let alone = alone.with_body_force(|_| 0.0, |_| -0.1);
-    let said = message(&alone);
+    let apart =
+        |mesh| Problem::of(mesh, elastic(1.0, 0.3)).with("bottom", Condition::contact(|_| 0.1));
+    let said = message(&apart(row));
     assert!(said.contains("the body is not held") && said.contains("rotation"), "{said}");
-    let two = Mesh::new(
-        vertices,
-        vec![[0, 1, 2], [0, 3, 1]],
-        [("bottom".to_owned(), vec![[0, 3]]), ("top".to_owned(), vec![[1, 2]])],
-    )
-    .unwrap();
-    let held = Problem::of(two, elastic(1.0, 0.3))
-        .with("top", flat_roller())
-        .with("bottom", Condition::contact(|_| 0.1));
-    check(&held, &method(Degree::One, EXACT)).unwrap();
+    let two =
+        Mesh::new(vertices, vec![[0, 1, 2], [0, 3, 1]], [("bottom".to_owned(), vec![[0, 3]])])
+            .unwrap();
+    // The load drives the body away from the floor.
+    let said = message(&apart(two).with_body_force(|_| 0.0, |_| 0.1));
+    assert!(said.contains("translation along (0, 1)") && !said.contains("rotation"), "{said}");
 }
 
 #[test]
