@@ -6,7 +6,7 @@ use super::grip::across;
 use super::law::Law;
 use super::piece::Piece;
 use super::rigid::{FreeMotion, NEGLIGIBLE, Parts, null_space};
-use super::solvability::{Slides, all, joined, negligible, rows};
+use super::solvability::{Slides, all, joined, moves, negligible, rows};
 use crate::kernel::{DoubleDouble, Response};
 
 /// An edge presses where P is above this share of the largest; below it P is what the tolerance of Newton's method leaves. With a
@@ -96,9 +96,7 @@ pub(crate) fn free_where(
         let count = of_part.len();
         let mut rows = all(&rows(of_part, parts, &d.space, &d.contact, |e| stops[e][0]));
         let is_rough = |piece: &Piece| {
-            let part = parts.of_triangle()[piece.edge().triangle];
-            let moves = of_part.iter().any(|motion| motion.part == part);
-            moves && matches!(piece.geometry.law, Law::Friction(_))
+            matches!(piece.geometry.law, Law::Friction(_)) && moves(of_part, parts, piece)
         };
         for (piece, _) in d.contact.iter().zip(stops).filter(|(p, s)| s[1] && is_rough(p)) {
             rows.extend(across(of_part, parts, &d.space, piece));

@@ -58,10 +58,10 @@ pub enum DataError {
     )]
     HeldInside { support: String, boundary: String, x: f64, y: f64, depth: f64 },
     #[error(
-        "[boundary.{}] contact.friction.tresca is {value} at ({}, {}); expected a stress that is not negative at every point of the boundary",
-        key(boundary), number(*x), number(*y)
+        "{what} is {value} at ({}, {}); expected a stress that is not negative at every point of the boundary",
+        number(*x), number(*y)
     )]
-    NegativeFriction { boundary: String, value: f64, x: f64, y: f64 },
+    NegativeFriction { what: String, value: f64, x: f64, y: f64 },
     #[error("{what} has friction and no contact; expected a boundary with contact, or no friction")]
     FrictionWithoutContact { what: String },
     #[error(

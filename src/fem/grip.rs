@@ -9,14 +9,12 @@
 //! non-negative least squares with one more equation for each e. With Coulomb's friction the cone of the c_i is that of
 //! c_i + mu r_t and c_i - mu r_t: what friction can do at a node grows with what presses there.
 
-use nalgebra::Vector2;
-
 use super::dense::{dot, norm, singular_vectors};
 use super::friction::Bound;
 use super::law::Law;
 use super::piece::Piece;
 use super::rigid::{FreeMotion, NEGLIGIBLE, Parts};
-use super::solvability::{MARGIN, nnls_residual};
+use super::solvability::{MARGIN, jumps, moves, nnls_residual};
 use super::space::Space;
 
 /// Rows of a straight boundary are multiples of each other and count as one; beyond this number neighbours are taken together, as
@@ -30,26 +28,18 @@ pub(super) struct Grip {
     /// The rows of the edges of the Friction cones, in place of the c_i of their nodes.
     pub(super) cones: Vec<Vec<f64>>,
     /// The pieces that have these.
-    pub(super) pieces: Vec<usize>,
+    pub(super) with_cones: Vec<usize>,
 }
 
-/// r_t at the nodes of a piece for each of the motions.
+/// r_t at the nodes of a piece with friction, for each of the motions.
 pub(super) fn across(
     motions: &[FreeMotion],
     parts: &Parts,
     space: &Space,
     piece: &Piece,
 ) -> Vec<Vec<f64>> {
-    let part = parts.of_triangle()[piece.edge().triangle];
-    let nodes = space.edge_nodes(piece.edge()).into_iter().zip(piece.geometry.directions());
-    let row = |(node, d): (usize, Vector2<f64>)| {
-        let place = space.nodes()[node];
-        let along = |motion: &FreeMotion| {
-            Vector2::from(motion.at_point_of(part, place)).dot(&Vector2::new(-d[1], d[0]))
-        };
-        motions.iter().map(along).collect()
-    };
-    nodes.map(row).collect()
+    let nodes = piece.degree.nodes_per_edge();
+    (nodes..2 * nodes).map(|i| jumps(motions, parts, space, piece, i)).collect()
 }
 
 impl Grip {
@@ -61,14 +51,14 @@ impl Grip {
         contact: &[Piece],
         normal: &[(usize, Vec<Vec<f64>>)],
     ) -> Option<Self> {
-        let mut grip = Grip { bounded: Vec::new(), cones: Vec::new(), pieces: Vec::new() };
+        let mut grip = Grip { bounded: Vec::new(), cones: Vec::new(), with_cones: Vec::new() };
+        let mut is_rough = false;
         for (e, piece) in contact.iter().enumerate() {
             let Law::Friction(bound) = piece.geometry.law else { continue };
-            let part = parts.of_triangle()[piece.edge().triangle];
-            if motions.iter().all(|motion| motion.part != part) {
+            if !moves(motions, parts, piece) {
                 continue;
             }
-            grip.pieces.push(e);
+            is_rough = true;
             let rows = across(motions, parts, space, piece);
             match bound {
                 Bound::Tresca([s, t]) => {
@@ -82,6 +72,7 @@ impl Grip {
                     grip.add((0..motions.len()).map(sum).collect());
                 }
                 Bound::Coulomb(mu) => {
+                    grip.with_cones.push(e);
                     let of_piece = normal.iter().find(|(k, _)| *k == e).map_or(&[][..], |(_, c)| c);
                     for (c, t) in of_piece.iter().zip(&rows) {
                         for sign in [-mu, mu] {
@@ -91,7 +82,7 @@ impl Grip {
                 }
             }
         }
-        if grip.pieces.is_empty() {
+        if !is_rough {
             return None;
         }
         while grip.bounded.len() > MOST_GRIPS {

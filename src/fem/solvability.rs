@@ -105,23 +105,9 @@ pub(super) fn rows(
     contact: &[Piece],
     taken: impl Fn(usize) -> bool,
 ) -> Vec<EdgeRows> {
-    let part = |triangle: usize| parts.of_triangle()[triangle];
-    let moves = |part: usize| motions.iter().any(|motion| motion.part == part);
-    let of_parts = |(e, piece): &(usize, &Piece)| {
-        let mut sides = piece.geometry.stretches.iter();
-        taken(*e) && sides.any(|stretch| moves(part(stretch.edge.triangle)))
-    };
+    let of_parts = |(e, piece): &(usize, &Piece)| taken(*e) && moves(motions, parts, piece);
     let of_piece = |(e, piece): (usize, &Piece)| {
-        let row = |i: usize| -> Vec<f64> {
-            let compared = piece.compared(space.mesh(), i);
-            let jump = |motion: &FreeMotion| {
-                let at = |&(triangle, place, along): &(usize, [f64; 2], Vector2<f64>)| {
-                    Vector2::from(motion.at_point_of(part(triangle), place)).dot(&along)
-                };
-                compared.iter().map(at).sum()
-            };
-            motions.iter().map(jump).collect()
-        };
+        let row = |i: usize| jumps(motions, parts, space, piece, i);
         let mut rows = Vec::with_capacity(piece.p0.len());
         for (response, values) in piece.responses() {
             for own in values.map(row) {
@@ -134,6 +120,33 @@ pub(super) fn rows(
         (e, rows)
     };
     contact.iter().enumerate().filter(of_parts).map(of_piece).collect()
+}
+
+/// The jump of each of the motions in the component of functional `i` of a piece, at its node.
+pub(super) fn jumps(
+    motions: &[FreeMotion],
+    parts: &Parts,
+    space: &Space,
+    piece: &Piece,
+    i: usize,
+) -> Vec<f64> {
+    let compared = piece.compared(space.mesh(), i);
+    let jump = |motion: &FreeMotion| {
+        let at = |&(triangle, place, along): &(usize, [f64; 2], Vector2<f64>)| {
+            let part = parts.of_triangle()[triangle];
+            Vector2::from(motion.at_point_of(part, place)).dot(&along)
+        };
+        compared.iter().map(at).sum()
+    };
+    motions.iter().map(jump).collect()
+}
+
+/// Returns whether one of the motions moves a side of a piece.
+pub(super) fn moves(motions: &[FreeMotion], parts: &Parts, piece: &Piece) -> bool {
+    piece.geometry.stretches.iter().any(|stretch| {
+        let part = parts.of_triangle()[stretch.edge.triangle];
+        motions.iter().any(|motion| motion.part == part)
+    })
 }
 
 /// The rows of all these edges.
@@ -181,8 +194,7 @@ pub fn slides(
         let loads: Vec<f64> = fields.iter().map(|r| work(|w| w, r) / unit).collect();
         let none = negligible(&all(&edges), count, rounding);
         if let Some(grip) = grip {
-            let smooth =
-                edges.iter().filter(|(e, _)| !(grip.pieces.contains(e) && !grip.cones.is_empty()));
+            let smooth = edges.iter().filter(|(e, _)| !grip.with_cones.contains(e));
             let normal: Vec<Vec<f64>> = smooth.flat_map(|(_, rows)| rows.clone()).collect();
             if let Some((weights, driven)) = grip.driven(&normal, &loads, unit, none) {
                 let motion = parts.combined(of_part, &weights);

@@ -271,7 +271,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
     if let (Some(pair), Some(_)) = (root.get("pair"), &solution) {
         return Err(pair.at.found("a pair beside [exact]", "the contact of the exact solution"));
     }
-    let pairs = pairs::on_mesh(root, declared, &mesh)?;
+    let pairs = pairs::on_mesh(root, declared, &mesh, of_revolution)?;
     let depth = if of_revolution { Depth::Revolution } else { Depth::Of(thickness.unwrap_or(1.0)) };
     let (conditions, kinds) = read_boundaries(root, solution.as_ref(), &mesh, depth, &pairs)?;
     let friction = read_friction(root, of_revolution)?;

@@ -138,7 +138,7 @@ fn contact_edges(s: &Solution) -> Vec<Vec<ContactPoint<'_>>> {
                 place: p.at[i],
                 displacement: p.displacement[i],
                 direction: if i == 0 { p.direction } else { p.direction.map(|c| -c) },
-                numbers: [p.u_n, p.gap, p.sigma_n, p.lambda, p.pressure, 0.0, 0.0],
+                numbers: [p.u_n, p.gap, p.sigma_n, p.lambda, p.pressure, p.u_t, p.shear],
                 boundary: &piece.boundaries[i],
             };
             piece.points.iter().map(point).collect()

@@ -55,7 +55,7 @@ pub(super) fn kappa(d: &Discretization, pieces: &[Piece<PreciseBall>]) -> f64 {
                 let off = PreciseBall::from(8.0 * off.fold(0.0, larger));
                 let cosine = dot(along[0], along[1]);
                 // The root of the factor for both is steep where the direction turns little.
-                let cosine = if both && chords.is_none() {
+                let cosine = if both && geometry.turns() {
                     PreciseBall::from((cosine - off).lower())
                 } else {
                     cosine

@@ -66,12 +66,15 @@ pub struct Enclosure {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Isolation {
-    /// There is exactly one whose difference from the displacement has no larger energy norm.
-    pub within: f64,
-    /// That over |u~|_a; `None` for a body without strain.
+    /// There is exactly one whose difference from the displacement has no larger energy norm; `None` if that is known in another norm
+    /// only, that of 12.6 with springs, as where friction alone holds the body.
+    pub within: Option<f64>,
+    /// That over |u~|_a; `None` for a body without strain, too.
     pub relative: Option<f64>,
     /// There is no other anywhere.
     pub everywhere: bool,
+    /// Two lower bounds of the coefficient below which there is exactly one for all loads, by 12.3 and by 12.3a; 0 where none is known.
+    pub limits: [f64; 2],
 }
 
 /// Why nothing is proved.
@@ -103,8 +106,6 @@ pub enum Unproved {
         "Coulomb's friction: the proof is for up to 2000 contact functionals and 2e8 entries of their compliance; there are {count} functionals"
     )]
     TooManyFunctionals { count: usize },
-    #[error("Coulomb's friction: the proof is for a body that its supports hold")]
-    FrictionHolds,
     #[error("the bound over- or underflows double precision")]
     OutOfRange,
     #[error("out of memory")]
@@ -114,19 +115,19 @@ pub enum Unproved {
 impl Unproved {
     /// Returns whether a displacement that is nearer, or better arithmetic, may tell more.
     pub(crate) fn may_be_rounding(&self) -> bool {
-        let by_nature =
-            matches!(self, Unproved::TooManyFunctionals { .. } | Unproved::FrictionHolds);
-        let by_method =
-            matches!(self, Unproved::NotCoercive { .. } | Unproved::NoKappa | Unproved::NotHeld);
-        !(by_nature || by_method)
+        !matches!(
+            self,
+            Unproved::NotCoercive { .. }
+                | Unproved::NoKappa
+                | Unproved::NotHeld
+                | Unproved::TooManyFunctionals { .. }
+        )
     }
 
     /// Returns whether (8) is known to have exactly one solution all the same.
     pub fn is_unique(&self) -> bool {
-        let by_friction = matches!(
-            self,
-            Unproved::NotIsolated | Unproved::TooManyFunctionals { .. } | Unproved::FrictionHolds
-        );
+        let by_friction =
+            matches!(self, Unproved::NotIsolated | Unproved::TooManyFunctionals { .. });
         let by_contact = matches!(self, Unproved::HeldByContact | Unproved::NotCoercive { .. });
         !(by_friction || by_contact || *self == Unproved::NoKappa)
     }
@@ -162,7 +163,7 @@ pub struct Verifier<'s, 'd, 'p> {
     of_a: Option<Arc<Factor>>,
     /// For what is pressed: the bounds at the nodes, and the factor, once it is needed.
     held: Option<HeldByContact>,
-    /// What the proof with Coulomb's friction knows of the body.
+    /// What the proof with Coulomb's friction knows of A.
     known: Option<isolated::Known>,
     /// The sum of the magnitudes of the residual where it was last evaluated.
     pub unbalanced: f64,
@@ -290,16 +291,22 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         let r = free(system, &at.residual);
         self.unbalanced = r.iter().map(|r| r.magnitude()).sum();
         let fields = (u, reported);
-        if d.slides.is_some() && d.has_coulomb() {
-            return Err(Unproved::FrictionHolds);
+        let nowhere = Pressed::nowhere(self.lines.len());
+        if d.has_coulomb() {
+            let by_a = match d.slides {
+                None => self.held_by(&nowhere, &at, fields, (&r, arithmetic)),
+                Some(_) => Err(Unproved::HeldByContact),
+            };
+            return match by_a {
+                Err(Unproved::NotIsolated | Unproved::NoFactor | Unproved::HeldByContact) => {
+                    let pressed = Pressed::at(d, &self.lines, &at.u, 0.0);
+                    self.held_by(&pressed, &at, fields, (&r, arithmetic))
+                }
+                found => found,
+            };
         }
         if d.slides.is_none() {
-            let nowhere = Pressed::nowhere(self.lines.len());
             let mut best = self.held_by(&nowhere, &at, fields, (&r, arithmetic));
-            // What is proved of Coulomb's friction is in the norm of A alone.
-            if d.has_coulomb() {
-                return best;
-            }
             // Of a slender body that lies on its obstacle A alone has no factor in doubles, or has one by luck.
             let is_enough = |found: &Result<Enclosure, Unproved>, proof: f64| match found {
                 Ok(enclosure) => proof == 0.0 || enclosure.is_within(proof),
@@ -382,7 +389,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             let product = Product { system, lines: &self.lines, pressed, arithmetic };
             up(dual_norm(&product, factor, r, &crude, coercivity, negligible) + up_to)
         };
-        if !pressed.stay(rho) {
+        if !coulomb && !pressed.stay(rho) {
             return Err(Unproved::HeldByContact);
         }
         let mut isolated = None;
@@ -391,11 +398,19 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             let product = Product { system, lines: &self.lines, pressed, arithmetic };
             let times = |z: &[PreciseBall]| product.times(z);
             let body = isolated::Body { system, factor, times: &times, crude: &crude, coercivity };
-            let known = match &mut self.known {
-                Some(known) => known,
-                none => none.insert(isolated::Known::new(&body, &self.lines)?),
-            };
-            isolated = Some(isolated::isolate(d, known, &self.lines, &at.u, [rho, size])?);
+            if pressed.is_nowhere() {
+                let known = match &mut self.known {
+                    Some(known) => known,
+                    none => none.insert(isolated::Known::new(&body, &self.lines, None)?),
+                };
+                let of = [rho, size];
+                isolated = Some(isolated::isolate(d, (known, None), &self.lines, &at.u, of)?);
+            } else {
+                let known = isolated::Known::new(&body, &self.lines, Some(springs))?;
+                let of = [rho, size];
+                let by_a = self.known.as_ref();
+                isolated = Some(isolated::isolate(d, (&known, by_a), &self.lines, &at.u, of)?);
+            }
         }
         let rho = isolated.map_or(rho, |isolated| isolated.rho);
         let exact = up(rho / coercivity.sqrt());
@@ -424,17 +439,15 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         if !intervals.are_finite() {
             return Err(Unproved::OutOfRange);
         }
-        // In the norm of A as in that of the energy, which is no smaller.
-        let isolation = isolated.filter(|isolated| exact <= isolated.within);
-        if isolation.is_none() && coulomb {
-            return Err(Unproved::NotIsolated);
-        }
         let hardly_strains = up(root(at.energy) + radius) <= NEGLIGIBLE * if_strained;
         let is_measured = !hardly_strains && norm > 0.0;
-        let isolation = isolation.map(|Isolated { within, everywhere, .. }| Isolation {
-            within,
-            relative: is_measured.then(|| within / up(root(at.energy)) * (1.0 - f64::EPSILON)),
-            everywhere,
+        let isolation = isolated.map(|Isolated { within, everywhere, limits, .. }| {
+            // From where the residual is known to the displacement that is reported.
+            let within = within.map(|within| (within - at.moved) * (1.0 - f64::EPSILON));
+            let within = within.filter(|within| radius <= *within);
+            let relative = |within: f64| within / up(root(at.energy)) * (1.0 - f64::EPSILON);
+            let relative = within.filter(|_| is_measured).map(relative);
+            Isolation { within, relative, everywhere, limits }
         });
         let relative = is_measured.then(|| up(radius / norm));
         Ok(Enclosure {

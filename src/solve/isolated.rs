@@ -11,6 +11,7 @@
 //! If beta (rho + eta(R) R) <= R and beta eta(R) < 1, rho being the dual norm of the residual, there is exactly one solution within R in the
 //! norm of A, and it is within beta rho / (1 - beta eta(R)).
 
+use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use nalgebra::DMatrix;
 
@@ -44,10 +45,12 @@ const SINGULAR_VALUES: [f64; 14] =
 pub(super) struct Isolated {
     /// |u~ - u^h|_A at most.
     pub rho: f64,
-    /// There is no other solution within this distance, in the norm of A.
-    pub within: f64,
+    /// There is no other solution within this distance, in the norm of A; `None` if that is known with springs only.
+    pub within: Option<f64>,
     /// There is no other solution anywhere.
     pub everywhere: bool,
+    /// Lower bounds of the coefficient below which that is so for all loads.
+    pub limits: [f64; 2],
     /// The norm of gamma^{1/2} (lambda~ - lambda^h) at most.
     pub pressure: f64,
 }
@@ -198,6 +201,16 @@ fn states(piece: &Piece<PreciseBall>, p: &[PreciseBall], d: f64) -> Vec<State> {
     }
 }
 
+/// Where a quadratic polynomial with these values at the nodes has its extremum within the edge: on either side of it a positive one has
+/// positive coefficients (Bernstein's), across it it need not.
+fn turning_point(values: &Row) -> Option<f64> {
+    let [start, end, middle] = values[..] else { return None };
+    let [start, end, middle] = [start, end, middle].map(PreciseBall::head);
+    let (slope, bend) = (4.0 * middle - 3.0 * start - end, start + end - 2.0 * middle);
+    let at = -slope / (4.0 * bend);
+    (at > 0.0 && at < 1.0).then_some(at)
+}
+
 /// The pieces of an edge on which one of its states is certain, with the factors of that state.
 fn certain(
     d: &Discretization,
@@ -206,7 +219,9 @@ fn certain(
     change: f64,
 ) -> Vec<(EdgePiece, [f64; 3])> {
     let of = |State { positive, factors }: State| {
-        let found = EdgePiece::positive((d.space.degree(), &d.rule), piece.radii, &positive, INSET);
+        let cuts: Vec<f64> = positive.iter().filter_map(turning_point).collect();
+        let edge = (d.space.degree(), &d.rule);
+        let found = EdgePiece::positive(edge, piece.radii, &positive, (INSET, &cuts));
         found.into_iter().map(move |piece| (piece, factors))
     };
     states(piece, p, change).into_iter().flat_map(of).collect()
@@ -229,8 +244,8 @@ impl OnPiece<'_> {
         let all = certain(d, self.piece, &self.p, change);
         let sure: f64 = all.iter().map(|(piece, _)| piece.share.lower().max(0.0)).sum();
         let left = (1.0 - sure * (1.0 - 1e-14)).clamp(0.0, 1.0);
-        // H0 leaves the insets of its own, longer stretches out: of each end of some eight.
-        if left > INSET { (left + 16.0 * INSET).min(1.0) } else { left }
+        // H0 leaves the insets of its own, longer stretches out: at fewer than these ends.
+        if left > INSET { (left + 128.0 * INSET).min(1.0) } else { left }
     }
 
     /// The block of H0: the integrals over where a state is certain to stay within R.
@@ -367,39 +382,56 @@ impl Root {
 pub(super) struct Known {
     compliance: Compliance,
     root: Root,
+    /// The springs of A_S; none for A.
+    springs: Option<Vec<DMatrix<f64>>>,
     everywhere: bool,
+    limits: [f64; 2],
 }
 
 impl Known {
-    /// For these pieces of the body.
+    /// For these pieces of the body, with these springs or without.
     ///
     /// # Errors
     /// Why nothing is proved.
-    pub fn new(body: &Body, pieces: &[Piece<PreciseBall>]) -> Result<Self, Unproved> {
+    pub fn new(
+        body: &Body,
+        pieces: &[Piece<PreciseBall>],
+        springs: Option<&[DMatrix<f64>]>,
+    ) -> Result<Self, Unproved> {
         let (system, count) = (body.system, body.system.functionals());
         if count > MOST_FUNCTIONALS || count * system.numbering.count > MOST_ENTRIES {
             return Err(Unproved::TooManyFunctionals { count });
         }
         let compliance = body.compliance(pieces)?;
         let root = Root::new(&compliance).ok_or(Unproved::NotIsolated)?;
-        let everywhere = is_unique(system.d, pieces, &root);
-        Ok(Known { compliance, root, everywhere })
+        let springs = springs.map(<[_]>::to_vec);
+        let (everywhere, limits) = match springs {
+            Some(_) => (false, [0.0; 2]),
+            None => {
+                let limits = limits(system.d, pieces, &compliance, &root);
+                let most = pieces.iter().filter_map(coefficient).fold(0.0, f64::max);
+                let is_below = limits.iter().any(|&limit| most < limit);
+                (is_below || is_unique(system.d, pieces, &root), limits)
+            }
+        };
+        Ok(Known { compliance, root, springs, everywhere, limits })
     }
 }
 
-/// Decides around the displacement `u`, where the residual has the dual norm `rho`; `size` is that of the displacement.
+/// Decides around the displacement `u`, where the residual has the dual norm `rho`; `size` is that of the displacement. All of it is in
+/// the norm of A, or of A with the springs that are `known`; `by_a` is then what is known without.
 ///
 /// # Errors
 /// Why nothing is proved.
 pub(super) fn isolate(
     d: &Discretization,
-    known: &Known,
+    (known, by_a): (&Known, Option<&Known>),
     pieces: &[Piece<PreciseBall>],
     u: &[[PreciseBall; 2]],
     [rho, size]: [f64; 2],
 ) -> Result<Isolated, Unproved> {
     let count = known.compliance.g.nrows();
-    let Known { compliance, root: root_of_g, everywhere } = known;
+    let Known { compliance, root: root_of_g, springs, .. } = known;
     let on_piece = |piece| {
         let g = largest_eigenvalue(piece, compliance);
         let mu = coefficient(piece).unwrap_or(0.0);
@@ -416,6 +448,10 @@ pub(super) fn isolate(
     let blocks: Vec<DMatrix<f64>> = all.iter().map(|on| on.block(d, start)).collect();
     let stiffest = blocks.iter().map(|h| norm(h.as_slice())).fold(0.0, f64::max);
     let rounding = up(1e-14 * stiffest * root_of_g.norm * root_of_g.norm);
+    let blocks = match springs {
+        Some(springs) => blocks.into_iter().zip(springs).map(|(h, s)| h - s).collect(),
+        None => blocks,
+    };
     let (inner, off) = root_of_g.around(&blocks);
     let k = Mat::from_fn(count, count, |i, j| inner[(i, j)] + if i == j { 1.0 } else { 0.0 });
     let square = k.transpose() * &k;
@@ -450,36 +486,174 @@ pub(super) fn isolate(
     }
     let (eta, within) = found.ok_or(Unproved::NotIsolated)?;
     let radius = up(beta * rho / (1.0 - up(beta * eta)) * (1.0 + 1e-12));
-    let springs: f64 = all.iter().map(|on| on.weight).sum();
+    let stiffness: f64 = all.iter().map(|on| on.weight).sum();
     let largest = pieces.iter().filter_map(coefficient).fold(0.0, f64::max);
-    let pressure = up((1.0 + largest) * (springs * (1.0 + 1e-9)).sqrt() * radius);
-    Ok(Isolated { rho: radius, within, everywhere: *everywhere, pressure })
+    let pressure = up((1.0 + largest) * (stiffness * (1.0 + 1e-9)).sqrt() * radius);
+    let of_a = if springs.is_some() { by_a } else { Some(known) };
+    let within = of_a.map(|of_a| match springs {
+        None => within,
+        // |v|_S^2 = |v|_A^2 + the springs' integral of P0(v)^2 / gamma, which is at most 1 / gamma times g of A on each piece.
+        Some(_) => {
+            let of = |piece: &Piece<PreciseBall>| {
+                2.0 * piece.weight().upper() * largest_eigenvalue(piece, &of_a.compliance)
+            };
+            within / up((1.0 + pieces.iter().map(of).sum::<f64>()).sqrt() * (1.0 + 1e-9))
+        }
+    });
+    let (everywhere, limits) = of_a.map_or((false, [0.0; 2]), |a| (a.everywhere, a.limits));
+    Ok(Isolated { rho: radius, within, everywhere, limits, pressure })
 }
 
-/// Returns whether there is exactly one solution, whatever the loads: 1 - (1/4) G^(1/2) M G^(1/2) is positive definite, M being the
-/// integrals of mu^2 N_a N_b / gamma of the tangential functionals.
-fn is_unique(d: &Discretization, pieces: &[Piece<PreciseBall>], root: &Root) -> bool {
+/// The integrals of N_a N_b / gamma over a piece, by the rule of the method.
+fn mass(d: &Discretization, piece: &Piece<PreciseBall>) -> DMatrix<f64> {
+    let nodes = piece.degree.nodes_per_edge();
+    let mut mass = DMatrix::zeros(nodes, nodes);
+    let whole = EdgePiece::positive((piece.degree, &d.rule), piece.radii, &[], (INSET, &[]));
+    for (part, a, b) in
+        whole.iter().flat_map(|part| (0..nodes * nodes).map(move |k| (part, k / nodes, k % nodes)))
+    {
+        mass[(a, b)] += piece.weight().head() * part.mass[a][b].head();
+    }
+    mass
+}
+
+/// G^(1/2) M G^(1/2), turned, and what it is off: M are the integrals of `weight`(mu) N_a N_b / gamma of the functionals that feel
+/// Coulomb's friction.
+fn of_friction(
+    d: &Discretization,
+    pieces: &[Piece<PreciseBall>],
+    root: &Root,
+    weight: impl Fn(f64) -> f64,
+) -> (Mat<f64>, f64) {
     let block = |piece: &Piece<PreciseBall>| {
         let (count, nodes) = (piece.p0.len(), piece.degree.nodes_per_edge());
         let mut block = DMatrix::zeros(count, count);
         if let Some(mu) = coefficient(piece) {
-            let whole = EdgePiece::positive((piece.degree, &d.rule), piece.radii, &[], INSET);
-            for part in whole {
-                for a in 0..nodes {
-                    for b in 0..nodes {
-                        let mass = piece.weight().head() * part.mass[a][b].head();
-                        block[(nodes + a, nodes + b)] += mu * mu / 4.0 * mass;
-                    }
-                }
-            }
+            let mut across = block.view_mut((nodes, nodes), (nodes, nodes));
+            across.copy_from(&(weight(mu) * mass(d, piece)));
         }
         block
     };
     let (inner, off) = root.around(&pieces.iter().map(block).collect::<Vec<_>>());
     let n = inner.nrows();
+    let mean = Mat::from_fn(n, n, |i, j| (inner[(i, j)] + inner[(j, i)]) / 2.0);
+    (mean, up(off * (1.0 + 1e-9)))
+}
+
+/// Returns whether 1 - `by` M is surely positive definite, where M is off by `off`.
+fn is_below_one(m: &Mat<f64>, off: f64, by: f64) -> bool {
+    let n = m.nrows();
     let less = Mat::from_fn(n, n, |i, j| {
-        let mean = (inner[(i, j)] + inner[(j, i)]) / 2.0;
-        if i == j { 1.0 - mean } else { -mean }
+        let entry = by * m[(i, j)];
+        if i == j { 1.0 - entry } else { -entry }
     });
-    is_positive_definite(&less, up(off * (1.0 + 1e-9)))
+    is_positive_definite(&less, up(by * off * (1.0 + 1e-9) + n as f64 * f64::EPSILON))
+}
+
+/// Returns whether there is exactly one solution, whatever the loads: 1 - (1/4) G^(1/2) M G^(1/2) is positive definite, M being the
+/// integrals of mu^2 N_a N_b / gamma of the tangential functionals.
+fn is_unique(d: &Discretization, pieces: &[Piece<PreciseBall>], root: &Root) -> bool {
+    let (inner, off) = of_friction(d, pieces, root, |mu| mu * mu / 4.0);
+    is_below_one(&inner, off, 1.0)
+}
+
+/// Lower bounds of the largest coefficient below which there is exactly one solution for all loads: by Theorem 12.3 and by Theorem 12.3a;
+/// 0 where none is proved.
+fn limits(
+    d: &Discretization,
+    pieces: &[Piece<PreciseBall>],
+    compliance: &Compliance,
+    root: &Root,
+) -> [f64; 2] {
+    let (inner, off) = of_friction(d, pieces, root, |_| 1.0);
+    let n = inner.nrows();
+    let times = |x: &[f64]| -> Vec<f64> {
+        (0..n).map(|i| (0..n).map(|j| inner[(i, j)] * x[j]).sum()).collect()
+    };
+    // The largest eigenvalue, and a little more: proved is what the factor says.
+    let largest = power(n, times) * (1.0 + CLOSE);
+    if !(largest > 0.0) || !is_below_one(&inner, off, 1.0 / largest) {
+        return [0.0; 2];
+    }
+    let first = 2.0 / largest.sqrt() * (1.0 - 4.0 * f64::EPSILON);
+    let second = coupling(d, pieces, compliance).map_or(0.0, |c| {
+        let c = c.max(f64::EPSILON);
+        (1.0 - c * c) / (2.0 * c * (1.0 + largest).sqrt()) * (1.0 - 1e-12)
+    });
+    [first, second.max(0.0)]
+}
+
+/// The limits are this much lower than they might be.
+const CLOSE: f64 = 1e-3;
+
+/// c of Theorem 12.3a at most, where it is known and below 1.
+fn coupling(
+    d: &Discretization,
+    pieces: &[Piece<PreciseBall>],
+    compliance: &Compliance,
+) -> Option<f64> {
+    let (mut normal, mut across, mut inverses) = (Vec::new(), Vec::new(), Vec::new());
+    for piece in pieces {
+        let (first, nodes) = (piece.functionals().start, piece.degree.nodes_per_edge());
+        let is_covered = piece.geometry.law == Law::Contact || coefficient(piece).is_some();
+        let mass = Some(mass(d, piece)).filter(|_| is_covered)?;
+        let mass = Mat::from_fn(nodes, nodes, |a, b| mass[(a, b)]);
+        let inverse = mass.llt(Side::Lower).ok()?.solve(Mat::<f64>::identity(nodes, nodes));
+        normal.extend((0..nodes).map(|a| (first + a, inverses.len(), a)));
+        if coefficient(piece).is_some() {
+            across.extend((0..nodes).map(|a| (first + nodes + a, inverses.len(), a)));
+        }
+        inverses.push(inverse);
+    }
+    // What a mass matrix of order 3 makes of rounding.
+    let stiffest = inverses.iter().map(frobenius).fold(0.0, f64::max);
+    let rounding = 64.0 * f64::EPSILON * 20.0 * stiffest;
+    let all: Vec<(usize, usize, usize)> = normal.iter().chain(&across).copied().collect();
+    let entry = |(i, e, a): (usize, usize, usize), (j, f, b): (usize, usize, usize)| {
+        compliance.g[(i, j)] + if e == f { inverses[e][(a, b)] } else { 0.0 }
+    };
+    let block =
+        |of: &[(usize, usize, usize)]| Mat::from_fn(of.len(), of.len(), |i, j| entry(of[i], of[j]));
+    let factors = [block(&normal), block(&across)].map(|m| m.llt(Side::Lower));
+    let [Ok(n), Ok(t)] = &factors else { return None };
+    // (N^-1 G_nt T^-1 G_tn) x by columns.
+    let between =
+        Mat::from_fn(normal.len(), across.len(), |i, j| compliance.g[(normal[i].0, across[j].0)]);
+    let times = |x: &[f64]| -> Vec<f64> {
+        let x = Mat::from_fn(x.len(), 1, |i, _| x[i]);
+        let y = n.solve(&between * t.solve(between.transpose() * x));
+        (0..y.nrows()).map(|i| y[(i, 0)]).collect()
+    };
+    let c = power(normal.len(), times).sqrt() * (1.0 + CLOSE);
+    let c = c.max(f64::EPSILON);
+    if !(c < 1.0) {
+        return None;
+    }
+    let count = normal.len();
+    let whole = Mat::from_fn(all.len(), all.len(), |i, j| {
+        let same = (i < count) == (j < count);
+        if same { c * entry(all[i], all[j]) } else { compliance.g[(all[i].0, all[j].0)] }
+    });
+    let off = up(2.0 * compliance.off + rounding);
+    is_positive_definite(&whole, off).then_some(c)
+}
+
+/// About the largest eigenvalue of what `times` multiplies by, if it is real and not negative.
+fn power(n: usize, times: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
+    // In no plane of symmetry.
+    let mut x: Vec<f64> = (0..n).map(|i| 1.0 + 0.5 * (1.7 * i as f64).sin()).collect();
+    let mut largest = 0.0;
+    for _ in 0..300 {
+        let size = norm(&x);
+        if !(size > 0.0) {
+            return largest;
+        }
+        x.iter_mut().for_each(|x| *x /= size);
+        x = times(&x);
+        let before = std::mem::replace(&mut largest, norm(&x));
+        if (largest - before).abs() <= 1e-6 * largest {
+            break;
+        }
+    }
+    largest
 }

@@ -11,7 +11,6 @@ use std::ops::Range;
 
 use nalgebra::DMatrix;
 
-use crate::fem::friction::Bound;
 use crate::fem::korn::{Hold, Term};
 use crate::fem::law::Law;
 use crate::fem::piece::Stretch;
@@ -101,15 +100,15 @@ type Found = (usize, Range<usize>, Vec<Measured>);
 
 impl EdgePiece {
     /// The pieces of an edge on which all of these polynomials are positive; `inset` is the share of a stretch that is left out at a
-    /// root.
+    /// root or a further cut.
     pub(super) fn positive(
         (degree, rule): (Degree, &EdgeRule),
         radii: Radii,
         all: &[Row],
-        inset: f64,
+        (inset, cuts): (f64, &[f64]),
     ) -> Vec<Self> {
         let EdgeRule::Gauss(points) = rule else {
-            return Self::between_roots(degree, radii, all, inset);
+            return Self::between_roots(degree, radii, all, (inset, cuts));
         };
         let at = |&(s, weight): &(f64, f64)| {
             let (shapes, weight) = (
@@ -128,10 +127,15 @@ impl EdgePiece {
         points.iter().map(at).filter(|piece| piece.least(all) > 0.0).collect()
     }
 
-    /// Those in the stretches between their roots.
-    fn between_roots(degree: Degree, radii: Radii, all: &[Row], inset: f64) -> Vec<Self> {
+    /// Those in the stretches between their roots and the further `cuts`.
+    fn between_roots(
+        degree: Degree,
+        radii: Radii,
+        all: &[Row],
+        (inset, cuts): (f64, &[f64]),
+    ) -> Vec<Self> {
         let roots = |p: &Row| degree.roots(&p.iter().map(|p| p.head()).collect::<Vec<_>>());
-        let mut cuts: Vec<f64> = all.iter().flat_map(roots).collect();
+        let mut cuts: Vec<f64> = all.iter().flat_map(roots).chain(cuts.iter().copied()).collect();
         cuts.extend([0.0, 1.0]);
         cuts.sort_unstable_by(f64::total_cmp);
         let stretch = |cut: &[f64]| {
@@ -185,10 +189,9 @@ impl EdgePiece {
     }
 }
 
-/// What must be positive where a piece sticks: what P_t is within Tresca's bound on both sides. Nothing is said of what never sticks; of
-/// Coulomb's bound, which moves with P_n, nothing either.
+/// What must be positive where a piece sticks: what P_t is within the bound on both sides. Nothing is said of what never sticks.
 fn stuck(line: &Piece<PreciseBall>, p: &[PreciseBall]) -> Option<[Row; 2]> {
-    let Law::Friction(bound @ Bound::Tresca(_)) = line.geometry.law else { return None };
+    let Law::Friction(bound) = line.geometry.law else { return None };
     let bound = bound.at_nodes(line.gamma, line.along(p));
     let pairs = || bound.iter().zip(line.across(p));
     Some([pairs().map(|(&m, &p)| m - p).collect(), pairs().map(|(&m, &p)| m + p).collect()])
@@ -227,7 +230,7 @@ impl Pressed {
 
     /// Finds the stretches that are surely pressed at the displacement `u`, those that have their `share` of the pressure; what pulls
     /// as well as it pushes is pressed whatever P is. And those that surely stick, of which the least distance to the bound has its
-    /// share likewise.
+    /// share likewise. Coulomb's bound moves with P_n: whether S stays so is then not for [`Pressed::stay`] to say.
     pub fn at(
         d: &Discretization,
         lines: &[Piece<PreciseBall>],
@@ -236,7 +239,7 @@ impl Pressed {
     ) -> Self {
         let degree = d.space.degree();
         let positive = |line: &Piece<PreciseBall>, all: &[Row]| -> Vec<Measured> {
-            let pieces = EdgePiece::positive((degree, &d.rule), line.radii, all, INSET);
+            let pieces = EdgePiece::positive((degree, &d.rule), line.radii, all, (INSET, &[]));
             pieces.into_iter().map(|piece| (piece.least(all), piece)).collect()
         };
         let [mut pressed, mut sticking]: [Vec<Found>; 2] = Default::default();
@@ -278,6 +281,11 @@ impl Pressed {
     pub fn pieces(&self, e: usize) -> &[[f64; 2]] {
         let is_pressed = |part: &&PressedPart| part.edge == e && part.values.start == 0;
         self.parts.iter().find(is_pressed).map_or(&[], |part| &part.pieces)
+    }
+
+    /// Returns whether it is empty.
+    pub fn is_nowhere(&self) -> bool {
+        self.parts.is_empty()
     }
 
     /// Returns whether all of S stays pressed on a ball of radius `rho` and a little more.

@@ -156,6 +156,10 @@ pub struct PieceNodeValues {
     pub lambda: f64,
     /// The recovered pressure ([`super::answers`]), the one to report.
     pub pressure: f64,
+    /// u_t, the jump of u . t, t being n~ turned to the left.
+    pub u_t: f64,
+    /// The shear stress of friction on the first body along t.
+    pub shear: f64,
 }
 
 /// Scalars of a solution, in the units of the case.
@@ -374,15 +378,17 @@ fn piece_values(
         let response = piece.geometry.law.responses()[0];
         let value = |(a, s): (usize, f64)| {
             let PieceNode { direction, gap, .. } = piece.geometry.nodes[a];
+            let displacement = [first, second].map(|stretch| {
+                let nodes = d.space.edge_nodes(stretch.edge);
+                [0, 1].map(|c| {
+                    let values: Vec<f64> = nodes.iter().map(|&node| u[node][c]).collect();
+                    d.space.degree().value_at(&values, stretch.positions[a])
+                })
+            });
+            let [x, y] = [0, 1].map(|c| displacement[0][c] - displacement[1][c]);
             PieceNodeValues {
                 at: [first, second].map(|stretch| stretch.place(d.space.mesh(), a)),
-                displacement: [first, second].map(|stretch| {
-                    let nodes = d.space.edge_nodes(stretch.edge);
-                    [0, 1].map(|c| {
-                        let values: Vec<f64> = nodes.iter().map(|&node| u[node][c]).collect();
-                        d.space.degree().value_at(&values, stretch.positions[a])
-                    })
-                }),
+                displacement,
                 direction: direction.into(),
                 arc: start + s * piece.length,
                 u_n: jumps[a],
@@ -390,6 +396,8 @@ fn piece_values(
                 sigma_n: (1.0 - s) * sigma_n[0] + s * sigma_n[1],
                 lambda: -(response.q(p[a].head()) / piece.gamma) + 0.0,
                 pressure: recovered[a],
+                u_t: y * direction[0] - x * direction[1],
+                shear: piece.shear_at(p, a) + 0.0,
             }
         };
         let mut points: Vec<PieceNodeValues> =

@@ -130,7 +130,7 @@ fn known_to(file: &str, text: &str, settings: &[&str], table: &str) -> BTreeSet<
 }
 
 /// The tables of a case, each with a case that has it and with its name on the page.
-const TABLES: [(&str, &[&str], &str, &str); 23] = [
+const TABLES: [(&str, &[&str], &str, &str); 24] = [
     ("cases/block.toml", &[], "", ""),
     ("cases/block.toml", &["body.thickness=2"], "body", "body"),
     ("cases/block.toml", &[], "mesh", "mesh"),
@@ -157,6 +157,12 @@ const TABLES: [(&str, &[&str], &str, &str); 23] = [
     ("cases/pin.toml", &[], "obstacle.pin.circle", "obstacle.NAME.circle"),
     ("cases/disk.toml", &[], "obstacle.floor.plane", "obstacle.NAME.plane"),
     ("cases/block.toml", &["pair=[{boundaries=[\"left\", \"right\"]}]"], "pair.0", "pair"),
+    (
+        "cases/block.toml",
+        &["pair=[{boundaries=[\"left\", \"right\"], friction={coulomb=0.1}}]"],
+        "pair.0.friction",
+        "pair.friction",
+    ),
     ("cases/block.toml", &["point.p.displacement=[0,0]"], "point.p", "point.NAME"),
     ("cases/block.toml", &["output.probes=[]"], "output", "output"),
 ];

@@ -1,7 +1,8 @@
 //! The keys that other programs have and this one has not: what they ask for is not computed, or has another key.
 
 /// What is not computed, and the keys that ask for it, alone or as the first part of a longer key (`yield_stress`).
-const BEYOND: [(&str, &[&str]); 5] = [
+const BEYOND: [(&str, &[&str]); 6] = [
+    ("one load after the other", &["step", "history", "cycle"]),
     (
         "plasticity",
         &["yield", "sigma_y", "plastic", "plasticity", "hardening", "hardness", "ultimate"],
@@ -42,10 +43,14 @@ const BEYOND: [(&str, &[&str]); 5] = [
 ];
 
 /// What other keys ask for, and the keys that other programs have for that.
-const ELSEWHERE: [(&str, &[&str]); 2] = [
+const ELSEWHERE: [(&str, &[&str]); 3] = [
     (
         "two boundaries that touch each other are a [[pair]]",
         &["master", "slave", "tie", "tied", "self_contact", "bodies"],
+    ),
+    (
+        "friction is that of a contact = { friction = { coulomb = 0.3 } }, or of a [[pair]]",
+        &["friction", "coulomb", "tresca", "mu_friction", "stick"],
     ),
     (
         "a body of revolution has body.plane = \"axisymmetric\"",
@@ -77,6 +82,7 @@ mod tests {
             let said = not_here(key);
             assert_eq!(said, Some(format!("{what} is not computed by this program")), "{key}");
         }
+        assert!(not_here("Friction-Coefficient").is_some_and(|said| said.contains("coulomb")));
         assert!(not_here("master").is_some_and(|said| said.ends_with("are a [[pair]]")));
         assert!(not_here("axisymmetric").is_some_and(|said| said.contains("body.plane")));
         for key in ["nonsense", "yung", "tolerence", "densities", "timeout"] {

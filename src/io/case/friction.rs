@@ -1,10 +1,14 @@
-//! Friction on contact boundaries: `contact.friction` of a `[boundary.NAME]`.
+//! Friction: `contact.friction` of a `[boundary.NAME]`, `friction` of a `[[pair]]`.
 
 use std::collections::BTreeMap;
 
 use super::table::{Table, Value};
 use crate::fem::Friction;
 use crate::io::input::FileError;
+
+/// What is expected in place of friction in a body of revolution.
+pub(super) const NOT_IN_REVOLUTION: &str =
+    "no friction in a body of revolution, where it is not computed by this program";
 
 /// Reads the friction of each boundary that has some.
 pub(super) fn read_friction(
@@ -18,9 +22,7 @@ pub(super) fn read_friction(
         let Some(contact) = boundary.get("contact").filter(Value::is_table) else { continue };
         let contact = contact.table()?;
         if let Some(friction) = contact.get("friction").filter(|_| of_revolution) {
-            return Err(friction.wrong(
-                "no friction in a body of revolution, where it is not computed by this program",
-            ));
+            return Err(friction.wrong(NOT_IN_REVOLUTION));
         }
         if let Some(friction) = contact.optional("friction", read)? {
             all.insert(key.to_owned(), friction);
@@ -29,7 +31,8 @@ pub(super) fn read_friction(
     Ok(all)
 }
 
-fn read(value: &Value) -> Result<Friction, FileError> {
+/// Reads a law of friction.
+pub(super) fn read(value: &Value) -> Result<Friction, FileError> {
     if !value.is_table() {
         return Err(value.wrong("a table, such as { coulomb = 0.3 } or { tresca = \"5\" }"));
     }
