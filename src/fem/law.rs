@@ -248,7 +248,8 @@ pub(super) fn in_double_doubles(
 mod tests {
     use super::*;
 
-    const LAWS: [Law; 3] = [Law::Contact, Law::Sliding, Law::Bonded];
+    const LAWS: [Law; 4] =
+        [Law::Contact, Law::Sliding, Law::Bonded, Law::Friction(Bound::Tresca([0.4, 0.7]))];
     const DEGREES: [Degree; 2] = [Degree::One, Degree::Two];
 
     /// Values at the nodes of a piece, of both signs.
@@ -260,7 +261,7 @@ mod tests {
     #[test]
     fn the_force_is_the_slope_of_the_energy_and_the_tangent_that_of_the_force() {
         for (law, degree) in LAWS.into_iter().flat_map(|law| DEGREES.map(|degree| (law, degree))) {
-            let at = |p: &[f64]| law.integrals(&EdgeRule::Exact, degree, p);
+            let at = |p: &[f64]| law.integrals(&EdgeRule::Exact, (degree, 1.0), p);
             let p = values(law, degree, 0.4);
             let step = 1e-5;
             for i in 0..p.len() {
@@ -284,16 +285,16 @@ mod tests {
     #[test]
     fn the_bregman_distance_is_the_nonlinear_part_of_the_change_of_energy() {
         for (law, degree) in LAWS.into_iter().flat_map(|law| DEGREES.map(|degree| (law, degree))) {
-            let at = |p: &[f64]| law.integrals(&EdgeRule::Exact, degree, p);
+            let at = |p: &[f64]| law.integrals(&EdgeRule::Exact, (degree, 1.0), p);
             let (p, q) = (values(law, degree, 0.4), values(law, degree, 2.9));
             let gradient = at(&p).gradient;
             let slope: f64 = (0..p.len()).map(|i| gradient[i] * (q[i] - p[i])).sum();
             let expected = at(&q).energy - at(&p).energy - slope;
-            let found = law.bregman(&EdgeRule::Exact, degree, &p, &q);
+            let found = law.bregman(&EdgeRule::Exact, (degree, 1.0), &p, &q);
             // Numbers of size 1.
             assert!((found - expected).abs() < 1e-14, "{law:?} {degree:?}: {found} {expected}");
             let other = LAWS[usize::from(law == Law::Contact)];
-            assert!((other.bregman(&EdgeRule::Exact, degree, &p, &q) - found).abs() > 1e-3);
+            assert!((other.bregman(&EdgeRule::Exact, (degree, 1.0), &p, &q) - found).abs() > 1e-3);
         }
     }
 }

@@ -136,7 +136,7 @@ pub fn slides(
         let none = negligible(&all(&edges), count, rounding);
         if let Some(grip) = grip {
             let smooth =
-                edges.iter().filter(|(e, _)| !(grip.pieces.contains(e) && !grip.cones.is_empty()));
+                edges.iter().filter(|(e, _)| !grip.pieces.contains(e) || grip.cones.is_empty());
             let normal: Vec<Vec<f64>> = smooth.flat_map(|(_, rows)| rows.clone()).collect();
             if let Some((weights, driven)) = grip.driven(&normal, &loads, unit, none) {
                 let motion = parts.combined(of_part, &weights);

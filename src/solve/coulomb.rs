@@ -27,7 +27,6 @@ use crate::fem::dense::norm;
 use crate::fem::friction::Bound;
 use crate::fem::law::Law;
 use crate::fem::{Discretization, Piece};
-use crate::kernel::DoubleDouble;
 
 /// A step is taken where the residual falls to this share of what it was.
 const FALLS: f64 = 0.9;
@@ -262,12 +261,12 @@ impl Route for Coulomb<'_, '_, '_> {
         let given = system.course.displacement(system.d).filter(|_| is_first);
         if let Some(given) = given {
             // With the prescribed components as they are.
-            let lift = iterate.u.iter().zip(system.d.constraints.values()).zip(given);
-            let kept =
-                |((lift, held), given): ((&[DoubleDouble; 2], &[Option<f64>; 2]), &[f64; 2])| {
-                    [0, 1].map(|c| if held[c].is_some() { lift[c] } else { given[c].into() })
-                };
-            iterate.u = lift.map(kept).collect();
+            let free = system.d.constraints.values().iter().map(|held| held.map(|c| c.is_none()));
+            for ((u, free), given) in iterate.u.iter_mut().zip(free).zip(given) {
+                for c in (0..2).filter(|&c| free[c]) {
+                    u[c] = given[c].into();
+                }
+            }
             *at = iterate.evaluate(system, precisely);
         } else if is_first {
             let start = if system.d.slides.is_some() { f64::INFINITY } else { 0.0 };

@@ -442,9 +442,11 @@ fn leaning_strip() -> Problem {
         .with("bottom", Condition::contact(|_| 0.0))
 }
 
-/// The solutions that Newton's method finds from starts at random, each once: its displacement, the forces of the floor, and the distance
-/// within which there is no other.
-fn solutions(mu: f64, starts: usize) -> Vec<(Vec<[f64; 2]>, [f64; 2], f64, f64)> {
+/// A displacement, the forces of the floor, how far the solution can be, and the distance within which there is no other.
+type Found = (Vec<[f64; 2]>, [f64; 2], f64, f64);
+
+/// The solutions that Newton's method finds from starts at random, each once.
+fn solutions(mu: f64, starts: usize) -> Vec<Found> {
     let problem = with_coefficient(leaning_strip(), mu);
     let method = Method { gamma0: Gamma0::Local(0.5), ..Method::default() };
     let mut d = discretize(&problem, &method).unwrap();
@@ -454,7 +456,7 @@ fn solutions(mu: f64, starts: usize) -> Vec<(Vec<[f64; 2]>, [f64; 2], f64, f64)>
         d.load[node] = force;
         d.enclosed_load[node] = force.map(PreciseBall::from);
     }
-    let mut found: Vec<(Vec<[f64; 2]>, [f64; 2], f64, f64)> = Vec::new();
+    let mut found: Vec<Found> = Vec::new();
     let mut random = Random(11);
     for k in 0..starts {
         let size = if k == 0 { 0.0 } else { random.decades(-2.0, 0.5) };
