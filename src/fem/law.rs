@@ -293,7 +293,8 @@ pub(super) fn in_double_doubles(
 mod tests {
     use super::*;
 
-    const LAWS: [Law; 3] = [Law::Contact, Law::Sliding, Law::Bonded];
+    const LAWS: [Law; 4] =
+        [Law::Contact, Law::Sliding, Law::Bonded, Law::Friction(Bound::Tresca([0.4, 0.7]))];
     const DEGREES: [Degree; 2] = [Degree::One, Degree::Two];
 
     /// Values at the nodes of a piece, of both signs.

@@ -261,13 +261,10 @@ impl Route for Coulomb<'_, '_, '_> {
         let given = system.course.displacement(system.d).filter(|_| is_first);
         if let Some(given) = given {
             // With the prescribed components as they are.
-            for ((u, held), given) in
-                iterate.u.iter_mut().zip(system.d.constraints.values()).zip(given)
-            {
-                for c in 0..2 {
-                    if held[c].is_none() {
-                        u[c] = given[c].into();
-                    }
+            let free = system.d.constraints.values().iter().map(|held| held.map(|c| c.is_none()));
+            for ((u, free), given) in iterate.u.iter_mut().zip(free).zip(given) {
+                for c in (0..2).filter(|&c| free[c]) {
+                    u[c] = given[c].into();
                 }
             }
             *at = iterate.evaluate(system, precisely);
