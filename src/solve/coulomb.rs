@@ -2,9 +2,10 @@
 //! leads Newton's method. docs/theory.md, 12.5:
 //!
 //! 1. two problems with Tresca's friction, each the minimum of an energy: first without a bound (where friction alone holds the
-//!    body, with one that is never reached), then with mu times the mean pressure of each piece;
+//!    body, with one that is never reached), then with mu times the pressure at the ends of each piece;
 //! 2. Newton's method on F as long as its residual, in the dual norm of A, falls by a tenth in each step;
-//! 3. where it does not, the problem with Tresca's friction for the pressures of the step that was not taken, then 2. again.
+//! 3. where it does not, the problem with Tresca's friction for the pressures of the step that was not taken, then 2. again;
+//! 4. where that leads nowhere, Newton's method from one coefficient to a larger one.
 //!
 //! The tangent of F is S + B^T D B: S is symmetric positive definite, with the springs of what is pressed and of what sticks, and is
 //! factored; D couples the friction of what slides to its pressure. With z = D B d the step is
@@ -40,8 +41,15 @@ const ROUNDING: f64 = 3e-14;
 /// Below this it may be: of 12,000 unknowns the level of rounding is some 1e-13.
 const NEAR_ROUNDING: f64 = 1e-12;
 
-/// No more factorisations than these after the start: of 45 problems none took more than 24.
+/// After so many factorisations beyond the start it is tried by continuation: of 45 problems none took more than 24.
 const MOST_FACTORIZATIONS: usize = 40;
+
+/// The first and the least share of the coefficient by which continuation goes on, the steps that it may take for one, and the residual
+/// beside the size of the solution that is enough before it goes on.
+const FIRST_SHARE: f64 = 0.25;
+const LEAST_SHARE: f64 = 1.0 / 512.0;
+const STEPS_OF_A_SHARE: usize = 12;
+const NEARLY_THERE: f64 = 1e-8;
 
 /// The share of the springs of all pieces that is added to a tangent without a factor.
 const SUPPORT: f64 = 1e-6;
@@ -194,16 +202,17 @@ impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
         Ok(d)
     }
 
-    /// Moves the iterate to the solution with Tresca's friction whose slip bound is mu times the `pressure` of each piece; one that is
-    /// never reached where that is infinite.
+    /// Moves the iterate to the solution with Tresca's friction whose slip bound is mu times the `pressure` at the ends of each piece; one
+    /// that is never reached where that is infinite.
     fn tresca(
         &mut self,
         iterate: &mut Iterate,
         residuals: &mut Vec<f64>,
         until: Until,
-        (pressure, from_here): (&[f64], bool),
+        (pressure, from_here): (&[[f64; 2]], bool),
     ) -> Result<(), SolveError> {
-        let d = self.system.d.with_slip_bounds(|e, mu| (mu * pressure[e]).min(f64::MAX / 1e200));
+        let bound = |e: usize, mu: f64| pressure[e].map(|p| (mu * p).min(f64::MAX / 1e200));
+        let d = self.system.d.with_slip_bounds(bound);
         let here = iterate.rounded();
         let course = Course::default();
         let course = if from_here { course.from_displacement(&here) } else { course };
@@ -222,20 +231,14 @@ impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
         Ok(())
     }
 
-    /// The mean pressure on each piece, times 1 where it has Coulomb's friction.
-    fn pressures(&self, at: &Evaluation) -> Vec<f64> {
-        let d = self.system.d;
-        let mean = |piece: &Piece| {
-            piece.contribution(&d.rule, &at.p[piece.functionals()]).resultant / piece.length
+    /// The pressure at the ends of each piece: with it for a slip bound Tresca's problem is that of Coulomb on all pieces that press all
+    /// along, of linear elements.
+    fn pressures(&self, at: &Evaluation) -> Vec<[f64; 2]> {
+        let at_ends = |piece: &Piece| {
+            let p = &at.p[piece.functionals()];
+            [0, 1].map(|a| p[a].head().max(0.0) / piece.gamma)
         };
-        d.contact.iter().map(mean).collect()
-    }
-
-    fn gives_up(&self, residual: f64) -> Result<(), SolveError> {
-        if self.factorizations < self.at_start + MOST_FACTORIZATIONS {
-            return Ok(());
-        }
-        Err(SolveError::NoFrictionSolution { residual, factorizations: self.factorizations })
+        self.system.d.contact.iter().map(at_ends).collect()
     }
 }
 
@@ -271,7 +274,7 @@ impl Route for Coulomb<'_, '_, '_> {
         } else if is_first {
             let start = if system.d.slides.is_some() { f64::INFINITY } else { 0.0 };
             let pieces = system.d.contact.len();
-            self.tresca(iterate, residuals, until, (&vec![start; pieces], false))?;
+            self.tresca(iterate, residuals, until, (&vec![[start; 2]; pieces], false))?;
             *at = iterate.evaluate(system, precisely);
             let pressures = self.pressures(at);
             // A body that the bounds of this start do not hold is left where friction glued it.
@@ -284,41 +287,89 @@ impl Route for Coulomb<'_, '_, '_> {
         if is_first {
             self.at_start = self.factorizations;
         }
+        let mut way = Way { is_first, precisely, ..Way::default() };
+        let mut is_continued = false;
+        while let Some(next) = self.newton(iterate, at, residuals, until, &mut way)? {
+            if self.factorizations < self.at_start + MOST_FACTORIZATIONS {
+                let pressures = self.pressures(&next);
+                self.tresca(iterate, residuals, until, (&pressures, true))?;
+            } else if !std::mem::replace(&mut is_continued, true) {
+                self.continued(iterate, until)?;
+            } else {
+                return Err(SolveError::NoFrictionSolution {
+                    residual: way.least / self.reference,
+                    factorizations: self.factorizations,
+                });
+            }
+            *at = iterate.evaluate(system, precisely);
+        }
+        Ok(Pass {
+            energy: if way.taken > 0 { way.moved } else { way.size * way.size },
+            left: 0.0,
+            softness: way.softness,
+        })
+    }
+}
+
+/// How Newton's method goes.
+#[derive(Default)]
+struct Way {
+    /// It comes from afar.
+    is_first: bool,
+    precisely: bool,
+    /// The steps that are taken, their largest change of the residual, and the softest of them.
+    taken: usize,
+    moved: f64,
+    softness: f64,
+    /// The dual norm of the residual where it ends, and the least norm of one.
+    size: f64,
+    least: f64,
+}
+
+impl<'d, 'p> Coulomb<'_, 'd, 'p> {
+    /// Takes Newton's steps for F as long as they lead on; returns the evaluation at the end of one that does not.
+    fn newton(
+        &mut self,
+        iterate: &mut Iterate,
+        at: &mut Evaluation,
+        residuals: &mut Vec<f64>,
+        until: Until,
+        way: &mut Way,
+    ) -> Result<Option<Evaluation>, SolveError> {
+        let system = self.system;
         let (mut r, mut terms) = self.residual(at);
-        let mut size = self.dual(&r)?;
-        let (mut largest_square, mut moved, mut halved) = (0.0_f64, 0.0_f64, true);
-        residuals.push(norm(&r) / self.reference);
-        let mut taken = 0;
+        way.size = self.dual(&r)?;
+        let first = norm(&r);
+        way.least = if way.least > 0.0 { way.least.min(first) } else { first };
+        residuals.push(first / self.reference);
+        let mut halved = true;
         loop {
             let scale = system.size(at.energy.sqrt(), &iterate.rounded());
-            let is_rounding = size <= ROUNDING * scale;
-            if is_rounding && (is_first || taken > 0) {
-                break;
+            let is_rounding = way.size <= ROUNDING * scale;
+            if (is_rounding && (way.is_first || way.taken > 0)) || residuals.len() > until.steps {
+                return Ok(None);
             }
-            if residuals.len() > until.steps {
-                break;
-            }
-            self.gives_up(norm(&r) / self.reference)?;
             let d = self.step(&r, &terms)?;
-            let is_near = size <= NEAR_ROUNDING * scale || !is_first;
+            let is_near = way.size <= NEAR_ROUNDING * scale || !way.is_first;
             let mut rejected = None;
             for t in SHARES_OF_A_STEP {
                 let mut trial = Iterate { u: iterate.u.clone() };
                 trial.add(system, t, &d);
-                let next = trial.evaluate(system, precisely);
+                let next = trial.evaluate(system, way.precisely);
                 let (next_r, next_terms) = self.residual(&next);
                 let next_size = self.dual(&next_r)?;
-                let falls = next_size <= (1.0 - (1.0 - FALLS) * t) * size;
-                if falls || (is_near && next_size <= size) {
+                let falls = next_size <= (1.0 - (1.0 - FALLS) * t) * way.size;
+                if falls || (is_near && next_size <= way.size) {
                     let square = d.iter().map(|d| d * d).sum::<f64>();
-                    halved = next_size <= size / 2.0;
-                    moved = moved.max(size * size);
-                    largest_square = largest_square.max(square / (size * size));
+                    halved = next_size <= way.size / 2.0;
+                    way.moved = way.moved.max(way.size * way.size);
+                    way.softness = way.softness.max(square / (way.size * way.size));
                     *iterate = trial;
                     *at = next;
-                    (r, terms, size) = (next_r, next_terms, next_size);
+                    (r, terms, way.size) = (next_r, next_terms, next_size);
+                    way.least = way.least.min(norm(&r));
                     residuals.push(norm(&r) / self.reference);
-                    taken += 1;
+                    way.taken += 1;
                     rejected = None;
                     break;
                 }
@@ -327,27 +378,43 @@ impl Route for Coulomb<'_, '_, '_> {
                     break;
                 }
             }
-            let Some(next) = rejected else {
-                if is_near && !halved {
-                    break;
-                }
-                continue;
-            };
-            if is_near {
-                break;
+            match rejected {
+                None if is_near && !halved => return Ok(None),
+                None => {}
+                Some(_) if is_near => return Ok(None),
+                rejected => return Ok(rejected),
             }
-            let pressures = self.pressures(&next);
-            self.tresca(iterate, residuals, until, (&pressures, true))?;
-            *at = iterate.evaluate(system, precisely);
-            (r, terms) = self.residual(at);
-            size = self.dual(&r)?;
-            residuals.push(norm(&r) / self.reference);
         }
-        Ok(Pass {
-            energy: if taken > 0 { moved } else { size * size },
-            left: 0.0,
-            softness: largest_square,
-        })
+    }
+
+    /// Moves the iterate to a solution by continuation: from the coefficient 0, or from glue where friction alone holds the body, to the
+    /// one that is meant.
+    fn continued(&mut self, iterate: &mut Iterate, until: Until) -> Result<(), SolveError> {
+        let glued = self.system.d.slides.is_some();
+        let pieces = self.system.d.contact.len();
+        let start = if glued { f64::INFINITY } else { 0.0 };
+        self.tresca(iterate, &mut Vec::new(), until, (&vec![[start; 2]; pieces], false))?;
+        let (mut done, mut by) = (0.0, FIRST_SHARE);
+        while done < 1.0 && by >= LEAST_SHARE {
+            let next = f64::min(done + by, 1.0);
+            let d = self.system.d.with_coefficients(if glued { 1.0 / next } else { next });
+            let system = self.system.with_other_laws(&d, Course::default());
+            let mut other =
+                Coulomb { metric: self.metric.clone(), ..Coulomb::new(&system, self.reference) };
+            let mut trial = Iterate { u: iterate.u.clone() };
+            let mut at = trial.evaluate(&system, false);
+            let mut way = Way { is_first: true, ..Way::default() };
+            let few = Until { steps: STEPS_OF_A_SHARE, ..until };
+            let left = other.newton(&mut trial, &mut at, &mut Vec::new(), few, &mut way)?;
+            self.factorizations += other.factorizations;
+            let scale = system.size(at.energy.sqrt(), &trial.rounded());
+            if left.is_none() && way.size <= NEARLY_THERE * scale {
+                (*iterate, done, by) = (trial, next, 1.5 * by);
+            } else {
+                by /= 2.0;
+            }
+        }
+        Ok(())
     }
 }
 
