@@ -199,3 +199,101 @@ fn friction_without_contact_between_bodies_is_refused() {
             .contains("the coefficient of friction is NaN")
     );
 }
+
+/// Two equal cylinders of radius 1 that touch in the origin, pressed together and dragged; cells are finest there.
+fn cylinders(cells: [usize; 2], drag: f64, mu: f64) -> Problem {
+    let grow = |t: f64| (2.8 * t).sinh() / 2.8_f64.sinh();
+    let place = move |s: f64, depth: f64| {
+        let (angle, r) = (0.4 * grow(2.0 * s - 1.0), 1.0 - 0.6 * grow(depth));
+        [r * angle.sin(), r * angle.cos() - 1.0]
+    };
+    let lower = move |[s, t]: [f64; 2]| place(s, 1.0 - t);
+    let upper = move |[s, t]: [f64; 2]| {
+        let [x, y] = place(s, t);
+        [x, -y]
+    };
+    let block = |name, n, map| Block { name, cells: [n, n / 2], material: young(1.0, 0.3), map };
+    let pair = Pair::new("lower.top", "upper.bottom").with_friction(Friction::Coulomb(mu));
+    bodies(&[block("lower", cells[0], &lower), block("upper", cells[1], &upper)], &[pair])
+        .with("lower.bottom", Condition::clamped())
+        .with("upper.top", Condition::displacement(move |_| drag, |_| -0.0085))
+}
+
+#[test]
+fn dragged_cylinders_stick_and_slide_as_cattaneo_and_mindlin_say() {
+    let mu = 0.3;
+    for (degree, cells, most) in [(Degree::One, [64, 48], 2e-2), (Degree::Two, [32, 24], 2e-2)] {
+        let problem = cylinders(cells, 0.0016, mu);
+        let s = proved(&problem, &method(degree));
+        let [shear, force] = s.boundaries[0].resultant.map(f64::abs);
+        let share = shear / (mu * force);
+        assert!((0.3..0.8).contains(&share), "{share}");
+        let modulus = 1.0 / (2.0 * (1.0 - 0.09));
+        let a = (4.0 * force * 0.5 / (std::f64::consts::PI * modulus)).sqrt();
+        let c = a * (1.0 - share).sqrt();
+        let friction = s.boundaries[0].friction.unwrap();
+        // int q x^2 = mu p0 (pi / 8) (a^3 - c^4 / a), p0 = 2 force / (pi a).
+        let expected = mu * force / (4.0 * a) * (a.powi(3) - c.powi(4) / a);
+        let d = discretize(&problem, &method(degree)).unwrap();
+        let of_piece = |piece: &Piece| -> f64 {
+            let p = piece.p(&s.displacement);
+            let force = piece.contribution(&d.rule, &p).force;
+            let place = |i: usize| piece.geometry.stretches[0].place(d.space.mesh(), i)[0];
+            piece.across(&force).iter().enumerate().map(|(i, f)| f * place(i).powi(2)).sum()
+        };
+        let second = d.contact.iter().map(of_piece).sum::<f64>().abs();
+        let off = [friction.sticks / 2.0 / c - 1.0, second / expected - 1.0];
+        println!(
+            "{degree:?}: a {a:.4}, Q/(mu P) {share:.4}, c/a {:.4} for {:.4}, second moment off by {:.1e}, {} factorisations",
+            friction.sticks / 2.0 / a,
+            c / a,
+            off[1],
+            s.newton.factorizations
+        );
+        assert!(off.iter().all(|off| off.abs() <= most), "{degree:?}: {off:?}");
+        // The control: as if all of it slid.
+        assert!((second / (mu * force * a * a / 4.0) - 1.0).abs() > 0.1);
+    }
+}
+
+#[test]
+fn below_a_coefficient_there_is_one_solution_for_all_loads() {
+    // An independent program (numpy, eigenvalues in doubles) printed these for kappa = 1/2.
+    for (cells, ratio, expected) in
+        [([7, 11], 1.0, [0.124, 0.154]), ([7, 11], 10.0, [0.136, 0.045])]
+    {
+        let problem = |mu: f64| dragged(cells, ratio, &Friction::Coulomb(mu), false);
+        let isolation = |mu: f64| {
+            let s = proved(&problem(mu), &method(Degree::One));
+            s.enclosure.as_ref().unwrap().isolation.unwrap()
+        };
+        let limits = isolation(0.02).limits;
+        println!("E2/E1 = {ratio}: {limits:?}");
+        for (found, expected) in limits.iter().zip(expected) {
+            assert!((found / expected - 1.0).abs() < 0.03, "{limits:?} {expected}");
+        }
+        let most = limits[0].max(limits[1]);
+        assert!(isolation(0.99 * most).everywhere && !isolation(1.02 * most).everywhere);
+    }
+}
+
+#[test]
+fn near_a_solution_there_is_one_for_small_and_large_coefficients_after_few_factorisations() {
+    let mut most = 0;
+    for mu in [0.1, 0.3, 0.6, 1.0] {
+        for (cells, ratio) in [([7, 11], 1.0), ([14, 22], 10.0), ([28, 44], 1.0)] {
+            let problem = dragged(cells, ratio, &Friction::Coulomb(mu), false);
+            let s = proved(&problem, &method(Degree::One));
+            let enclosure = s.enclosure.as_ref().unwrap();
+            let isolation = enclosure.isolation.unwrap();
+            let [radius, within] = [enclosure.relative, isolation.relative].map(Option::unwrap);
+            println!(
+                "mu {mu}, {cells:?}, E2/E1 {ratio}: within {radius:.1e}, only one within {within:.1e}, {} factorisations",
+                s.newton.factorizations
+            );
+            assert!(radius <= 1e-11 && within >= 1e-8, "{radius:e} {within:e}");
+            most = most.max(s.newton.factorizations);
+        }
+    }
+    assert!(most <= 30, "{most}");
+}
