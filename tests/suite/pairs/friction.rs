@@ -190,9 +190,13 @@ fn friction_without_contact_between_bodies_is_refused() {
         message(pair().with_law(Law::Bonded).with_friction(Friction::Coulomb(0.1))),
         "the pair of 'lower.top' and 'upper.bottom' has friction and no contact; expected a boundary with contact, or no friction"
     );
-    assert_eq!(
-        message(pair().with_friction(Friction::tresca(|_| -1.0))),
-        "the slip bound of the pair of 'lower.top' and 'upper.bottom' is -1 at (0, 1); expected a stress that is not negative at every point of the boundary"
+    let negative = message(pair().with_friction(Friction::tresca(|_| -1.0)));
+    assert!(
+        negative
+            .starts_with("the slip bound of the pair of 'lower.top' and 'upper.bottom' is -1 at (")
+            && negative
+                .ends_with("expected a stress that is not negative at every point of the boundary"),
+        "{negative}"
     );
     assert!(
         message(pair().with_friction(Friction::Coulomb(f64::NAN)))
