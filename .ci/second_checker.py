@@ -116,9 +116,13 @@ def tampered(folder, out, change):
     """Writes a certificate with a change and a hash that fits; whether there is anything to change."""
     header = json.loads((folder / "certificate.json").read_text())
     words = np.frombuffer((folder / "certificate.bin").read_bytes(), "<u8").copy()
+    before = json.dumps(header), words.tobytes()
     try:
         change(header, lambda name: array(header, words, name))
     except (IndexError, KeyError, StopIteration):
+        return False
+    # Twice the stiffness of a triangle that has a tensor, or three times a force that is 0, is no change.
+    if before == (json.dumps(header), words.tobytes()):
         return False
     header["hash"] = check_bound.hash_of(words.tobytes())
     out.mkdir(parents=True, exist_ok=True)

@@ -107,7 +107,7 @@ PARTS = {  # name: (what is in it, material, the rest)
     "lug": ("two materials, contact with a floor, a wall and a pin in a bore, pressure on a fillet",
             'plane = "strain"\n\n[material.rubber]\nyoung = 20\npoisson = 0.45\n\n[material.steel]\nyoung = 210000\npoisson = 0.3',
             '[load.steel]\nbody = [0, -0.05]\n\n[obstacle.floor]\nplane = { point = [0, 0.01], normal = [0, 1] }\n\n'
-            '[obstacle.wall]\nplane = { point = [0, 0], normal = [2, 0] }\n\n'
+            '[obstacle.wall]\nplane = { point = [-0.005, 0], normal = [2, 0] }\n\n'
             '[obstacle.pin]\ncircle = { center = [8, 30.005], radius = 3.99, side = "outside" }\n\n[boundary.base]\n'
             'contact = { obstacle = "floor" }\n\n[boundary.back]\ncontact = { obstacle = "wall" }\n\n[boundary.bore]\n'
             'contact = { obstacle = "pin" }\n\n[boundary.fillet]\npressure = 3\n\n[boundary.right]\ntraction = [-2, 0]\n\n'
@@ -149,8 +149,30 @@ def tensors():
                 yield f"{name}-p{degree}-{quadrature}", text + probes(rectangle(*shape).points)
 
 
+REVOLUTIONS = {  # name: (what is in it, mesh, its points, material, the rest)
+    "plug": ("a solid cylinder with pressure on its side is pushed on a ball, a load in it", rectangle_line(1.0, 1.0, 6, 6, "crossed"),
+             lambda: rectangle(1.0, 1.0, 6, 6, "crossed").points, "lambda = 1.5\nmu = 1.0",
+             '[load]\nbody = ["0.02*x", "-0.05"]\n\n[obstacle.ball]\ncircle = { center = [0, -2.01], radius = 2, side = "outside" }\n\n'
+             '[boundary.top]\ndisplacement = ["free", "-0.05 - 0.02*x"]\ntraction = ["0.01*x", 0]\n\n[boundary.right]\n'
+             'pressure = "0.02*(1 + y)"\n\n[boundary.bottom]\ncontact = { obstacle = "ball" }'),
+    "collar": ("a hub is pushed on a cone", 'gmsh = "../../cases/hub.msh"', lambda: gmsh.read(FOLDER.parents[1] / "cases" / "hub.msh").points,
+               "young = 210000\npoisson = 0.3",
+               '[obstacle.cone]\nplane = { point = [20.02, 0], normal = [1, 0.05] }\n\n[boundary.back]\ndisplacement = ["free", -0.05]\n\n'
+               '[boundary.bore]\ncontact = { obstacle = "cone" }'),
+}
+
+
+def revolutions():
+    for name, (what, mesh, points, material, middle) in REVOLUTIONS.items():
+        for degree in (1, 2):
+            for quadrature in QUADRATURES:
+                text = case(f"A body of revolution: {what}, P{degree}, {quadrature}", mesh, f'{material}\nplane = "axisymmetric"', middle, degree,
+                            '"auto"', quadrature)
+                yield f"{name}-p{degree}-{quadrature}", text + probes(points())
+
+
 def main():
-    for name, text in (*examples(), *exact_solutions(), *patches(), *parts(), *tensors()):
+    for name, text in (*examples(), *exact_solutions(), *patches(), *parts(), *tensors(), *revolutions()):
         (FOLDER / f"{name}.toml").write_text(text)
 
 

@@ -18,7 +18,7 @@ use signorini::io::Case;
 use signorini::kernel::{Material, Plane};
 use signorini::solve::factor::Factor;
 use signorini::solve::ordering::nested_dissection;
-use signorini::solve::{Degree, Gamma0, Method, discretize};
+use signorini::solve::{Degree, Gamma0, Method, discretize_any};
 
 use crate::claim::text;
 use crate::problems::{self, cells, floor, held, mapped, unloaded};
@@ -236,7 +236,7 @@ pub fn at_kappa(problem: &Problem, degree: Degree, kappa: f64) -> Result<Method>
 /// A problem that is none.
 pub fn limits(problem: &Problem, degree: Degree, size: Size) -> Result<Limits> {
     let method = Method { degree, ..Method::default() };
-    let d = discretize(problem, &method).map_err(text)?;
+    let d = discretize_any(problem, &method).map_err(text)?;
     let order = Order::new(&d);
     let k = matrix::assemble_stiffness(&d, &order.numbering, &order.neighbours).map_err(text)?;
     let mu = largest(&k, &order.stress_rows(&d, size))?;
@@ -248,7 +248,7 @@ pub fn limits(problem: &Problem, degree: Degree, size: Size) -> Result<Limits> {
 /// # Errors
 /// A problem that is none, and A that is not positive definite.
 pub fn smallest_eigenvalue(problem: &Problem, degree: Degree, kappa: f64) -> Result<f64> {
-    let d = discretize(problem, &at_kappa(problem, degree, kappa)?).map_err(text)?;
+    let d = discretize_any(problem, &at_kappa(problem, degree, kappa)?).map_err(text)?;
     let order = Order::new(&d);
     let a = matrix::assemble(&d, &order.numbering, &order.neighbours).map_err(text)?;
     let mu = largest(&a, &order.stress_rows(&d, DIAMETER))?;

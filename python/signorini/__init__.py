@@ -24,7 +24,7 @@ import operator
 import os
 import warnings
 from dataclasses import dataclass
-from typing import Any, Callable, List, Mapping, NamedTuple, Optional, Union
+from typing import Any, Callable, List, Mapping, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -49,7 +49,9 @@ class Contact:
     arc: Floats
     """Arc length from the start of the boundary."""
     node: Integers
-    """The number of the node."""
+    """The number of the node; -1 between two bodies, where the nodes of one face the edges of the other."""
+    place: Floats
+    """(points, 2): the place in the undeformed body."""
     u_n: Floats
     """u.n, n the outward normal."""
     gap: Floats
@@ -156,6 +158,7 @@ def solve(
     *,
     certificate: bool = False,
     title: str = "Contact problem",
+    pairs: Sequence[Mapping[str, Any]] = (),
     **tables: Any,
 ) -> Solution:
     """Solve a contact problem on a mesh: points (n, 2), triangles (m, 3), counter-clockwise, and for each named boundary its
@@ -165,8 +168,11 @@ def solve(
 
     The tables are those of a case file: material, boundary, load, method, solver, output, ... A number may stand where the
     file has an expression, and a function of x and y (two floats): {"gap": lambda x, y: 0.1 * x**2}. A gap may also be an array with a
-    value for each point of the mesh, linear between them; those off the boundary do not matter.
+    value for each point of the mesh, linear between them; those off the boundary do not matter. `pairs` are the tables [[pair]], of boundaries that touch each other:
+    [{"boundaries": ["pin", "hole"]}].
     """
+    if pairs:
+        tables["pair"] = list(pairs)
     remarks: List[str] = []
     origin = None
     if triangles is None and boundaries is None and hasattr(points, "cells"):
@@ -419,6 +425,7 @@ def _solution(solved: _signorini.Solved) -> Solution:
         contact=Contact(
             arc=floats(raw["arc"], -1),
             node=integers(raw["node"], -1),
+            place=floats(raw["place"], -1, 2),
             u_n=floats(raw["u_n"], -1),
             gap=floats(raw["gap"], -1),
             sigma_n=floats(raw["sigma_n"], -1),

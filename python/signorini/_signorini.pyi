@@ -17,6 +17,7 @@ class Raw(TypedDict):
     von_mises: bytes
     arc: bytes
     node: bytes
+    place: bytes
     u_n: bytes
     gap: bytes
     sigma_n: bytes

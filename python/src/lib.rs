@@ -22,6 +22,7 @@ use signorini::io::summary;
 use signorini::io::{Failure, run};
 use signorini::kernel::Stress;
 use signorini::solve::Solution;
+use signorini::solve::solution::ContactPoint;
 
 create_exception!(signorini, CaseError, PyValueError, "The case is wrong.");
 create_exception!(
@@ -365,16 +366,20 @@ fn raw<'py>(py: Python<'py>, s: &Solution, results: &str) -> PyResult<Bound<'py,
     };
     floats("stress", &mut s.stress.iter().flat_map(stress))?;
     floats("von_mises", &mut s.von_mises.iter().copied())?;
-    let points = || s.contact.iter().flat_map(|edge| &edge.points);
+    let edges = s.contact_points();
+    let points = || edges.iter().flatten();
     floats("arc", &mut points().map(|p| p.arc))?;
-    integers("node", &mut points().map(|p| p.node))?;
+    // Where a pair of bodies touches is no node.
+    let node = |p: &ContactPoint| p.node.map_or(-1, |node| node as i64);
+    let nodes: Vec<u8> = points().flat_map(|p| node(p).to_ne_bytes()).collect();
+    dict.set_item("node", PyBytes::new(py, &nodes))?;
+    floats("place", &mut points().flat_map(|p| p.place))?;
     floats("u_n", &mut points().map(|p| p.u_n))?;
     floats("gap", &mut points().map(|p| p.gap))?;
     floats("sigma_n", &mut points().map(|p| p.sigma_n))?;
     floats("lambda_h", &mut points().map(|p| p.lambda))?;
     floats("pressure", &mut points().map(|p| p.pressure))?;
-    let names = s.contact.iter().flat_map(|edge| edge.points.iter().map(|_| &*edge.boundary));
-    dict.set_item("boundary", names.collect::<Vec<&str>>())?;
+    dict.set_item("boundary", points().map(|p| p.boundary).collect::<Vec<&str>>())?;
     dict.set_item("results", results)?;
     Ok(dict)
 }

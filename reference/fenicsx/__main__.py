@@ -68,7 +68,7 @@ def summary(content, history, ranks, iterative):
         f"Newton: {history.outcome} after {history.iterations} iterations, relative residual "
         f"{history.residuals[-1] / (history.reference or 1):.1e}{inner}",
         f"contact force {q['contact_force']:.10g}, length {q['contact_length']:.10g}, peak pressure {q['peak_pressure']:.10g}",
-        f"energy {q['energy']:.12g}, work {q['work']:.12g}, largest displacement {q['max_displacement']:.10g}",
+        f"energy {q['a_uu']:.12g}, work {q['work']:.12g}, largest displacement {q['max_displacement']:.10g}",
     ))
 
 

@@ -45,7 +45,7 @@ class Gmsh:
 
 @dataclass
 class Material:
-    """The three-dimensional Lame constants, and what plane strain or plane stress makes of them."""
+    """The three-dimensional Lame constants, and what plane strain, plane stress or a body of revolution makes of them."""
 
     lam: float
     mu: float
@@ -53,8 +53,8 @@ class Material:
 
     @property
     def plane_lam(self):
-        """lambda in plane strain; lambda* = 2 lambda mu / (lambda + 2 mu) in plane stress."""
-        return self.lam if self.plane == "strain" else 2 * self.lam * self.mu / (self.lam + 2 * self.mu)
+        """lambda in plane strain and in a body of revolution; lambda* = 2 lambda mu / (lambda + 2 mu) in plane stress."""
+        return self.lam if self.plane != "stress" else 2 * self.lam * self.mu / (self.lam + 2 * self.mu)
 
     @property
     def in_plane(self):
@@ -128,6 +128,11 @@ class Case:
     def material(self):
         """The first material; all have the same `plane`."""
         return next(iter(self.materials.values()))
+
+    @property
+    def of_revolution(self):
+        """x is the distance from the axis x = 0, y the place along it."""
+        return self.material.plane == "axisymmetric"
 
     @property
     def is_isotropic(self):
@@ -298,6 +303,10 @@ def read_case(path):
     )
     for table in (load, method, solver, output, units, body, root):
         table.finish()
+    if case.of_revolution and solution:
+        root.fail("exact", content["exact"], "no [exact] for a body of revolution: the solutions are plane")
+    if case.of_revolution and body.has("thickness"):
+        body.fail("thickness", case.thickness, "none for a body of revolution")
     return case
 
 
@@ -328,10 +337,7 @@ def _mesh(table, path):
 
 
 def _plane(table, default):
-    plane = table.choice("plane", ("strain", "stress", "axisymmetric"), default)
-    if plane == "axisymmetric":
-        table.refuse("plane", plane, "a plane body: the reference has no bodies of revolution")
-    return plane
+    return table.choice("plane", ("strain", "stress", "axisymmetric"), default)
 
 
 def _materials(table, plane):
@@ -342,7 +348,7 @@ def _materials(table, plane):
     plane = _plane(table, plane)
     materials = {name: _material(table.table(name), plane) for name in named}
     if len({material.plane for material in materials.values()}) > 1:
-        table.refuse("", "plane strain beside plane stress", "the same for the whole body")
+        table.refuse("plane", "several", "the same for the whole body")
     table.finish()
     return materials
 
@@ -363,6 +369,8 @@ def _material(table, plane):
         young = table.number("young", "a positive number", lambda e: e > 0)
         poisson = table.number("poisson", "a number above -1 and below 0.5", lambda nu: -1 < nu < 0.5)
         material = Material(young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson)), plane)
+    elif plane == "axisymmetric":
+        table.refuse("", "a body of revolution that is not isotropic", "lambda and mu, or young and poisson: this engine has no other")
     elif stiffness:
         entries = table.numbers("stiffness", 6, "C11, C12, C16, C22, C26, C66")
         across = table.numbers("across", 3, "a list of three numbers, in plane strain") if plane == "strain" else None

@@ -34,6 +34,36 @@ def _largest(law, n):
     return np.linalg.eigvalsh([[xx, xy], [xy, yy]])[-1]
 
 
+def edge_mass(weights):
+    """int_0^1 w a b for affine a and b in terms of their values at 0 and 1, a matrix for each row of weights."""
+    return np.einsum("kij,ek->eij", np.array([[[3, 1], [1, 1]], [[1, 1], [1, 3]]]) / 12, weights)
+
+
+def trace_constants(p, weights, opposite):
+    """The sharp c of (1/|E|) int_E w a^2 <= (c/|T|) int_T w a^2 for a of degree p - 1: 1 and 3 where w is constant."""
+    if p == 1:
+        return weights.mean(axis=1) / ((weights.sum(axis=1) + opposite) / 3)
+    on_triangle = [[[6, 2, 2], [2, 2, 1], [2, 1, 2]], [[2, 2, 1], [2, 6, 2], [1, 2, 2]], [[2, 1, 2], [1, 2, 2], [2, 2, 6]]]
+    m = np.einsum("kij,ek->eij", np.array(on_triangle) / 60, np.column_stack((weights, opposite)))
+    # The least int_T with given values at the ends of E.
+    inner = m[:, :2, :2] - m[:, :2, 2:] * m[:, 2:, :2] / m[:, 2:, 2:]
+    return np.max(np.linalg.eigvals(np.linalg.solve(inner, edge_mass(weights))).real, axis=1)
+
+
+def hoop_strains(p, radii, at):
+    """theta(phi e_r) at the places `at` (triangles, points, 2) of the reference triangle, (triangles, points, functions): the polynomial of degree
+    p - 1 on each triangle with int r theta q = int phi q for all q of that degree, by a rule that is exact."""
+    t, w = gauss(3)  # squeezed into a corner it is exact up to degree 4
+    x = np.array([[a, b * (1 - a)] for a in t for b in t])
+    weights = np.array([u * v * (1 - a) for a, u in zip(t, w) for v in w])
+    functions = lambda places: np.stack([np.ones(places.shape[:-1]), *np.moveaxis(places, -1, 0)][: 1 if p == 1 else 3], axis=-1)
+    r = radii[:, :1] + (radii[:, 1:] - radii[:, :1]) @ x.T
+    q = functions(x)
+    mass = np.einsum("q,eq,qa,qb->eab", weights, r, q, q)
+    means = np.einsum("q,qa,qi->ai", weights, q, compat.basis(p, x)[0])
+    return functions(at) @ np.linalg.solve(mass, np.tile(means, (len(radii), 1, 1)))
+
+
 def coefficients(nodal):
     """(c0, c1[, c2]) of c0 + c1 s + c2 s^2 with the given values at s = 0, (1/2,) 1; one row per edge."""
     if nodal.shape[1] == 2:
@@ -85,6 +115,10 @@ class ContactEdges:
         self.h_T = np.max(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2), axis=1)
         self.J = np.stack((corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=2)  # d x / d (reference)
         self.area = np.abs(np.linalg.det(self.J)) / 2
+        # The weight of all integrals: r in a body of revolution, affine along an edge.
+        weighted = problem.case.of_revolution
+        self.weights = self.ends[:, :, 0] if weighted else np.ones((count, 2))
+        self.opposite = corners[:, :, 0].sum(axis=1) - self.weights.sum(axis=1) if weighted else np.ones(count)
 
     def _operators(self, problem, local):
         """`V_n`, `S_n` (edges, p + 1, dofs of T): n~ . v and s(v) at the edge's Lagrange points; `B` = V_n - gamma S_n; the gap."""
@@ -99,6 +133,8 @@ class ContactEdges:
         gradients = (np.array([table[1] for table in tables])[local] @ np.linalg.inv(self.J)[:, None])[:, ends]
         n, d = self.n[:, None, None, :], self.directions[:, ends, None, :]
         S = self._stresses(problem, gradients, n, d)
+        if problem.case.of_revolution:
+            S = S + self._hoop_stresses(problem, self.REFERENCE_ENDS[local])[..., None] * np.sum(n * d, axis=3)[..., None] * [1.0, 0.0]
         S_n = np.einsum("pa,eaik->epik", edge_basis(1, s), S)
         V_n = values[..., None] * self.directions[:, :, None, :]
         functions = values.shape[2]
@@ -127,6 +163,14 @@ class ContactEdges:
         x, y = gradients[..., 0], gradients[..., 1]
         return np.stack((xx * x + xy * y, xy * x + yy * y), axis=3)
 
+    REFERENCE_ENDS = np.array([[REFERENCE[i], REFERENCE[j]] for i, j in FACET_VERTICES])
+
+    def _hoop_stresses(self, problem, at):
+        """lambda theta(phi e_r) at the places `at` (edges, 2, 2) of the reference triangle, theta being the projection of phi / r."""
+        lam, _ = problem.lame(self.cells)
+        values = hoop_strains(problem.case.degree, self.corners[:, :, 0], at)
+        return lam.reshape(-1, 1, 1) * values
+
     def P(self, u):
         """P(u) at the Lagrange points of each edge; u holds all dofs that this process sees."""
         return self.P0(u) - self.gap
@@ -137,10 +181,9 @@ class ContactEdges:
     # - int gamma s(u) s(.), which UFL integrates where the line of contact is the paper's.
 
     def stress_blocks(self):
-        """One block per edge; s is affine: int_0^1 a b = (2 a0 b0 + a0 b1 + a1 b0 + 2 a1 b1) / 6."""
-        mass = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6
+        """One block per edge; s and the weight are affine."""
         ends = self.S_n[:, [0, -1]]
-        return -np.einsum("e,eid,ij,ejc->edc", self.gamma * self.length, ends, mass, ends)
+        return -np.einsum("e,eid,eij,ejc->edc", self.gamma * self.length, ends, edge_mass(self.weights), ends)
 
     def stress_functional(self, u):
         total = np.zeros_like(u)
@@ -148,7 +191,7 @@ class ContactEdges:
         return total
 
     def rule(self, *polynomials):
-        """Points s and weights (their lengths included) for integrals of positive parts of the polynomials (nodal values), in one table
+        """Points s and weights (lengths, without the weight r) for integrals of positive parts of the polynomials (nodal values), in one table
         per edge; and per polynomial, where it counts as positive."""
         if self.gauss:
             s, w = gauss(self.gauss)
@@ -164,6 +207,9 @@ class ContactEdges:
             signs = [np.repeat(self.at(nodal, middles), len(t), axis=1) for nodal in polynomials]
         return s, w * self.length[:, None], [sign > 0 for sign in signs]
 
+    def weight(self, s):
+        return np.einsum("eqi,ei->eq", edge_basis(1, s), self.weights)
+
     def at(self, nodal, s):
         return np.einsum("eqi,ei->eq", edge_basis(self.p, s), nodal)
 
@@ -172,7 +218,7 @@ class ContactEdges:
         P = self.P(u)
         s, w, (active,) = self.rule(P)
         pressure = np.where(active, self.at(P, s), 0) / self.gamma[:, None]
-        loads = np.einsum("eq,eq,eqi,eid->ed", w, pressure, edge_basis(self.p, s), self.B)
+        loads = np.einsum("eq,eq,eqi,eid->ed", w * self.weight(s), pressure, edge_basis(self.p, s), self.B)
         total = np.zeros_like(u)
         np.add.at(total, self.dofs, loads)
         return total
@@ -182,7 +228,7 @@ class ContactEdges:
         P = self.P(u)
         s, w, (active,) = self.rule(np.ones_like(P) if everywhere else P)
         N = edge_basis(self.p, s)
-        mass = np.einsum("eq,eqi,eqj->eij", w * active / self.gamma[:, None], N, N)
+        mass = np.einsum("eq,eqi,eqj->eij", w * self.weight(s) * active / self.gamma[:, None], N, N)
         return zip(self.dofs, np.einsum("eid,eij,ejc->edc", self.B, mass, self.B))
 
     def energy_change(self, u, d, t):
@@ -193,7 +239,7 @@ class ContactEdges:
         b, a = np.where(was, self.at(before, s), 0), np.where(is_, self.at(after, s), 0)
         both = was & is_
         difference = np.where(both, t * self.at(D, s), a - b)
-        return self.comm.allreduce(float(np.sum(w / (2 * self.gamma[:, None]) * difference * (a + b))))
+        return self.comm.allreduce(float(np.sum(w * self.weight(s) / (2 * self.gamma[:, None]) * difference * (a + b))))
 
     # What is reported.
 
@@ -208,10 +254,10 @@ class ContactEdges:
                 "contact_length": float(sums[3]), "peak_pressure": peak}
 
     def _forces(self, P):
-        """(int (1/gamma) [P]+ N_i at each Lagrange point i of each edge, weights, where they count)."""
+        """(int (1/gamma) [P]+ N_i at each Lagrange point i of each edge, lengths, where they count)."""
         s, w, (active,) = self.rule(P)
         pressure = np.where(active, self.at(P, s), 0) / self.gamma[:, None]
-        return np.einsum("eq,eqi->ei", w * pressure, edge_basis(self.p, s)), w, active
+        return np.einsum("eq,eqi->ei", w * self.weight(s) * pressure, edge_basis(self.p, s)), w, active
 
     def boundaries(self, u):
         """For each contact boundary the force, resultant, moment about the origin and length of contact, and the largest recovered
@@ -228,9 +274,11 @@ class ContactEdges:
         is_end = (at == 0) | (at == 1)
         curved = np.array([self.problem.smooth.oriented(*ends) in self.problem.smooth.ends for ends in self.vertices], bool)[:, None]
         slope = np.where(curved, 1, self.p)[..., None]
-        hats = np.maximum(0, 1 - slope * np.abs(s[..., None] - at)) * (is_end | ~curved)[:, None]
-        work = np.einsum("eq,eqi->ei", fine * pressure, hats)
-        weight = self.length[:, None] * np.where(curved, np.where(is_end, 0.5, 0), np.where(is_end, 0.5, 1) / self.p)
+        hats = lambda s: np.maximum(0, 1 - slope * np.abs(s[..., None] - at)) * (is_end | ~curved)[:, None]
+        work = np.einsum("eq,eqi->ei", fine * self.weight(s) * pressure, hats(s))
+        t, half = gauss(2)  # exact on half edges for a hat times the weight
+        s = np.tile(np.hstack((t, t + 1)) / 2, (len(P), 1))
+        weight = np.einsum("e,q,eq,eqi->ei", self.length, np.hstack((half, half)) / 2, self.weight(s), hats(s))
         parts = zip(self.names, self.vertices, forces.sum(axis=1), vectors.sum(axis=1), moments, np.sum(w * active, axis=1), work, weight,
                     self.directions)
         parts = [part for of in self.comm.allgather(list(parts)) for part in of]
@@ -265,14 +313,17 @@ class ContactEdges:
     def coercivity(self):
         """(C_h, the edge that sets it): kappa = gamma0 C_h, C_h = max_T h_T C c_p sum_{E in T} |E| / |T|, with C = lambda + 2 mu in
         plane strain and 4 mu (lambda + mu) / (lambda + 2 mu) in plane stress (of a tensor as in `_stresses`), c_1 = 1, c_2 = 3. An edge along which n~ turns by theta
-        counts 2 - cos(theta) times for P2. Of equal edges, the first by its ends."""
-        factor = self.stiffness * {1: 1, 2: 3}[self.p]
+        counts 2 - cos(theta) times for P2. With the weight r: docs/theory.md, 11.2. Of equal edges, the first by its ends."""
         cosine = np.sum(self.directions[:, 0] * self.directions[:, -1], axis=1)
-        turning = np.where((self.p == 1) | np.all(self.directions[:, 0] == self.directions[:, -1], axis=1), 1.0, 2 - cosine)
+        mass = edge_mass(self.weights)
+        rho = mass[:, 0, 1] / np.sqrt(mass[:, 0, 0] * mass[:, 1, 1])
+        turns = (self.p == 2) & np.any(self.directions[:, 0] != self.directions[:, -1], axis=1)
+        turning = np.where(turns, 1 + (1 - cosine) * rho / (1 - rho), 1.0)
+        constants = trace_constants(self.p, self.weights, self.opposite) * turning * self.length / self.area
         per_cell = {}
-        for cell, length in zip(self.cells, turning * self.length):
-            per_cell[cell] = per_cell.get(cell, 0.0) + length
-        numbers = [c * h * per_cell[cell] / area for c, cell, h, area in zip(factor, self.cells, self.h_T, self.area)]
+        for cell, constant in zip(self.cells, constants):
+            per_cell[cell] = per_cell.get(cell, 0.0) + constant
+        numbers = [c * h * per_cell[cell] for c, cell, h in zip(self.stiffness, self.cells, self.h_T)]
         edges = [(value, sorted(ends.tolist())) for value, ends in zip(numbers, self.ends)]
         edges = [edge for part in self.comm.allgather(edges) for edge in part]
         largest = max(value for value, _ in edges)

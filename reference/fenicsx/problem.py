@@ -17,6 +17,7 @@ from .mesh import plane_mesh
 from .obstacle import NoDistance
 from .smooth import SmoothBoundary
 
+AXIS = None  # the name by which the axis of a body of revolution holds the nodes on it
 DATA_DEGREE = 10  # body force and traction are integrated exactly if data times test function has this degree
 FACET_VERTICES = np.array([[1, 2], [0, 2], [0, 1]])  # of the reference triangle; facet i lies opposite vertex i
 
@@ -59,7 +60,7 @@ class Problem:
         self.contact = self._contact()
         # The paper's lines of contact: straight, with a gap along the normal.
         curved = [name for name in case.of_kind("contact") if any(self.smooth.oriented(*e) in self.smooth.ends for e in plane.boundaries[name].tolist())]
-        self.straight = not curved and not any(hasattr(data, "closest") for data in case.of_kind("contact").values())
+        self.straight = not case.of_revolution and not curved and not any(hasattr(data, "closest") for data in case.of_kind("contact").values())
         self.gaps = {name: self._gap(name, gap) for name, gap in case.of_kind("contact").items()} if self.straight else {}
         self.load = self._load()
         self.free, self.slides = self._free_motions()
@@ -176,6 +177,9 @@ class Problem:
             node = node_of.get((plane.corners[name],))
             if node is not None:
                 ask_components(name, f"point.{name}", np.array([node]), components)
+        if case.of_revolution:
+            on_axis = np.flatnonzero(self.nodes[:, 0] == 0)
+            ask(AXIS, "the axis", on_axis, np.tile([1.0, 0.0], (len(on_axis), 1)), np.zeros(len(on_axis)))
         self.refuse(message)
         constraints, message = Constraints.of(self.nodes, demands)
         self.refuse(message)
@@ -270,13 +274,14 @@ class Problem:
         return u - self.slides.T @ self.comm.allreduce(self.slides @ u) if len(self.slides) else u
 
     def rigid_motions(self):
-        """(3, owned dofs): the two translations and the rotation about the origin scaled to the mesh's size."""
+        """(3, owned dofs): the two translations and the rotation about the origin scaled to the mesh's size; of a body of revolution the
+        translation along the axis."""
         x, y = self.nodes[: self.owned_dofs // 2].T
         largest = self.comm.allreduce(max(np.abs(x).max(initial=0), np.abs(y).max(initial=0)), op=MPI.MAX)
         motions = np.zeros((3, self.owned_dofs))
         motions[0, 0::2] = motions[1, 1::2] = 1
         motions[2, 0::2], motions[2, 1::2] = -y / largest, x / largest
-        return motions
+        return motions[1:2] if self.case.of_revolution else motions
 
     def _gap(self, name, gap):
         """The Lagrange interpolant of the gap on the edges of the contact boundary `name` (zero at all other nodes)."""
@@ -289,27 +294,29 @@ class Problem:
         return function
 
     def _load(self):
-        """L(v) = int f.v + int_{Gamma_N} t.v as a vector over the owned dofs. A built-in solution's load is integrated in load.py."""
+        """L(v) = int f.v + int_{Gamma_N} t.v as a vector over the owned dofs, of a body of revolution with the weight r, for a radian. A
+        built-in solution's load is integrated in load.py."""
         x, v = ufl.SpatialCoordinate(self.mesh), ufl.TestFunction(self.V)
         zero = fem.Constant(self.mesh, np.zeros(2))  # keeps a form that is 0 by its text, which UFL would drop
         rule = {"quadrature_degree": DATA_DEGREE}
-        L = ufl.inner(zero + _vector(self.case.body, x), v) * ufl.dx(self.mesh, metadata=rule)
+        r, angle = (x[0], 2 * np.pi) if self.case.of_revolution else (1, 1)
+        L = r * ufl.inner(zero + _vector(self.case.body, x), v) * ufl.dx(self.mesh, metadata=rule)
         for name, components in self.case.bodies.items():
             there = self.on_triangles([float(surface == name) for surface in self.surface_of])
-            L += there * ufl.inner(zero + _vector(components, x), v) * ufl.dx(self.mesh, metadata=rule)
+            L += r * there * ufl.inner(zero + _vector(components, x), v) * ufl.dx(self.mesh, metadata=rule)
         for name, pressure in self.case.of_kind("pressure").items():
-            L -= pressure.ufl(x) * ufl.inner(ufl.FacetNormal(self.mesh), v) * self.ds(self.number[name], metadata=rule)
+            L -= r * pressure.ufl(x) * ufl.inner(ufl.FacetNormal(self.mesh), v) * self.ds(self.number[name], metadata=rule)
         for name, force in self.case.of_kind("force").items():
             ds = self.ds(self.number[name], metadata=rule)
-            length = self.comm.allreduce(fem.assemble_scalar(fem.form(fem.Constant(self.mesh, 1.0) * ds)))
-            traction = fem.Constant(self.mesh, force / (length * self.case.thickness))
-            L += ufl.inner(traction, v) * ds
+            length = self.comm.allreduce(fem.assemble_scalar(fem.form(r * fem.Constant(self.mesh, 1.0) * ds)))
+            traction = fem.Constant(self.mesh, force / (angle * length * self.case.thickness))
+            L += r * ufl.inner(traction, v) * ds
         for name, boundary in sorted(self.case.boundaries.items()):
             components = boundary.data if boundary.kind == "traction" else boundary.traction
             if components:
                 if boundary.kind != "traction":
                     components = [t if u is None else None for t, u in zip(components, boundary.data)]
-                L += ufl.inner(_vector(components, x), v) * self.ds(self.number[name], metadata=rule)
+                L += r * ufl.inner(_vector(components, x), v) * self.ds(self.number[name], metadata=rule)
         load = self.assemble(fem.form(L), exact_load(self) if self.case.exact else None)
         self.refuse(None if np.all(np.isfinite(load)) else "load: body force or traction is not finite on the mesh")
         return load

@@ -5,6 +5,7 @@ import numpy as np
 from . import compat
 from .case import CaseError
 from .errors import errors
+from .problem import AXIS
 
 
 def result(problem, method, gamma, u, history, seconds):
@@ -24,6 +25,8 @@ def result(problem, method, gamma, u, history, seconds):
         "quantities": quantities(problem, method, u),
         "contact": method.edges.boundaries(method.u.x.array),
     }
+    if problem.case.of_revolution:
+        whole(content)
     if problem.case.exact:
         content["errors"] = errors(problem, method)
     if problem.case.probes:
@@ -32,11 +35,26 @@ def result(problem, method, gamma, u, history, seconds):
     return content
 
 
+def whole(content):
+    """Makes energies and forces of a radian those of the whole revolution. Radial forces cancel all round: they are left for a radian."""
+    for numbers in (content["quantities"], *content["contact"]):
+        for key in ("a_uu", "elastic_energy", "work", "contact_force", "force"):
+            if key in numbers:
+                numbers[key] *= 2 * np.pi
+    vectors = [content["quantities"]["contact_resultant"], *content["quantities"]["reactions"].values()]
+    for vector in vectors + [boundary["resultant"] for boundary in content["contact"]]:
+        vector[1] *= 2 * np.pi
+    for boundary in content["contact"]:
+        boundary["moment"] = 0.0
+
+
 def quantities(problem, method, u):
     pressure = method.edges.pressure(method.u.x.array)
     largest = np.max(np.hypot(u[0::2], u[1::2]), initial=0.0)
+    energy = float(method.energy())
     return {
-        "energy": float(method.energy()),
+        "a_uu": energy,
+        "elastic_energy": energy / 2,
         "work": problem.comm.allreduce(float(problem.load @ u)),
         "max_displacement": max(problem.comm.allgather(float(largest))),
         **pressure,
@@ -51,7 +69,7 @@ def reactions(problem, residual):
         total = own.setdefault(name, np.zeros(2))
         if 2 * node < problem.owned_dofs:
             total += direction * (dual @ residual[2 * node : 2 * node + 2])
-    names = sorted({name for of in problem.comm.allgather(list(own)) for name in of})
+    names = sorted({name for of in problem.comm.allgather(list(own)) for name in of} - {AXIS})
     return {name: problem.comm.allreduce(own.get(name, np.zeros(2))).tolist() for name in names}
 
 

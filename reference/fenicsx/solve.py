@@ -4,10 +4,11 @@ import time
 
 from .case import CaseError, read_case
 from .edges import ContactEdges
-from .method import Method
+from .method import Method as PlaneMethod
 from .newton import Solver
 from .problem import Problem
 from .result import result
+from .revolution import MethodOfRevolution
 
 
 def coercivity(problem):
@@ -22,7 +23,7 @@ def coercivity(problem):
     return {"gamma0": gamma0, "limit": 1 / C_h, "kappa": kappa, "limiting_edge": edge}
 
 
-def solve(path, comm, iterative=False, nx=None, Method=Method):
+def solve(path, comm, iterative=False, nx=None, Method=None):
     """(result, problem, method, history) of the case at `path`, on `nx` cells along x if given."""
     clock = [time.perf_counter()]
     case = read_case(path)
@@ -31,6 +32,7 @@ def solve(path, comm, iterative=False, nx=None, Method=Method):
     clock.append(time.perf_counter())
     problem = Problem(case, comm)
     gamma = coercivity(problem)
+    Method = Method or (MethodOfRevolution if case.of_revolution else PlaneMethod)
     method = Method(problem, gamma["gamma0"])
     clock.append(time.perf_counter())
     u, history = Solver(method, iterative).solve()

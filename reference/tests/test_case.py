@@ -14,7 +14,7 @@ CONTACT = '[boundary.bottom]\ncontact = { gap = "0" }\n'
 
 # (what is replaced in BLOCK, by what, message behind the file's name)
 REFUSED = [
-    ("[mesh]", "titel = 1\n[mesh]", "titel: unknown key; known here: pair, material, exact, load, method, solver, output, units, body, title, mesh, boundary, obstacle, point"),
+    ("[mesh]", "titel = 1\n[mesh]", "titel: unknown key; known here: pair, body, material, exact, load, method, solver, output, units, title, mesh, boundary, obstacle, point"),
     ("[mesh]", "[mesh", "not a TOML file: Expected ']' at the end of a table declaration (at line 2, column 6)"),
     ("[material]\nlambda = 1.0\nmu = 1.0\n", "", "material: found nothing, expected a table"),
     ("mu = 1.0", "mu = -1.0", "material.mu: found -1.0, expected a positive number"),
@@ -29,7 +29,7 @@ REFUSED = [
      "material.stiffness: found the smallest eigenvalue -1, expected an elliptic law: a positive one, at least 1e-10 of the largest"),
     ("lambda = 1.0\nmu = 1.0", "stiffness = [3, 1, 0, 3, 0, 1]", "material.across: found nothing, expected a list of three numbers, in plane strain"),
     ("lambda = 1.0\nmu = 1.0", "young = 1.0\npoisson = 0.5", "material.poisson: found 0.5, expected a number above -1 and below 0.5"),
-    ("mu = 1.0", 'mu = 1.0\nplane = "bent"', 'material.plane: found "bent", expected "strain" or "stress"'),
+    ("mu = 1.0", 'mu = 1.0\nplane = "bent"', 'material.plane: found "bent", expected "strain" or "stress" or "axisymmetric"'),
     ("nx = 4", "nx = 0", "mesh.rectangle.nx: found 0, expected a positive integer"),
     ("nx = 4", "nx = 4.0", "mesh.rectangle.nx: found 4.0, expected a positive integer"),
     ("nx = 4", "nx = 4000000", "mesh.rectangle: found 16000000 cells, expected at most 4000000"),

@@ -24,11 +24,12 @@ impl Slides {
     ) -> Option<Slides> {
         let idle = &d.slides.as_ref()?.idle;
         let size = |v: &[f64]| v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        let of_piece = |piece: &Piece| match known {
-            Some(p) => p[piece.functionals()].iter().map(|p| p.head()).collect(),
-            None => piece.p(u),
+        // Newton's method takes P of an idle piece for negative: the body is moved until it is, from where it is.
+        let of_piece = |(piece, is_idle): (&Piece, &bool)| match known {
+            Some(p) if !is_idle => p[piece.functionals()].iter().map(|p| p.head()).collect(),
+            _ => piece.p(u),
         };
-        let all: Vec<Vec<f64>> = d.contact.iter().map(of_piece).collect();
+        let all: Vec<Vec<f64>> = d.contact.iter().zip(idle).map(of_piece).collect();
         let p: Vec<&[f64]> = d.contact.iter().zip(&all).map(|(edge, p)| edge.along(p)).collect();
         // Tails are there if P is known to them.
         let is_fine = known.is_some_and(|p| p.iter().any(|p| p.tail() != 0.0));

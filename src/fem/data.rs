@@ -7,7 +7,7 @@ use super::material::MaterialError;
 use super::mesh::MeshError;
 use super::pairs::PairError;
 use super::rigid::FreeMotion;
-use crate::quote::{key, number, quoted};
+use crate::quote::{key, number, quoted, short};
 
 /// Why a problem can't be posed on its mesh.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -54,7 +54,7 @@ pub enum DataError {
     WrongSide { obstacle: String, boundary: String, x: f64, y: f64, direction: [f64; 2] },
     #[error(
         "{} holds ({}, {}) by {} inside the obstacle of {}, which must keep it out: no displacement of finite energy does both, and forces would grow as the mesh is refined; expected a support that moves this point no further than to the obstacle, a gap that leaves it room, or a contact boundary that ends before it",
-        quoted(support, '\''), number(*x), number(*y), number(*depth), quoted(boundary, '\'')
+        quoted(support, '\''), number(*x), number(*y), short(*depth), quoted(boundary, '\'')
     )]
     HeldInside { support: String, boundary: String, x: f64, y: f64, depth: f64 },
     #[error(

@@ -371,8 +371,13 @@ mod tests {
     fn the_least_eigenvalue_of_a_body_of_revolution_is_that_of_the_law_in_three_dimensions() {
         let of = |lambda, plane| least_eigenvalue(&Material::lame(lambda, 1.0, plane));
         // min(2 mu, 3 lambda + 2 mu), in plane strain min(2 mu, 2 (lambda + mu)).
-        assert_eq!([of(-0.5, Plane::Axisymmetric), of(-0.5, Plane::Strain)], [0.5, 1.0]);
-        assert_eq!(of(3.0, Plane::Axisymmetric), 2.0);
+        for (found, expected) in [
+            (of(-0.5, Plane::Axisymmetric), 0.5),
+            (of(-0.5, Plane::Strain), 1.0),
+            (of(3.0, Plane::Axisymmetric), 2.0),
+        ] {
+            assert!((found / expected - 1.0).abs() <= 1e-14, "{found}, {expected}");
+        }
         // As a tensor, from below and within a factor of 2.
         let (lambda, mu) = (1.0, 1.0);
         let (nu, young) = (0.25, 2.5);

@@ -461,7 +461,7 @@ mod tests {
         );
         let error = said(&corner, &[1.5]);
         assert!(
-            error.starts_with("the arcs of radius 1.5 at (1, 0) and of its neighbour take 1.4"),
+            error.starts_with("the arcs of radius 1.5 at (1, 0) and of its neighbour take 1.5"),
             "{error}"
         );
         assert!(

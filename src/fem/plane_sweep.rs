@@ -142,7 +142,12 @@ impl<'a> Sweep<'a> {
         // From below. Few edges begin at a vertex.
         let mut beginning: Vec<usize> = Vec::new();
         for &e in self.at[rank].iter().filter(|&&e| self.ranks[e][0] == rank) {
-            let below = beginning.partition_point(|&f| turn(p, far(f), far(e)) > 0.0);
+            // Of two that lie on each other, the one with the body below comes first: a vertex that hangs there is no overlap.
+            let is_below = |&f: &usize| {
+                let turn = turn(p, far(f), far(e));
+                turn > 0.0 || (turn == 0.0 && !self.is_body_above(f))
+            };
+            let below = beginning.partition_point(is_below);
             beginning.insert(below, e);
         }
         let mut chain = Vec::with_capacity(beginning.len() + 2);

@@ -8,7 +8,7 @@ use super::input::Failure;
 use super::vtu::{CellKind, DataArray, Grid, vtu};
 use crate::fem::{Mesh, Problem};
 use crate::kernel::Stress;
-use crate::solve::solution::{ContactValues, PieceNodeValues};
+use crate::solve::solution::ContactPoint;
 use crate::solve::{Solution, stresses};
 
 impl Solution {
@@ -95,61 +95,31 @@ fn solution_vtu(
     })
 }
 
-/// A point of a contact boundary, in contact.vtu and contact.csv.
-struct ContactPoint<'s> {
-    arc: f64,
-    place: [f64; 2],
-    displacement: [f64; 2],
-    direction: [f64; 2],
-    numbers: [f64; 7],
-    boundary: &'s str,
-}
+/// A number at a point of a contact boundary, by its name in contact.vtu and contact.csv.
+type ContactNumber = (&'static str, fn(&ContactPoint) -> f64);
 
-/// The numbers at it: u . n~ (between two bodies the jump of that), the gap g, n~ . sigma(u) n (negative in compression), the contact
-/// pressure lambda^h (never positive), and the recovered pressure (never negative); where there is friction also the slip u_t and the
-/// shear stress of friction along t, n~ turned to the left.
-const CONTACT_NUMBERS: [&str; 7] = ["u_n", "gap", "sigma_n", "lambda", "pressure", "u_t", "shear"];
+/// u . n~ (between two bodies the jump of that), the gap g, n~ . sigma(u) n (negative in compression), the contact pressure lambda^h
+/// (never positive), and the recovered pressure (never negative); where there is friction also the slip u_t and the shear stress of
+/// friction along t, n~ turned to the left.
+const CONTACT_NUMBERS: [ContactNumber; 7] = [
+    ("u_n", |p| p.u_n),
+    ("gap", |p| p.gap),
+    ("sigma_n", |p| p.sigma_n),
+    ("lambda", |p| p.lambda),
+    ("pressure", |p| p.pressure),
+    ("u_t", |p| p.u_t),
+    ("shear", |p| p.shear),
+];
 
-/// The names of those of a solution.
-fn contact_numbers(s: &Solution) -> &'static [&'static str] {
+/// Those of a solution.
+fn contact_numbers(s: &Solution) -> &'static [ContactNumber] {
     let friction = s.boundaries.iter().any(|boundary| boundary.friction.is_some());
     if friction { &CONTACT_NUMBERS } else { &CONTACT_NUMBERS[..5] }
 }
 
-/// The edges of all contact boundaries, each with points of its own in order along it, for sigma_n and lambda^h jump from edge to
-/// edge. The two sides of a pair of bodies have the same numbers at their places.
-fn contact_edges(s: &Solution) -> Vec<Vec<ContactPoint<'_>>> {
-    let obstacles = s.contact.iter().map(|edge| {
-        let point = |p: &ContactValues| ContactPoint {
-            arc: p.arc,
-            place: s.nodes[p.node],
-            displacement: s.displacement[p.node],
-            direction: p.direction,
-            numbers: [p.u_n, p.gap, p.sigma_n, p.lambda, p.pressure, p.u_t, p.shear],
-            boundary: &edge.boundary,
-        };
-        edge.points.iter().map(point).collect()
-    });
-    let pairs = s.between.chunk_by(|a, b| a.boundaries == b.boundaries);
-    let sides = pairs.flat_map(|pair| [0, 1].map(|i| (pair, i))).flat_map(|(pair, i)| {
-        pair.iter().map(move |piece| {
-            let point = |p: &PieceNodeValues| ContactPoint {
-                arc: p.arc,
-                place: p.at[i],
-                displacement: p.displacement[i],
-                direction: if i == 0 { p.direction } else { p.direction.map(|c| -c) },
-                numbers: [p.u_n, p.gap, p.sigma_n, p.lambda, p.pressure, p.u_t, p.shear],
-                boundary: &piece.boundaries[i],
-            };
-            piece.points.iter().map(point).collect()
-        })
-    });
-    obstacles.chain(sides).collect()
-}
-
 /// The file contact.vtu.
 fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
-    let edges = contact_edges(s);
+    let edges = s.contact_points();
     let degree = s.degree.number();
     let per_edge = degree + 1;
     let connectivity: Vec<usize> = (0..edges.len())
@@ -163,12 +133,11 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
     let places: Vec<[f64; 2]> = points().map(|p| p.place).collect();
     let displacement: Vec<[f64; 2]> = points().map(|p| p.displacement).collect();
     let direction: Vec<[f64; 2]> = points().map(|p| p.direction).collect();
-    let names = contact_numbers(s);
-    let numbers: Vec<Vec<f64>> =
-        (0..names.len()).map(|k| points().map(|p| p.numbers[k]).collect()).collect();
+    let named = contact_numbers(s).iter();
+    let numbers: Vec<(&str, Vec<f64>)> =
+        named.map(|(name, of)| (*name, points().map(of).collect())).collect();
     let mut point_data = vec![DataArray::vectors("displacement", &displacement)];
-    let named = names.iter().zip(&numbers);
-    point_data.extend(named.map(|(name, numbers)| DataArray::scalars(name, numbers)));
+    point_data.extend(numbers.iter().map(|(name, numbers)| DataArray::scalars(name, numbers)));
     point_data.push(DataArray::vectors("direction", &direction));
     vtu(&Grid {
         kind: CellKind::Line(s.degree),
@@ -182,16 +151,15 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
 /// A row for each node of each contact edge: arc length from the start of the boundary, place in the undeformed body, the
 /// numbers there.
 fn contact_csv(s: &Solution) -> Result<String, NotFinite> {
-    let names = contact_numbers(s);
-    let row = |p: &ContactPoint<'_>| {
+    let named = contact_numbers(s);
+    let row = |p: &ContactPoint| {
         let [x, y] = p.place;
-        [p.arc, x, y]
-            .into_iter()
-            .chain(p.numbers.into_iter().take(names.len()))
-            .collect::<Vec<f64>>()
+        let numbers = named.iter().map(|(_, of)| of(p));
+        [p.arc, x, y].into_iter().chain(numbers).collect::<Vec<f64>>()
     };
-    let edges = contact_edges(s);
+    let edges = s.contact_points();
     let rows: Vec<(Vec<f64>, &str)> =
         edges.iter().flatten().map(|p| (row(p), p.boundary)).collect();
-    csv::table(&[&["arc", "x", "y"], names, &["boundary"]].concat(), &rows)
+    let names: Vec<&str> = named.iter().map(|(name, _)| *name).collect();
+    csv::table(&[&["arc", "x", "y"], &names[..], &["boundary"]].concat(), &rows)
 }

@@ -236,6 +236,7 @@ mod tests {
             von_mises: (0..mesh.triangles().len()).map(|t| 1.0 + (t % 7) as f64).collect(),
             units: None,
             stretch: None,
+            apart: 0.0,
             interfaces: Vec::new(),
             outline: mesh.outline().iter().map(|&edge| mesh.ends(edge)).collect(),
             contact: vec![ContactSurface {
@@ -580,7 +581,9 @@ mod tests {
             vec![
                 zone(0.0, 0.4, Limit::Opening(0.004)),
                 zone(0.1, 0.3, Limit::Opening(0.001)),
-                zone(0.6, 1.0, Limit::Force(0.02)),
+                // What the plot shows ends with the contact, at 0.5.
+                zone(0.4, 0.5, Limit::Force(0.005)),
+                zone(0.6, 1.0, Limit::Force(9.0)),
             ]
         };
         let proved = said(zones(), false);

@@ -29,12 +29,12 @@ pub enum SolveError {
     )]
     NotConverged { residual: f64, residuals: Vec<f64>, tolerance: f64 },
     #[error(
-        "the body is too slender, too nearly incompressible or too weakly held for double precision: with a condition number of at least {condition:.0e} {}; a coarser mesh or a shorter body conditions it better",
+        "the body is too slender, too nearly incompressible or too weakly held (as by contact under a load that nearly tips it over) for double precision: with a condition number of at least {condition:.0e} {}; a coarser mesh or a shorter body conditions it better",
         known(*forward_error)
     )]
     IllConditioned { condition: f64, forward_error: f64 },
     #[error(
-        "the matrix has no Cholesky factor in double precision although the method is coercive: the body is too slender, too nearly incompressible or too weakly held (condition number beyond 1e15); a coarser mesh or a shorter body conditions it better"
+        "the matrix has no Cholesky factor in double precision although the method is coercive: the body is too slender, too nearly incompressible or too weakly held, as by contact under a load that nearly tips it over (condition number beyond 1e15); a coarser mesh or a shorter body conditions it better"
     )]
     Singular,
     #[error(

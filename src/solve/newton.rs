@@ -79,12 +79,12 @@ pub fn minimise(
     }
     let mut at = derivatives(edges, 1.0, &body.y());
     let mut residual = body.residual(&at);
-    // A later call makes a step in any case: its size is what tells how good the end of the first was.
+    // A later call makes a step wherever there is a residual: its size is what tells how good the end of the first was.
     let mut may_end = first;
     let mut left = 0.0;
     while residuals.len() <= until.steps {
         let enough = if stiffness < 1.0 { 0.0 } else { until.residual };
-        if may_end && residual.norm <= residual.noise.max(enough) {
+        if (may_end && residual.norm <= residual.noise.max(enough)) || residual.norm == 0.0 {
             break;
         }
         let soft = (stiffness < 1.0).then(|| derivatives(edges, stiffness, &body.y()));

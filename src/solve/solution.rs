@@ -162,6 +162,38 @@ pub struct PieceNodeValues {
     pub shear: f64,
 }
 
+/// A point of a contact boundary, of an edge that faces an obstacle or of a side of a pair of bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ContactPoint<'s> {
+    /// The name of the boundary.
+    pub boundary: &'s str,
+    /// The node, if it is one.
+    pub node: Option<usize>,
+    /// Arc length along the boundary, or along the pieces of the pair.
+    pub arc: f64,
+    /// The place in the undeformed body.
+    pub place: [f64; 2],
+    /// u^h there.
+    pub displacement: [f64; 2],
+    /// n~, the direction of contact, out of the body.
+    pub direction: [f64; 2],
+    /// u . n~, or the jump of that.
+    pub u_n: f64,
+    /// g
+    pub gap: f64,
+    /// n~ . sigma(u^h) n, or the mean of it that (8) has.
+    pub sigma_n: f64,
+    /// lambda^h
+    pub lambda: f64,
+    /// The recovered pressure.
+    pub pressure: f64,
+    /// u . t, or the jump of that, t being n~ turned to the left.
+    pub u_t: f64,
+    /// The shear stress of friction along t.
+    pub shear: f64,
+}
+
 /// Scalars of a solution, in the units of the case.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
@@ -247,6 +279,51 @@ impl Solution {
             displacement: u,
         };
         if of_revolution { of_the_whole(solution) } else { solution }
+    }
+
+    /// The points of all contact boundaries, edge by edge in order along each, for sigma_n and lambda^h jump from edge to edge; of a
+    /// pair of bodies the first side and then the second, which has the same numbers at places of its own.
+    pub fn contact_points(&self) -> Vec<Vec<ContactPoint<'_>>> {
+        let obstacles = self.contact.iter().map(|edge| {
+            let point = |p: &ContactValues| ContactPoint {
+                boundary: &edge.boundary,
+                node: Some(p.node),
+                arc: p.arc,
+                place: self.nodes[p.node],
+                displacement: self.displacement[p.node],
+                direction: p.direction,
+                u_n: p.u_n,
+                gap: p.gap,
+                sigma_n: p.sigma_n,
+                lambda: p.lambda,
+                pressure: p.pressure,
+                u_t: p.u_t,
+                shear: p.shear,
+            };
+            edge.points.iter().map(point).collect()
+        });
+        let pairs = self.between.chunk_by(|a, b| a.boundaries == b.boundaries);
+        let sides = pairs.flat_map(|pair| [0, 1].map(|i| (pair, i))).flat_map(|(pair, i)| {
+            pair.iter().map(move |piece| {
+                let point = |p: &PieceNodeValues| ContactPoint {
+                    boundary: &piece.boundaries[i],
+                    node: None,
+                    arc: p.arc,
+                    place: p.at[i],
+                    displacement: p.displacement[i],
+                    direction: if i == 0 { p.direction } else { p.direction.map(|c| -c) },
+                    u_n: p.u_n,
+                    gap: p.gap,
+                    sigma_n: p.sigma_n,
+                    lambda: p.lambda,
+                    pressure: p.pressure,
+                    u_t: p.u_t,
+                    shear: p.shear,
+                };
+                piece.points.iter().map(point).collect()
+            })
+        });
+        obstacles.chain(sides).collect()
     }
 
     /// u^h at the point with the barycentric coordinates `l` of triangle `t`, as [`Mesh::locate`] finds them.

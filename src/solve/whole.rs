@@ -10,7 +10,7 @@ use crate::kernel::ball::up;
 /// A solution with the results of a radian as one with those of the whole revolution.
 pub(super) fn of_the_whole(mut s: Solution) -> Solution {
     let q = &mut s.quantities;
-    for number in [&mut q.energy, &mut q.work, &mut q.contact_force] {
+    for number in [&mut q.energy, &mut q.elastic_energy, &mut q.work, &mut q.contact_force] {
         *number *= TAU;
     }
     q.contact_resultant[1] *= TAU;

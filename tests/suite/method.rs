@@ -7,7 +7,8 @@ use faer::{Col, Mat};
 use signorini::fem::{Condition, Diagonal, Discretization, Problem, Rectangle};
 use signorini::solve::iterate::Evaluated;
 use signorini::solve::{
-    ContactQuadrature, Degree, Gamma0, Method, Settings, Status, discretize, solve, solve_discrete,
+    ContactQuadrature, Degree, Gamma0, Method, Settings, Status, Verdict, discretize, solve,
+    solve_discrete,
 };
 
 /// [0, 0.3] x [0, 1] in 6 x 4 cells, lambda = mu = 1, clamped on top, no load, one Gauss point per contact edge, the gap at
@@ -128,4 +129,23 @@ fn the_derivative_of_the_positive_part_at_zero_does_not_change_the_solution() {
     let (s, _) = solve(&problem, &method(Degree::One, EXACT), &Settings::default()).unwrap();
     assert_eq!(s.newton.status, Status::Converged);
     assert_eq!(s.quantities.contact_length, 0.0);
+}
+
+#[test]
+fn a_body_that_a_support_moves_as_a_whole_takes_no_step_and_one_that_it_presses_takes_some() {
+    let steps = |gap: f64, degree| {
+        let top = ["0", "-0.015"].map(|u| Some(expression(u)));
+        let cells =
+            Rectangle { width: 2.0, height: 1.0, nx: 12, ny: 6, diagonal: Diagonal::Crossed };
+        let problem = Problem::of(cells.mesh().unwrap(), unit_material())
+            .with("top", Condition::Displacement(top))
+            .with("bottom", Condition::contact(move |_| gap));
+        let (s, _) = solve(&problem, &method(degree, EXACT), &Settings::default()).unwrap();
+        assert_eq!(s.verdict, Verdict::Proved);
+        s.newton.iterations()
+    };
+    for degree in DEGREES {
+        assert_eq!(steps(1e9, degree), 0);
+        assert!(steps(0.01, degree) >= 1, "control");
+    }
 }

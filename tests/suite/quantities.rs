@@ -254,16 +254,17 @@ fn a_dual_stress_that_is_not_one_is_refused() {
 
 #[test]
 #[ignore = "a minute: run by .ci/run"]
-fn adapted_to_a_fifth_of_a_per_cent_the_force_is_known_to_a_tenth() {
+fn adapted_to_a_fifth_of_a_per_cent_the_force_is_known_to_four_fifths_of_that() {
     let target = Target { relative: 0.002, max_unknowns: 20_000 };
     let method = Method { degree: Degree::Two, ..Method::default() };
     let (_, adapted) =
         adapt(tilted_punch(4), &method, &Settings::default(), target, &|_| {}).unwrap();
     let c = adapted.certified.unwrap();
     let force = interval(&c, Name::ContactForce, "bottom");
+    let bound = 100.0 * adapted.levels.last().unwrap().relative;
     eprintln!("{:?} {force:?} +-{} %", adapted.levels.last(), half_width(force));
     assert!(c.rigorous && force[0] <= FORCE && FORCE <= force[1], "{force:?}");
-    assert!(half_width(force) <= 0.11, "{} %", half_width(force));
+    assert!(bound <= 0.2 && half_width(force) <= 0.8 * bound, "{} %, {bound} %", half_width(force));
 }
 
 #[test]

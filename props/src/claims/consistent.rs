@@ -11,7 +11,7 @@ use signorini::fem::graded_quadrature::Rule;
 use signorini::fem::{Condition, Degree, Discretization};
 use signorini::kernel::{ContactPoint, Element, P1, P2, positive_part};
 use signorini::nalgebra::Vector2;
-use signorini::solve::discretize;
+use signorini::solve::discretize_any;
 use signorini::study::ExactSolution;
 use signorini::study::errors::POINTS;
 
@@ -144,7 +144,7 @@ fn vanishes(sample: &Sample, terms: Terms) -> Verdict {
     let Some((solution, problem)) = sample.problem() else { return Verdict::Vacuous };
     // Next to alpha = 1/2 the nearest points of a rule on an edge are, in doubles, the singular point itself.
     given!(solution.features().singular.is_none_or(|point| point.edge_grading < 80.0));
-    let Ok(d) = discretize(&problem, &sample.method()) else { return Verdict::Vacuous };
+    let Ok(d) = discretize_any(&problem, &sample.method()) else { return Verdict::Vacuous };
     let rule = Rule::new(solution.features(), POINTS);
     let zero = || vec![[0.0; 2]; d.space.nodes().len()];
     let mut sums = Sums { values: zero(), sizes: zero() };

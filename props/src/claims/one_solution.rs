@@ -23,7 +23,9 @@ use signorini::fem::{Condition, Diagonal, Discretization, Mesh, Problem, SharedF
 use signorini::kernel::{Material, Plane};
 use signorini::solve::factor::Factor;
 use signorini::solve::system::System;
-use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, Settings, discretize, solve};
+use signorini::solve::{
+    ContactQuadrature, Degree, Gamma0, Method, Settings, discretize_any, solve,
+};
 
 use crate::claim::{Check, Outcome, noticed, text};
 use crate::discrete::{CUT, Discrete, Nodal, exactly};
@@ -402,7 +404,7 @@ fn certified(
     let Ok(solved) = Solved::new(draw, degree, quadrature) else {
         return Verdict::Fails("the solver has no solution");
     };
-    let Ok(d) = discretize(&solved.problem, &solved.method) else {
+    let Ok(d) = discretize_any(&solved.problem, &solved.method) else {
         return Verdict::Fails("there is no discrete problem");
     };
     let (asked, nothing) = (Asked { share: 40, tenth }, |_: &[[Exact; 2]], _| Verdict::Holds(""));
@@ -466,7 +468,7 @@ fn refused_beyond_the_limit() -> Outcome {
         for (gamma0, unique) in [(1.6, false), (1.0 / 15.0, true)] {
             let gamma0 = Gamma0::Value(gamma0);
             let method = Method { gamma0, allow_noncoercive: true, ..Method::default() };
-            let d = discretize(&problem, &method).map_err(text)?;
+            let d = discretize_any(&problem, &method).map_err(text)?;
             let certifier = Certifier::new(&d);
             // The solver's load, -1 up to rounding; with it the solutions are scaled.
             let scale = -Exact::of_double(d.load[1][0]);
@@ -518,7 +520,7 @@ fn attained(constant: f64) -> Outcome {
             let mut problem = sharpness::trapezoid(NARROW_TRAPEZOID)?;
             problem.conditions.insert("bottom".to_owned(), floor(1.0));
             let method = sharpness::at_kappa(&problem, degree, kappa)?;
-            let d = discretize(&problem, &method).map_err(text)?;
+            let d = discretize_any(&problem, &method).map_err(text)?;
             let system = System::new(&d).map_err(text)?;
             let factor = Factor::new(&system.matrix).map_err(text)?;
             let u = eigenvector(&d, &system, &factor);

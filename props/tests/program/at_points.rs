@@ -3,7 +3,7 @@
 use signorini::fem::{Degree, Problem};
 use signorini::kernel::{Material, Plane};
 use signorini::solve::iterate::Evaluated;
-use signorini::solve::{Method, Solution, discretize};
+use signorini::solve::{Method, Solution, discretize_any};
 
 use props::claim::{Outcome, text};
 use props::claims::assembled::solver::unsolved;
@@ -12,7 +12,7 @@ use props::{draws, sharpness};
 
 /// A random displacement of a block of unequal triangles as a solution.
 fn anything(degree: Degree, problem: &Problem) -> Result<Solution, String> {
-    let d = discretize(problem, &Method { degree, ..Method::default() }).map_err(text)?;
+    let d = discretize_any(problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let drawn = Random::new(draws::seed()).field(d.space.nodes().len());
     Ok(Solution::new(&d, Evaluated::new(&d, drawn), unsolved()))
 }

@@ -28,7 +28,9 @@ use signorini::kernel::{Ball, Material, Plane};
 use signorini::nalgebra::Vector3;
 use signorini::solve::factor::Factor;
 use signorini::solve::system::System;
-use signorini::solve::{Degree, Gamma0, Method, Settings, discretize, enclosure, solve};
+use signorini::solve::{
+    Degree, Gamma0, Method, Settings, discretize_any, enclosure, solve, solve_discrete,
+};
 
 use crate::enclosure::factor_of;
 use crate::solved::{Draw as Floor, bodies};
@@ -51,7 +53,8 @@ fn attained(
     matrix: f64,
 ) -> Result<[f64; 2], String> {
     problem.conditions.insert("bottom".to_owned(), floor(1.0));
-    let d = discretize(&problem, &sharpness::at_kappa(&problem, degree, kappa)?).map_err(text)?;
+    let d =
+        discretize_any(&problem, &sharpness::at_kappa(&problem, degree, kappa)?).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
     let factor = Factor::new(&system.matrix).map_err(text)?;
     let u = eigenvector(&d, &system, &factor);
@@ -133,17 +136,17 @@ fn held_beside_contact() -> Result<Problem, String> {
 fn reactions(by: f64) -> Outcome {
     let problem = held_beside_contact()?;
     let method = Method { gamma0: Gamma0::Value(0.5 / MODULUS), ..Method::default() };
-    let d = discretize(&problem, &method).map_err(text)?;
-    let (solution, _) = solve(&problem, &method, &Settings::default()).map_err(text)?;
+    let d = discretize_any(&problem, &method).map_err(text)?;
+    let (solved, ..) = solve_discrete(&d, &Settings::default()).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
     let reaction = |u: &[[f64; 2]]| -> Result<[f64; 2], String> {
         let enclosure = enclosure::enclose(&system, u, None, None).map_err(text)?;
         let [low, high] = enclosure.intervals.reactions["left"][1];
         Ok([(low + high) / 2.0, (high - low) / 2.0])
     };
-    let mut moved = solution.displacement.clone();
+    let mut moved = solved.u.clone();
     moved[1][1] += 1e-3;
-    let ([here, _], [there, width]) = (reaction(&solution.displacement)?, reaction(&moved)?);
+    let ([here, _], [there, width]) = (reaction(&solved.u)?, reaction(&moved)?);
     let share = (here - there).abs() / width;
     if share > by {
         return Err(format!("{share} of the bound is attained, expected at most {by}"));

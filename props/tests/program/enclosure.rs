@@ -13,7 +13,7 @@ use signorini::solve::factor::Factor;
 use signorini::solve::intervals::Arithmetic;
 use signorini::solve::system::System;
 use signorini::solve::{
-    ContactQuadrature, Degree, Gamma0, Method, Settings, SolveError, discretize, solve_discrete,
+    ContactQuadrature, Degree, Gamma0, Method, Settings, SolveError, discretize_any, solve_discrete,
 };
 
 use crate::{at_points, pressed, rounding};
@@ -73,7 +73,7 @@ fn enclosed(degree: Degree, draw: &Draw, quadrature: ContactQuadrature, asked: A
     let Ok(solved) = Solved::new(draw, degree, quadrature) else {
         return Verdict::Fails("the solver has no solution");
     };
-    let Ok(d) = discretize(&solved.problem, &solved.method) else {
+    let Ok(d) = discretize_any(&solved.problem, &solved.method) else {
         return Verdict::Fails("there is no discrete problem");
     };
     // Prescribed components too: the enclosure counts what they are off by.
@@ -279,7 +279,7 @@ fn proved_kappa_on(
     gamma0: Gamma0,
     scale: f64,
 ) -> Result<f64, String> {
-    let d = discretize(problem, &Method { degree, gamma0, ..Method::default() });
+    let d = discretize_any(problem, &Method { degree, gamma0, ..Method::default() });
     let d = d.map_err(text)?;
     let (solved, ..) = solve_discrete(&d, &Settings::default()).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
@@ -342,7 +342,7 @@ fn refused_beyond_the_limit() -> Outcome {
     for (gamma0, unique) in [(1.6, false), (1.0 / 15.0, true)] {
         let gamma0 = Gamma0::Value(gamma0);
         let method = Method { gamma0, allow_noncoercive: true, ..Method::default() };
-        let d = discretize(&problem, &method).map_err(text)?;
+        let d = discretize_any(&problem, &method).map_err(text)?;
         let system = System::new(&d).map_err(text)?;
         let enclosure = enclosure::enclose(&system, &d.constraints.lift(), None, None);
         let refused = matches!(enclosure, Err(Unproved::NotCoercive { .. }));

@@ -13,7 +13,7 @@ use signorini::kernel::{Material, Plane};
 use signorini::nalgebra::Vector2;
 use signorini::solve::factor::Factor;
 use signorini::solve::system::System;
-use signorini::solve::{Degree, Method, discretize};
+use signorini::solve::{Degree, Method, discretize_any};
 
 use props::claim::{Outcome, noticed, text};
 use props::problems::mesh;
@@ -204,7 +204,7 @@ pub fn normals_of_facets_for_those_of_the_curves() -> Outcome {
 /// constants are divided by `by`.
 fn korn_on(degree: Degree, problem: &Problem, by: f64) -> Result<f64, String> {
     let method = Method { degree, ..Method::default() };
-    let d = discretize(problem, &method).map_err(text)?;
+    let d = discretize_any(problem, &method).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
     let neighbours = Neighbours::new(&d.space);
     let stiffness = matrix::assemble_stiffness(&d, &system.numbering, &neighbours).map_err(text)?;

@@ -10,7 +10,7 @@ use signorini::fem::{residual, rounded_stress};
 use signorini::kernel::PreciseBall;
 use signorini::solve::factor::Factor;
 use signorini::solve::system::System;
-use signorini::solve::{Method, discretize};
+use signorini::solve::{Method, discretize_any};
 
 use props::claim::{Outcome, text};
 use props::problems::{constant, held};
@@ -41,7 +41,7 @@ fn loaded_bodies() -> Result<Vec<(String, Problem)>, String> {
 /// a(u, v) by stresses in doubles, for a random u that is carried along by `by`, less a(u, v) in balls: its norm dual to |v|_a on
 /// the v that are free, beside the bound; or what sums in doubles are off by, beside their radius, if that is a larger share.
 fn rounding_of_stresses(degree: Degree, problem: &Problem, by: f64) -> Result<f64, String> {
-    let d = discretize(problem, &Method { degree, ..Method::default() }).map_err(text)?;
+    let d = discretize_any(problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
     let mut random = Random::new(draws::seed());
     let nodes = d.space.nodes().len();

@@ -285,7 +285,7 @@ mod tests {
         let upper = ("upper", [0.1, 1.0], [0.8, 2.0]);
         for (third, what) in [
             (("third", [0.41, 0.41], [0.6, 0.6]), "two bodies overlap at "),
-            (("third", [0.8, 1.0], [1.8, 2.0]), "two bodies touch at "),
+            (("third", [0.8, 1.05], [1.8, 2.03]), "two bodies touch at "),
         ] {
             let error = blocks(&[LOWER, upper, third], &[pair()]).unwrap_err().to_string();
             assert!(error.starts_with(what), "{error}");

@@ -49,7 +49,7 @@ const ELSEWHERE: [(&str, &[&str]); 3] = [
         &["master", "slave", "tie", "tied", "self_contact", "bodies"],
     ),
     (
-        "friction is that of a contact = { friction = { coulomb = 0.3 } }, or of a [[pair]]",
+        "friction stands in a contact = { friction = { coulomb = 0.3 } }, or in a [[pair]]",
         &["friction", "coulomb", "tresca", "mu_friction", "stick"],
     ),
     (

@@ -29,6 +29,9 @@ pub(super) struct Scene {
     pub(super) units: Option<[String; 2]>,
     /// The amount by which displacement and gap are magnified; chosen here if it is not given.
     pub(super) stretch: Option<f64>,
+    /// The largest initial gap, or overlap, between bodies where they press on each other: magnifying the deformation alone makes it
+    /// seen where there is none left.
+    pub(super) apart: f64,
     /// The edges between triangles of different materials.
     pub(super) interfaces: Vec<[usize; 2]>,
     /// The edges of the whole boundary, from start to end, the body on their left.
@@ -167,6 +170,7 @@ impl Scene {
                 [Measure::Stress, Measure::Length].map(|measure| units.of(measure, case.thickness))
             }),
             stretch: case.stretch,
+            apart: apart(s),
             interfaces: interfaces(case).into_iter().flat_map(parts).collect(),
             outline: mesh.outline().iter().copied().flat_map(parts).collect(),
             contact: contact_surfaces(case, s, results),
@@ -202,7 +206,7 @@ impl Scene {
 
     /// The amount by which displacement and gap are magnified, and the words for it. True scale if the largest displacement is
     /// between 1% and 30% of the body, so that one sees it and the body keeps its shape, or if it is mere rounding; else the
-    /// largest round factor that keeps it within 10%.
+    /// largest round factor that keeps it within 10%, and what is left between bodies that touch within [`HARDLY_SEEN`].
     pub(super) fn magnification(&self) -> (f64, String) {
         let words = |factor: &str| format!("deformation and gap × {factor}");
         let largest = self.displacement.iter().map(|&u| distance(u, [0.0; 2])).fold(0.0, f64::max);
@@ -210,8 +214,9 @@ impl Scene {
         match self.stretch {
             Some(factor) if factor != 1.0 => (factor, words(&short(factor))),
             None if !(0.01..=0.3).contains(&part) && part > 1e-12 => {
-                let factor = round_below(0.1 / part);
-                if self.bends(factor) {
+                let most = 1.0 + HARDLY_SEEN * self.size() / self.apart;
+                let factor = round_below((0.1 / part).min(most));
+                if factor == 1.0 || self.bends(factor) {
                     return (1.0, "deformation at true scale".to_owned());
                 }
                 (factor, words(&short(factor)))
@@ -235,6 +240,16 @@ fn smooth(part: &mut [ContactSample]) {
             sample.pressure = sample.pressure / 2.0 + (a.pressure + b.pressure) / 4.0;
         }
     }
+}
+
+/// A share of the body's size that does not strike the eye: about the width of a line.
+const HARDLY_SEEN: f64 = 0.002;
+
+/// The largest initial distance of bodies where they press on each other.
+fn apart(s: &Solution) -> f64 {
+    let points = s.between.iter().flat_map(|piece| &piece.points);
+    let pressed = points.filter(|point| point.pressure > 0.0);
+    pressed.map(|point| point.gap.abs()).fold(0.0, f64::max)
 }
 
 /// The edges between triangles of different materials.

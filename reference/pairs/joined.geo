@@ -1,0 +1,23 @@
+// Two blocks that share the nodes of an inclined line, along which the case splits them: gmsh -2 -format msh41 joined.geo
+Point(1) = {0, 0, 0, 0.3};
+Point(2) = {2, 0, 0, 0.3};
+Point(3) = {2, 1.1, 0, 0.15};
+Point(4) = {0, 0.9, 0, 0.2};
+Point(5) = {2, 2, 0, 0.35};
+Point(6) = {0, 2, 0, 0.3};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Line(5) = {3, 5};
+Line(6) = {5, 6};
+Line(7) = {6, 4};
+Curve Loop(1) = {1, 2, 3, 4};
+Curve Loop(2) = {-3, 5, 6, 7};
+Plane Surface(1) = {1};
+Plane Surface(2) = {2};
+Physical Curve("base") = {1};
+Physical Curve("top") = {6};
+Physical Curve("sides") = {2, 4, 5, 7};
+Physical Surface("lower") = {1};
+Physical Surface("upper") = {2};
