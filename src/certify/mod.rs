@@ -54,6 +54,7 @@ pub use signorini_audit::{dual, forces, proof};
 
 use self::proof::{Piece, Role};
 pub use self::quantities::ProvedQuantities;
+use crate::fem::law::Law;
 use crate::fem::{Degree, Mesh, Problem};
 use crate::kernel::{Ball, Scalar, Triangle};
 use crate::memory;
@@ -182,6 +183,13 @@ fn certify_near(
         let [first, second] = pair.boundaries.each_ref().map(|name| quoted(name, '\''));
         return Err(CertifyError::Unsupported(format!(
             "{first} and {second} are a pair, and there are no certificates for two bodies yet"
+        )));
+    }
+    if let Some(piece) = solution.pieces.iter().find(|p| matches!(p.geometry.law, Law::Friction(_)))
+    {
+        return Err(CertifyError::Unsupported(format!(
+            "the boundary {} has friction; certificates are for contact without friction",
+            quoted(piece.boundary(), '\'')
         )));
     }
     // Beside a quadratic v each is cut in four.

@@ -2,9 +2,11 @@
 
 use super::dense::{dot, norm};
 use super::discretization::Discretization;
+use super::grip::across;
+use super::law::Law;
 use super::piece::Piece;
 use super::rigid::{FreeMotion, NEGLIGIBLE, Parts, null_space};
-use super::solvability::{Slides, all, joined, negligible, rows};
+use super::solvability::{Slides, all, joined, moves, negligible, rows};
 use crate::kernel::{DoubleDouble, Response};
 
 /// An edge presses where P is above this share of the largest; below it P is what the tolerance of Newton's method leaves. With a
@@ -27,7 +29,8 @@ impl Slides {
             Some(p) if !is_idle => p[piece.functionals()].iter().map(|p| p.head()).collect(),
             _ => piece.p(u),
         };
-        let p: Vec<Vec<f64>> = d.contact.iter().zip(idle).map(of_piece).collect();
+        let all: Vec<Vec<f64>> = d.contact.iter().zip(idle).map(of_piece).collect();
+        let p: Vec<&[f64]> = d.contact.iter().zip(&all).map(|(edge, p)| edge.along(p)).collect();
         // Tails are there if P is known to them.
         let is_fine = known.is_some_and(|p| p.iter().any(|p| p.tail() != 0.0));
         let unit = if is_fine { f64::EPSILON * f64::EPSILON } else { f64::EPSILON };
@@ -36,16 +39,19 @@ impl Slides {
         let pushing = p.iter().zip(&d.contact).filter(|(_, piece)| !pulls(piece));
         let largest = pushing.map(|(p, _)| most(p)).fold(0.0, f64::max);
         let far = size(u.as_flattened());
-        let presses = |(p, piece): (&Vec<f64>, &Piece)| {
+        let presses = |((p, all), piece): ((&&[f64], &Vec<f64>), &Piece)| {
             let gap = piece.geometry.gaps().fold(0.0, |m: f64, g| m.max(g.abs()));
             let rounding = 8.0 * unit * (far + gap);
-            let active = piece.contribution(&d.rule, p).active;
+            let active = piece.contribution(&d.rule, all).active;
             pulls(piece) || (most(p) > rounding.max(PRESSES * largest) && active > 0.0)
         };
-        let pressing = p.iter().zip(&d.contact).map(presses);
+        let pressing = p.iter().zip(&all).zip(&d.contact).map(presses);
         let pressing: Vec<bool> = pressing.zip(idle).map(|(yes, idle)| yes && !idle).collect();
         let parts = Parts::new(d.space.mesh());
-        let slides = Slides::new(free_where(d, &parts, &pressing), &parts, &d.space);
+        // Friction stops what it does not let go on: the loads are not on the verge of that.
+        let rough = d.contact.iter().map(|piece| matches!(piece.geometry.law, Law::Friction(_)));
+        let stops: Vec<[bool; 2]> = pressing.iter().zip(rough).map(|(&p, r)| [p, r]).collect();
+        let slides = Slides::new(free_where(d, &parts, &stops), &parts, &d.space);
         let (at, basis) = (slides.at(u), &slides.basis);
         let rounding = NEGLIGIBLE.max(d.rounding_of_directions());
         let (mut bounds, mut stopping) = (Vec::new(), Vec::new());
@@ -80,12 +86,22 @@ fn pulls(piece: &Piece) -> bool {
     piece.responses().all(|(response, _)| response == Response::Bilateral)
 }
 
-/// The motions of `d` that neither supports nor the contact edges that are pressing stop.
-pub(crate) fn free_where(d: &Discretization, parts: &Parts, pressing: &[bool]) -> Vec<FreeMotion> {
+/// The motions of `d` that neither supports nor the contact edges stop that are pressing, or where friction stops what slides along them.
+pub(crate) fn free_where(
+    d: &Discretization,
+    parts: &Parts,
+    stops: &[[bool; 2]],
+) -> Vec<FreeMotion> {
     let mut free = Vec::new();
     for of_part in &joined(&d.motions, parts, &d.contact) {
         let count = of_part.len();
-        let rows = all(&rows(of_part, parts, &d.space, &d.contact, |e| pressing[e]));
+        let mut rows = all(&rows(of_part, parts, &d.space, &d.contact, |e| stops[e][0]));
+        let is_rough = |piece: &Piece| {
+            matches!(piece.geometry.law, Law::Friction(_)) && moves(of_part, parts, piece)
+        };
+        for (piece, _) in d.contact.iter().zip(stops).filter(|(p, s)| s[1] && is_rough(p)) {
+            rows.extend(across(of_part, parts, &d.space, piece));
+        }
         let none = negligible(&rows, count, d.rounding_of_directions());
         let weights = null_space(&rows, count, |value, _| value > none);
         free.extend(weights.iter().map(|weights| parts.combined(of_part, weights)));

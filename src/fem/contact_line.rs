@@ -10,11 +10,12 @@ use std::sync::Arc;
 use super::boundary_normals::{SmoothBoundary, SmoothPoint};
 use super::data::{DataError, finite};
 use super::element::Degree;
+use super::friction::{Bound, Friction};
 use super::function::SharedFunction;
 use super::law::Law;
 use super::mesh::{BoundaryEdge, ROUNDED};
 use super::obstacle::Closest;
-use super::pairs::{self, PairPiece, PairSide};
+use super::pairs::{self, Pair, PairPiece, PairSide};
 use super::piece::{Piece, PieceGeometry, PieceNode, SideData, Stretch};
 use super::problem::{Condition, Problem};
 use super::space::Space;
@@ -123,21 +124,29 @@ impl ContactLine {
     /// [`DataError::NoContact`], a gap that is not finite, an obstacle on the other side of the body, and unknown boundary names.
     pub fn new(problem: &Problem, space: &Space) -> Result<Self, DataError> {
         let obstacles = Obstacles { problem, smooth: SmoothBoundary::new(&problem.mesh) };
-        let mut pieces: Vec<Arc<PieceGeometry>> = Vec::new();
+        let mut pieces: Vec<PieceGeometry> = Vec::new();
         for (edge, name) in contact_edges(problem)? {
             let boundary = match pieces.last() {
                 Some(last) if &*last.first().boundary == name => Arc::clone(&last.first().boundary),
                 _ => Arc::from(name),
             };
-            pieces.push(Arc::new(obstacles.piece(space, edge, boundary)?));
+            pieces.push(obstacles.piece(space, edge, boundary)?);
         }
+        without_idle_friction(problem, &mut pieces)?;
+        let mut pieces: Vec<Arc<PieceGeometry>> = pieces.into_iter().map(Arc::new).collect();
         check_sides(problem, &pieces)?;
         let degree = space.degree();
         let of_pairs = pairs::of_problem(problem, &obstacles.smooth, degree)?;
         for (pair, of_pair) in problem.pairs.iter().zip(of_pairs) {
             let names = pair.boundaries.each_ref().map(|name| Arc::from(name.as_str()));
-            let between = |piece| obstacles.piece_between(&names, pair.law, piece);
-            let of_pair: Vec<PieceGeometry> = of_pair.into_iter().map(between).collect();
+            let between = |piece| obstacles.piece_between(&names, pair, piece);
+            let mut of_pair: Vec<PieceGeometry> =
+                of_pair.into_iter().map(between).collect::<Result<_, _>>()?;
+            if pair.friction.is_some() {
+                let has_contact = pair.law == Law::Contact;
+                let what = || pairs::named(&pair.boundaries);
+                check_friction(problem, has_contact, what, of_pair.iter_mut().collect())?;
+            }
             let place = |piece: &PieceGeometry, a: usize| {
                 piece.first().place(&problem.mesh, a).map(f64::to_bits)
             };
@@ -299,6 +308,75 @@ pub fn assemble(
     Ok(ContactLine::new(problem, space)?.with_gamma(problem, space, gamma.into()))
 }
 
+/// Takes out friction that bears nothing all along its boundary: there the method is that of contact alone, to the bit.
+///
+/// # Errors
+/// Friction on a boundary without contact.
+fn without_idle_friction(problem: &Problem, pieces: &mut [PieceGeometry]) -> Result<(), DataError> {
+    for name in problem.friction.keys() {
+        let has_contact = problem.conditions.get(name).is_some_and(Condition::is_contact);
+        let what = || format!("[boundary.{}]", key(name));
+        let on_it = pieces.iter_mut().filter(|piece| *piece.first().boundary == **name).collect();
+        check_friction(problem, has_contact, what, on_it)?;
+    }
+    Ok(())
+}
+
+/// Checks that the friction of these pieces, on what is called `what`, can be computed, and takes it out where it bears nothing.
+///
+/// # Errors
+/// Friction without contact, and in a body of revolution.
+fn check_friction(
+    problem: &Problem,
+    has_contact: bool,
+    what: impl Fn() -> String,
+    pieces: Vec<&mut PieceGeometry>,
+) -> Result<(), DataError> {
+    if !has_contact {
+        return Err(DataError::FrictionWithoutContact { what: what() });
+    }
+    if problem.material.are_of_revolution() {
+        return Err(DataError::FrictionInRevolution { what: what() });
+    }
+    let bears = |piece: &PieceGeometry| match piece.law {
+        Law::Friction(Bound::Tresca(ends)) => ends.iter().any(|&s| s > 0.0),
+        Law::Friction(Bound::Coulomb(mu)) => mu > 0.0,
+        _ => false,
+    };
+    if !pieces.iter().any(|piece| bears(piece)) {
+        pieces.into_iter().for_each(|piece| piece.law = Law::Contact);
+    }
+    Ok(())
+}
+
+/// The law of contact with friction on a piece with these ends; `what` names its slip bound.
+fn law_of(
+    friction: &Friction,
+    ends: [[f64; 2]; 2],
+    what: impl Fn() -> String,
+) -> Result<Law, DataError> {
+    match friction {
+        &Friction::Coulomb(mu) if mu >= 0.0 && mu.is_finite() => {
+            Ok(Law::Friction(Bound::Coulomb(mu)))
+        }
+        Friction::Coulomb(mu) => {
+            let expected = "a number that is not negative";
+            let (what, found) = ("the coefficient of friction", mu.to_string());
+            Err(DataError::Value { what, found, expected })
+        }
+        Friction::Tresca(bound) => {
+            let at = |place: [f64; 2]| match finite(&**bound, place, &what)? {
+                value if value < 0.0 => {
+                    let [x, y] = place;
+                    Err(DataError::NegativeFriction { what: what(), value, x, y })
+                }
+                value => Ok(value),
+            };
+            Ok(Law::Friction(Bound::Tresca([at(ends[0])?, at(ends[1])?])))
+        }
+    }
+}
+
 /// No edge that faces away from its obstacle lies inside it, and no boundary faces away as a whole: else the obstacle is on the
 /// other side of the body. Other edges may face away, as those of the upper half of a disk on a floor.
 fn check_sides(problem: &Problem, line: &[Arc<PieceGeometry>]) -> Result<(), DataError> {
@@ -362,10 +440,16 @@ impl Obstacles<'_> {
             _ => 0.0,
         };
         let positions = space.degree().edge_positions();
+        let law = match self.problem.friction.get(&*boundary) {
+            None => Law::Contact,
+            Some(friction) => law_of(friction, [nodes[0].place, nodes[1].place], || {
+                format!("[boundary.{}] contact.friction.tresca", key(&boundary))
+            })?,
+        };
         Ok(PieceGeometry {
             stretches: vec![Stretch { edge, boundary, positions }],
             nodes,
-            law: Law::Contact,
+            law,
             curved: self.smooth.at_ends(edge).is_some(),
             along_normal,
             bulge,
@@ -373,8 +457,14 @@ impl Obstacles<'_> {
     }
 
     /// A piece between two bodies.
-    fn piece_between(&self, names: &[Arc<str>; 2], law: Law, piece: PairPiece) -> PieceGeometry {
+    fn piece_between(
+        &self,
+        names: &[Arc<str>; 2],
+        pair: &Pair,
+        piece: PairPiece,
+    ) -> Result<PieceGeometry, DataError> {
         let PairPiece { sides, directions, gap, .. } = piece;
+        let mesh = &self.problem.mesh;
         let curved = self.smooth.at_ends(sides[0].edge).is_some();
         let stretch = |(side, name): (PairSide, &Arc<str>)| Stretch {
             edge: side.edge,
@@ -382,10 +472,22 @@ impl Obstacles<'_> {
             positions: side.places,
         };
         let stretches: Vec<Stretch> = sides.into_iter().zip(names).map(stretch).collect();
-        let place = |a: usize| stretches[0].place(&self.problem.mesh, a);
+        let place = |a: usize| stretches[0].place(mesh, a);
         let node = |(a, (direction, gap))| PieceNode { place: place(a), direction, gap };
         let nodes = directions.into_iter().zip(gap).enumerate().map(node).collect();
-        PieceGeometry { nodes, law, curved, along_normal: false, bulge: 0.0, stretches }
+        let law = match &pair.friction {
+            Some(friction) if pair.law == Law::Contact => {
+                let middle = |a: usize| {
+                    let [p, q] = [0, 1].map(|i| stretches[i].place(mesh, a));
+                    [0, 1].map(|c| (p[c] + q[c]) / 2.0)
+                };
+                law_of(friction, [middle(0), middle(1)], || {
+                    format!("the slip bound of {}", pairs::named(&pair.boundaries))
+                })?
+            }
+            _ => pair.law,
+        };
+        Ok(PieceGeometry { nodes, law, curved, along_normal: false, bulge: 0.0, stretches })
     }
 
     /// Gap and direction at a point of the boundary `name`.

@@ -57,6 +57,17 @@ pub enum DataError {
         quoted(support, '\''), number(*x), number(*y), short(*depth), quoted(boundary, '\'')
     )]
     HeldInside { support: String, boundary: String, x: f64, y: f64, depth: f64 },
+    #[error(
+        "{what} is {value} at ({}, {}); expected a stress that is not negative at every point of the boundary",
+        number(*x), number(*y)
+    )]
+    NegativeFriction { what: String, value: f64, x: f64, y: f64 },
+    #[error("{what} has friction and no contact; expected a boundary with contact, or no friction")]
+    FrictionWithoutContact { what: String },
+    #[error(
+        "{what} has friction, and the body is one of revolution: friction there is not computed by this program; expected contact without friction, or a plane body"
+    )]
+    FrictionInRevolution { what: String },
     #[error("the material is none: {0}")]
     Material(#[from] MaterialError),
     #[error("{what} is {found}; expected {expected}")]

@@ -2,6 +2,7 @@
 //! freedom the solution makes it zero; on the prescribed ones it is the reaction.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use nalgebra::Vector2;
 
@@ -10,10 +11,11 @@ use super::contact_line::{Coercivity, ContactLine, Gamma};
 use super::data::DataError;
 use super::dense::inner;
 use super::element::Degree;
-use super::law::EdgeRule;
+use super::friction::Bound;
+use super::law::{EdgeRule, Law};
 use super::loads::{self, LoadVector};
 use super::material;
-use super::piece::Piece;
+use super::piece::{Piece, PieceGeometry};
 use super::problem::Problem;
 use super::revolution;
 use super::rigid::FreeMotion;
@@ -151,6 +153,40 @@ impl<'a> Discretization<'a> {
             load: self.load.clone(),
             enclosed_load: self.enclosed_load.clone(),
             contact: self.contact.clone(),
+            rule: self.rule.clone(),
+            motions: self.motions.clone(),
+            ..*self
+        }
+    }
+
+    /// The discretization with Tresca's friction where this one has Coulomb's; `bound` tells the slip bound at the ends of a piece from
+    /// its number and its coefficient.
+    #[must_use]
+    pub(crate) fn with_slip_bounds(&self, bound: impl Fn(usize, f64) -> [f64; 2]) -> Self {
+        self.with_coulomb(|e, mu| Bound::Tresca(bound(e, mu)))
+    }
+
+    /// The discretization with this many times the coefficients of Coulomb's friction.
+    #[must_use]
+    pub(crate) fn with_coefficients(&self, times: f64) -> Self {
+        self.with_coulomb(|_, mu| Bound::Coulomb(times * mu))
+    }
+
+    fn with_coulomb(&self, bound: impl Fn(usize, f64) -> Bound) -> Self {
+        let mut contact = self.contact.clone();
+        for (e, piece) in contact.iter_mut().enumerate() {
+            if let Law::Friction(Bound::Coulomb(mu)) = piece.geometry.law {
+                let law = Law::Friction(bound(e, mu));
+                piece.geometry = Arc::new(PieceGeometry { law, ..(*piece.geometry).clone() });
+            }
+        }
+        Discretization {
+            constraints: self.constraints.clone(),
+            slides: self.slides.clone(),
+            space: self.space.clone(),
+            load: self.load.clone(),
+            enclosed_load: self.enclosed_load.clone(),
+            contact,
             rule: self.rule.clone(),
             motions: self.motions.clone(),
             ..*self

@@ -3,12 +3,13 @@
 use nalgebra::DMatrix;
 
 use super::element::{Degree, with_element};
+use super::friction::{self, Bound};
 use super::quadrature;
 use crate::kernel::edge_integral::{self, ExactEdge};
 use crate::kernel::{DoubleDouble, EdgeIntegrals, Element, Response};
 
-/// How the two sides of Gamma_C act on each other. A law answers to each component of the jump by itself.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// How the two sides of Gamma_C act on each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Law {
     /// Unilateral contact without friction, conditions (2).
@@ -18,13 +19,16 @@ pub enum Law {
     Sliding,
     /// No jump at all: meshes that do not match, glued.
     Bonded,
+    /// Contact, and friction across up to a bound.
+    Friction(Bound),
 }
 
 impl Law {
-    /// What it answers to the components of the jump: along the direction of contact, and across if it feels that.
+    /// What it answers to each component of the jump by itself: along the direction of contact, and across if it feels that, but
+    /// for friction.
     pub fn responses(self) -> &'static [Response] {
         match self {
-            Law::Contact => &[Response::Unilateral],
+            Law::Contact | Law::Friction(_) => &[Response::Unilateral],
             Law::Sliding => &[Response::Bilateral],
             Law::Bonded => &[Response::Bilateral, Response::Bilateral],
         }
@@ -32,15 +36,26 @@ impl Law {
 
     /// The number of components of the jump that it feels.
     pub fn components(self) -> usize {
-        self.responses().len()
+        match self {
+            Law::Friction(_) => 2,
+            _ => self.responses().len(),
+        }
     }
 
-    /// The integrals of (8) and J_h over a piece for P with the nodal values `p`, component after component; with the weight r where it
-    /// has these `radii` at its ends.
+    /// The values of P at the nodes of a piece, component after component, at which the interface gives way to none: pressed and
+    /// sticking.
+    pub fn closed(self, degree: Degree) -> Vec<f64> {
+        let nodes = degree.nodes_per_edge();
+        let value = |i: usize| if i < nodes { 1.0 } else { 0.0 };
+        (0..self.components() * nodes).map(value).collect()
+    }
+
+    /// The integrals of (8) and J_h over a piece with this gamma for P with the nodal values `p`, component after component; with the
+    /// weight r where it has these `radii` at its ends. Friction is for plane bodies.
     pub fn integrals<T: Copy + Into<DoubleDouble>>(
         self,
         rule: &EdgeRule,
-        degree: Degree,
+        (degree, gamma): (Degree, f64),
         radii: Option<[f64; 2]>,
         p: &[T],
     ) -> Integrals {
@@ -51,14 +66,27 @@ impl Law {
         let mut each = self.responses().iter().zip(p.chunks(degree.nodes_per_edge())).map(of);
         // Every law has a component.
         let first = each.next().unwrap_or_default();
-        each.fold(first, Integrals::beside)
+        match self {
+            Law::Friction(bound) => {
+                let (normal, across) = p.split_at(degree.nodes_per_edge().min(p.len()));
+                first.with_friction(friction::integrals(
+                    bound,
+                    rule,
+                    (degree, gamma),
+                    normal,
+                    across,
+                ))
+            }
+            _ => each.fold(first, Integrals::beside),
+        }
     }
 
-    /// The integral of the Bregman distance of the energy from P to Q, given by their nodal values.
+    /// The integral of the Bregman distance of the energy from P to Q, given by their nodal values. Coulomb's law has no energy: its
+    /// bound is taken where P is.
     pub fn bregman<T: Copy + Into<DoubleDouble>>(
         self,
         rule: &EdgeRule,
-        degree: Degree,
+        (degree, gamma): (Degree, f64),
         radii: Option<[f64; 2]>,
         p: &[T],
         q: &[T],
@@ -72,7 +100,12 @@ impl Law {
                 bilateral(degree, radii, &step).energy
             }
         };
-        self.responses().iter().zip(p.chunks(nodes)).zip(q.chunks(nodes)).map(of).sum()
+        let own: f64 =
+            self.responses().iter().zip(p.chunks(nodes)).zip(q.chunks(nodes)).map(of).sum();
+        match self {
+            Law::Friction(bound) => own + friction::bregman(bound, rule, (degree, gamma), p, q),
+            _ => own,
+        }
     }
 }
 
@@ -102,18 +135,22 @@ pub struct Integrals {
     pub hessian: DMatrix<f64>,
     /// the measure of {P > 0}
     pub active: f64,
+    /// The measures of where friction sticks and of where it slides.
+    pub friction: [f64; 2],
 }
 
 impl Default for Integrals {
     fn default() -> Self {
-        Integrals { energy: 0.0, gradient: Vec::new(), hessian: DMatrix::zeros(0, 0), active: 0.0 }
+        let (gradient, hessian) = (Vec::new(), DMatrix::zeros(0, 0));
+        Integrals { energy: 0.0, gradient, hessian, active: 0.0, friction: [0.0; 2] }
     }
 }
 
 impl<const M: usize> From<EdgeIntegrals<f64, M>> for Integrals {
     fn from(of: EdgeIntegrals<f64, M>) -> Self {
         let hessian = DMatrix::from_fn(M, M, |a, b| of.hessian[a][b]);
-        Integrals { energy: of.energy, gradient: of.gradient.into(), hessian, active: of.active }
+        let (gradient, friction) = (of.gradient.into(), [0.0; 2]);
+        Integrals { energy: of.energy, gradient, hessian, active: of.active, friction }
     }
 }
 
@@ -126,7 +163,15 @@ impl Integrals {
         hessian.view_mut((rows, rows), (more, more)).copy_from(&other.hessian);
         self.gradient.extend(other.gradient);
         let (energy, active) = (self.energy + other.energy, self.active.max(other.active));
-        Integrals { energy, gradient: self.gradient, hessian, active }
+        Integrals { energy, gradient: self.gradient, hessian, active, friction: [0.0; 2] }
+    }
+
+    /// These integrals of contact, and those of friction beside. Its forces change with P_n where the bound does.
+    fn with_friction(self, friction: friction::Across) -> Integrals {
+        let (rows, measures) = (self.hessian.nrows(), friction.measures);
+        let mut both = self.beside(friction.itself);
+        both.hessian.view_mut((rows, 0), friction.by_normal.shape()).copy_from(&friction.by_normal);
+        Integrals { friction: measures, ..both }
     }
 }
 
@@ -238,7 +283,9 @@ impl EdgeRule {
 }
 
 /// Points and weights, exactly.
-fn in_double_doubles(rule: &[(f64, f64)]) -> impl Iterator<Item = (DoubleDouble, DoubleDouble)> {
+pub(super) fn in_double_doubles(
+    rule: &[(f64, f64)],
+) -> impl Iterator<Item = (DoubleDouble, DoubleDouble)> {
     rule.iter().map(|&(s, weight)| (s.into(), weight.into()))
 }
 
@@ -246,7 +293,8 @@ fn in_double_doubles(rule: &[(f64, f64)]) -> impl Iterator<Item = (DoubleDouble,
 mod tests {
     use super::*;
 
-    const LAWS: [Law; 3] = [Law::Contact, Law::Sliding, Law::Bonded];
+    const LAWS: [Law; 4] =
+        [Law::Contact, Law::Sliding, Law::Bonded, Law::Friction(Bound::Tresca([0.4, 0.7]))];
     const DEGREES: [Degree; 2] = [Degree::One, Degree::Two];
 
     /// Values at the nodes of a piece, of both signs.
@@ -258,7 +306,7 @@ mod tests {
     #[test]
     fn the_force_is_the_slope_of_the_energy_and_the_tangent_that_of_the_force() {
         for (law, degree) in LAWS.into_iter().flat_map(|law| DEGREES.map(|degree| (law, degree))) {
-            let at = |p: &[f64]| law.integrals(&EdgeRule::Exact, degree, None, p);
+            let at = |p: &[f64]| law.integrals(&EdgeRule::Exact, (degree, 1.0), None, p);
             let p = values(law, degree, 0.4);
             let step = 1e-5;
             for i in 0..p.len() {
@@ -282,16 +330,18 @@ mod tests {
     #[test]
     fn the_bregman_distance_is_the_nonlinear_part_of_the_change_of_energy() {
         for (law, degree) in LAWS.into_iter().flat_map(|law| DEGREES.map(|degree| (law, degree))) {
-            let at = |p: &[f64]| law.integrals(&EdgeRule::Exact, degree, None, p);
+            let at = |p: &[f64]| law.integrals(&EdgeRule::Exact, (degree, 1.0), None, p);
             let (p, q) = (values(law, degree, 0.4), values(law, degree, 2.9));
             let gradient = at(&p).gradient;
             let slope: f64 = (0..p.len()).map(|i| gradient[i] * (q[i] - p[i])).sum();
             let expected = at(&q).energy - at(&p).energy - slope;
-            let found = law.bregman(&EdgeRule::Exact, degree, None, &p, &q);
+            let found = law.bregman(&EdgeRule::Exact, (degree, 1.0), None, &p, &q);
             // Numbers of size 1.
             assert!((found - expected).abs() < 1e-14, "{law:?} {degree:?}: {found} {expected}");
             let other = LAWS[usize::from(law == Law::Contact)];
-            assert!((other.bregman(&EdgeRule::Exact, degree, None, &p, &q) - found).abs() > 1e-3);
+            assert!(
+                (other.bregman(&EdgeRule::Exact, (degree, 1.0), None, &p, &q) - found).abs() > 1e-3
+            );
         }
     }
 }

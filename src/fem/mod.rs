@@ -13,9 +13,11 @@ pub mod discretization;
 pub mod element;
 #[doc(hidden)]
 pub mod embedding;
+pub mod friction;
 mod function;
 #[doc(hidden)]
 pub mod graded_quadrature;
+mod grip;
 pub(crate) mod groups;
 pub(crate) mod held;
 #[doc(hidden)]
@@ -61,6 +63,7 @@ pub use contact_line::ContactLine;
 pub use data::DataError;
 pub use discretization::Discretization;
 pub use element::Degree;
+pub use friction::Friction;
 pub use function::{Function, SharedFunction};
 pub use law::{EdgeRule, Law};
 pub use material::Materials;

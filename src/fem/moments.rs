@@ -6,12 +6,14 @@
 //! radius. A cut that is off by e leaves |P| = O(e) there, and Newton's method in balls makes e some 2^-100.
 
 use super::element::{Degree, with_element};
-use super::law::EdgeRule;
+use super::friction;
+use super::law::{EdgeRule, Law};
 use super::piece::Piece;
 use crate::kernel::ball::{PreciseBall, larger};
 use crate::kernel::edge_integral::{
     bilateral, bilateral_in_revolution, gauss, gauss_in_revolution, radius, roots, value_at,
 };
+use crate::kernel::friction::gauss_friction;
 use crate::kernel::{Element, Response};
 
 impl Piece<PreciseBall> {
@@ -29,8 +31,12 @@ impl Piece<PreciseBall> {
             }),
         };
         let responses = self.geometry.law.responses().iter();
-        let moments = responses.zip(p.chunks(self.degree.nodes_per_edge())).flat_map(of);
-        moments.map(|moment| weight * moment).collect()
+        let mut moments: Vec<PreciseBall> =
+            responses.zip(p.chunks(self.degree.nodes_per_edge())).flat_map(of).collect();
+        if let Law::Friction(bound) = self.geometry.law {
+            moments.extend(friction::enclosed(bound, rule, (self.degree, self.gamma), p));
+        }
+        moments.into_iter().map(|moment| weight * moment).collect()
     }
 }
 
@@ -80,6 +86,100 @@ fn moments_of<E: Element<N, M>, const N: usize, const M: usize>(
 /// The largest weight along an edge.
 fn largest(radii: Radii) -> f64 {
     radii.map_or(1.0, |[start, end]| larger(start.upper(), end.upper()))
+}
+
+/// int clip(P; \[m\]+) N_a for P and m of this degree with the nodal values `p` and `m`, by the rule of the method.
+pub fn of_friction(
+    rule: &EdgeRule,
+    degree: Degree,
+    p: &[PreciseBall],
+    m: &[PreciseBall],
+) -> Vec<PreciseBall> {
+    with_element!(degree, E => {
+        let (p, m) = (std::array::from_fn(|a| p[a]), std::array::from_fn(|a| m[a]));
+        friction_of::<E, _, _>(degree, rule, p, m).into()
+    })
+}
+
+fn friction_of<E: Element<N, M>, const N: usize, const M: usize>(
+    degree: Degree,
+    rule: &EdgeRule,
+    p: [PreciseBall; M],
+    m: [PreciseBall; M],
+) -> [PreciseBall; M] {
+    match rule {
+        EdgeRule::Gauss(points) => {
+            let points = points.iter().map(|&(s, w)| (PreciseBall::from(s), PreciseBall::from(w)));
+            gauss_friction::<E, _, _, _>(p, m, points).gradient
+        }
+        EdgeRule::Exact => {
+            // The clip is Lipschitz in both with the constant 1.
+            let spread = p.iter().chain(&m).map(|ball| ball.radius()).sum::<f64>();
+            let centres = |v: [PreciseBall; M]| v.map(|ball| PreciseBall::point(ball.centre()));
+            by_sections::<E, _, _>(degree, centres(p), centres(m))
+                .map(|moment| moment.widened(2.0 * spread))
+        }
+    }
+}
+
+/// The edge is cut near the roots of m, m - P and m + P. On each section P, m, -m or nothing is integrated; where that is not the
+/// clip, it differs from it by at most
+///
+/// - P: \[P - m\]+ + \[-P - m\]+,   m: \[m - P\]+ + \[-m\]+,   -m: \[m + P\]+ + \[-m\]+,   nothing: \[m\]+.
+fn by_sections<E: Element<N, M>, const N: usize, const M: usize>(
+    degree: Degree,
+    p: [PreciseBall; M],
+    m: [PreciseBall; M],
+) -> [PreciseBall; M] {
+    let below: [PreciseBall; M] = std::array::from_fn(|a| m[a] - p[a]);
+    let above: [PreciseBall; M] = std::array::from_fn(|a| m[a] + p[a]);
+    let parabolas = [m, below, above].map(|values| (Parabola::new(degree, &values), values));
+    let mut cuts = vec![PreciseBall::from(0), PreciseBall::from(1)];
+    for (parabola, values) in &parabolas {
+        let heads = values.map(PreciseBall::head);
+        cuts.extend(roots::<E, _, _>(heads).map(|root| parabola.refined(root)));
+    }
+    cuts.sort_unstable_by(|a, b| a.head().total_cmp(&b.head()));
+    let [(bound, _), (below, _), (above, _)] = &parabolas;
+    let mut sum = [PreciseBall::from(0); M];
+    let mut wrong = 0.0;
+    for section in cuts.windows(2) {
+        let (a, b) = (section[0], section[1]);
+        let length = b - a;
+        let points = boole(a, length);
+        let mean = |of: &Parabola| -> f64 {
+            points.iter().map(|(s, weight)| weight.head() * of.at(*s).head()).sum()
+        };
+        let over = |of: &Parabola, sign: i32| larger(of.largest(sign, a, b), 0.0);
+        let (values, other) = if mean(bound) <= 0.0 {
+            (None, over(bound, 1))
+        } else if mean(below) <= 0.0 {
+            (Some(m), over(below, 1) + over(bound, -1))
+        } else if mean(above) <= 0.0 {
+            (Some(m.map(|m| -m)), over(above, 1) + over(bound, -1))
+        } else {
+            (Some(p), over(below, -1) + over(above, -1))
+        };
+        if let Some(values) = values {
+            for (s, weight) in points {
+                let value = value_at::<E, _, _, _>(values, s);
+                let shapes: [PreciseBall; M] = E::edge_values(s);
+                for (sum, shape) in sum.iter_mut().zip(shapes) {
+                    *sum += length * weight * value * shape;
+                }
+            }
+        }
+        wrong += other * length.magnitude() * (1.0 + 16.0 * f64::EPSILON);
+    }
+    sum.map(|moment| moment.widened(wrong))
+}
+
+/// The points and weights of Boole's rule on a stretch that starts at `a`, exact to degree 5.
+fn boole(a: PreciseBall, length: PreciseBall) -> [(PreciseBall, PreciseBall); 5] {
+    [(0, 7), (1, 32), (2, 12), (3, 32), (4, 7)].map(|(i, weight)| {
+        let s = a + length * PreciseBall::from(i) / PreciseBall::from(4);
+        (s, PreciseBall::from(weight) / PreciseBall::from(90))
+    })
 }
 
 /// P = c_0 + c_1 s + c_2 s^2
@@ -155,11 +255,7 @@ fn by_pieces<E: Element<N, M>, const N: usize, const M: usize>(
     for piece in cuts.windows(2) {
         let (a, b) = (piece[0], piece[1]);
         let length = b - a;
-        // The points and weights of Boole's rule, exact to degree 5.
-        let points = [(0, 7), (1, 32), (2, 12), (3, 32), (4, 7)].map(|(i, weight)| {
-            let s = a + length * PreciseBall::from(i) / PreciseBall::from(4);
-            (s, PreciseBall::from(weight) / PreciseBall::from(90), parabola.at(s))
-        });
+        let points = boole(a, length).map(|(s, weight)| (s, weight, parabola.at(s)));
         let mean: f64 = points.iter().map(|(_, weight, p)| weight.head() * p.head()).sum();
         let positive = !(mean <= 0.0);
         if positive {

@@ -26,10 +26,12 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 pub use self::error::PairError;
+pub(super) use self::error::named;
 use self::search::{Boundary, Facing, Stretch};
 use super::boundary_normals::{SmoothBoundary, unit};
 use super::data::{DataError, finite};
 use super::element::Degree;
+use super::friction::Friction;
 use super::function::SharedFunction;
 use super::law::Law;
 use super::mesh::{BoundaryEdge, Mesh, MeshError, length};
@@ -50,6 +52,8 @@ pub struct Pair {
     pub reach: Option<f64>,
     /// What holds between them.
     pub law: Law,
+    /// Friction between them, beside contact; where there is none they are smooth.
+    pub friction: Option<Friction>,
 }
 
 impl Pair {
@@ -60,6 +64,7 @@ impl Pair {
             clearance: None,
             reach: None,
             law: Law::Contact,
+            friction: None,
         }
     }
 
@@ -82,6 +87,12 @@ impl Pair {
     #[must_use]
     pub fn with_law(self, law: Law) -> Self {
         Pair { law, ..self }
+    }
+
+    /// Sets the friction between the boundaries.
+    #[must_use]
+    pub fn with_friction(self, friction: Friction) -> Self {
+        Pair { friction: Some(friction), ..self }
     }
 
     /// The largest distance at which points of the two boundaries may face each other.

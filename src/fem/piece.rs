@@ -19,6 +19,8 @@ use super::stress_points::Nodal;
 use crate::kernel::axial::{HoopStress, edge_mass};
 use crate::kernel::contact_edge::integral_of_product;
 use crate::kernel::edge_integral::{self, weighted_product};
+use crate::kernel::friction::clip;
+use crate::kernel::positive_part;
 use crate::kernel::{ContactEdge, DoubleDouble, Element, Material, Response, Scalar, Triangle};
 
 /// A node of a piece.
@@ -252,6 +254,8 @@ pub struct Contribution {
     pub resultant: f64,
     /// The measure of {P > 0}.
     pub active: f64,
+    /// The measures of where friction sticks and of where it slides.
+    pub friction: [f64; 2],
 }
 
 /// The functionals P0 and sigma_n of a side.
@@ -500,6 +504,16 @@ impl<S: Scalar + From<f64>> Piece<S> {
         if i < count { d } else { across(d) }
     }
 
+    /// The values of P along the direction of contact, of those of all functionals.
+    pub fn along<'v, T>(&self, p: &'v [T]) -> &'v [T] {
+        &p[..self.degree.nodes_per_edge().min(p.len())]
+    }
+
+    /// The values of P across it; none where the law does not feel it.
+    pub fn across<'v, T>(&self, p: &'v [T]) -> &'v [T] {
+        &p[self.degree.nodes_per_edge().min(p.len())..]
+    }
+
     /// |E| / gamma
     pub fn weight(&self) -> S {
         self.length / self.gamma
@@ -708,23 +722,52 @@ impl Piece {
         rule: &EdgeRule,
         p: &[T],
     ) -> Contribution {
-        let Integrals { energy, gradient, hessian, active } =
-            self.geometry.law.integrals(rule, self.degree, self.radii, p);
+        self.softened(rule, 1.0, p)
+    }
+
+    /// [`Piece::contribution`] on springs that are `stiffness` times as stiff. The law is the same: what friction bears at most does not
+    /// depend on them.
+    pub fn softened<T: Copy + Into<DoubleDouble>>(
+        &self,
+        rule: &EdgeRule,
+        stiffness: f64,
+        p: &[T],
+    ) -> Contribution {
+        let of = (self.degree, self.gamma / stiffness);
+        let Integrals { energy, gradient, hessian, active, friction } =
+            self.geometry.law.integrals(rule, of, self.radii, p);
         let weight = self.weight();
         let along = &gradient[..self.degree.nodes_per_edge()];
         Contribution {
-            energy: weight * energy,
+            energy: stiffness * (weight * energy),
             // The shape functions add up to one.
-            resultant: weight * along.iter().sum::<f64>(),
-            force: gradient.iter().map(|g| weight * g).collect(),
-            tangent: weight * hessian,
+            resultant: stiffness * (weight * along.iter().sum::<f64>()),
+            force: gradient.iter().map(|g| stiffness * (weight * g)).collect(),
+            tangent: stiffness * (weight * hessian),
             active: self.length * active,
+            friction: friction.map(|measure| self.length * measure),
         }
     }
 
-    /// The Bregman distance of its energy from P to Q, given by their values at the nodes.
-    pub fn bregman<T: Copy + Into<DoubleDouble>>(&self, rule: &EdgeRule, p: &[T], q: &[T]) -> f64 {
-        self.weight() * self.geometry.law.bregman(rule, self.degree, self.radii, p, q)
+    /// The Bregman distance of the energy of [`Piece::softened`] from P to Q, given by their values at the nodes.
+    pub fn bregman<T: Copy + Into<DoubleDouble>>(
+        &self,
+        rule: &EdgeRule,
+        stiffness: f64,
+        p: &[T],
+        q: &[T],
+    ) -> f64 {
+        let of = (self.degree, self.gamma / stiffness);
+        stiffness * (self.weight() * self.geometry.law.bregman(rule, of, self.radii, p, q))
+    }
+
+    /// The shear stress of friction at node `a` where P has these values; 0 without friction.
+    pub(crate) fn shear_at(&self, p: &[DoubleDouble], a: usize) -> f64 {
+        let Law::Friction(bound) = self.geometry.law else { return 0.0 };
+        let [normal, across] = [self.along(p), self.across(p)]
+            .map(|p| p.iter().map(|p| p.head()).collect::<Vec<f64>>());
+        let bound = bound.at_nodes(self.gamma, &normal)[a];
+        -clip(across[a], positive_part(bound)) / self.gamma
     }
 
     /// The sums of the magnitudes of the products that P0(u) is added up from at the nodes.

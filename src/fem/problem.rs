@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::friction::Friction;
 use super::function::{Constant, SharedFunction};
 use super::material::Materials;
 use super::mesh::bisection::Refinement;
@@ -153,6 +154,8 @@ pub struct Problem {
     pub surface_forces: Vec<SurfaceForce>,
     /// The conditions on the named parts of the boundary.
     pub conditions: BTreeMap<String, Condition>,
+    /// Friction on contact boundaries; where there is none, the obstacle is smooth.
+    pub friction: BTreeMap<String, Friction>,
     /// Supports in single points.
     pub points: Vec<PointSupport>,
     /// Boundaries that may touch each other.
@@ -173,6 +176,7 @@ impl Problem {
             body_force,
             surface_forces: Vec::new(),
             conditions,
+            friction: BTreeMap::new(),
             points: Vec::new(),
             pairs: Vec::new(),
         }
@@ -195,6 +199,13 @@ impl Problem {
     /// Sets the condition on a named part of the boundary, in place of an earlier one.
     pub fn with(mut self, boundary: impl Into<String>, condition: Condition) -> Self {
         self.conditions.insert(boundary.into(), condition);
+        self
+    }
+
+    /// Sets the friction on a contact boundary, in place of an earlier one.
+    #[must_use]
+    pub fn with_friction(mut self, boundary: impl Into<String>, friction: Friction) -> Self {
+        self.friction.insert(boundary.into(), friction);
         self
     }
 

@@ -14,6 +14,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::dense::{dot, inner, least_squares, norm, singular_vectors};
+use super::grip::Grip;
 use super::groups::groups;
 use super::mesh::NO_ANGLE;
 use super::piece::Piece;
@@ -23,7 +24,7 @@ use crate::kernel::Response;
 
 /// Loads must go on pressing when they are changed by this share of the largest work of single loads: a body on the verge of tipping
 /// is not held. Nobody knows loads better, and it is ten thousand times what is taken for rounding.
-const MARGIN: f64 = 1e-6;
+pub(super) const MARGIN: f64 = 1e-6;
 
 /// The motions that contact and loads do not hold.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,23 +105,9 @@ pub(super) fn rows(
     contact: &[Piece],
     taken: impl Fn(usize) -> bool,
 ) -> Vec<EdgeRows> {
-    let part = |triangle: usize| parts.of_triangle()[triangle];
-    let moves = |part: usize| motions.iter().any(|motion| motion.part == part);
-    let of_parts = |(e, piece): &(usize, &Piece)| {
-        let mut sides = piece.geometry.stretches.iter();
-        taken(*e) && sides.any(|stretch| moves(part(stretch.edge.triangle)))
-    };
+    let of_parts = |(e, piece): &(usize, &Piece)| taken(*e) && moves(motions, parts, piece);
     let of_piece = |(e, piece): (usize, &Piece)| {
-        let row = |i: usize| -> Vec<f64> {
-            let compared = piece.compared(space.mesh(), i);
-            let jump = |motion: &FreeMotion| {
-                let at = |&(triangle, place, along): &(usize, [f64; 2], Vector2<f64>)| {
-                    Vector2::from(motion.at_point_of(part(triangle), place)).dot(&along)
-                };
-                compared.iter().map(at).sum()
-            };
-            motions.iter().map(jump).collect()
-        };
+        let row = |i: usize| jumps(motions, parts, space, piece, i);
         let mut rows = Vec::with_capacity(piece.p0.len());
         for (response, values) in piece.responses() {
             for own in values.map(row) {
@@ -133,6 +120,33 @@ pub(super) fn rows(
         (e, rows)
     };
     contact.iter().enumerate().filter(of_parts).map(of_piece).collect()
+}
+
+/// The jump of each of the motions in the component of functional `i` of a piece, at its node.
+pub(super) fn jumps(
+    motions: &[FreeMotion],
+    parts: &Parts,
+    space: &Space,
+    piece: &Piece,
+    i: usize,
+) -> Vec<f64> {
+    let compared = piece.compared(space.mesh(), i);
+    let jump = |motion: &FreeMotion| {
+        let at = |&(triangle, place, along): &(usize, [f64; 2], Vector2<f64>)| {
+            let part = parts.of_triangle()[triangle];
+            Vector2::from(motion.at_point_of(part, place)).dot(&along)
+        };
+        compared.iter().map(at).sum()
+    };
+    motions.iter().map(jump).collect()
+}
+
+/// Returns whether one of the motions moves a side of a piece.
+pub(super) fn moves(motions: &[FreeMotion], parts: &Parts, piece: &Piece) -> bool {
+    piece.geometry.stretches.iter().any(|stretch| {
+        let part = parts.of_triangle()[stretch.edge.triangle];
+        motions.iter().any(|motion| motion.part == part)
+    })
 }
 
 /// The rows of all these edges.
@@ -173,10 +187,25 @@ pub fn slides(
             pairs.map(|(l, r)| of(l * r)).sum()
         };
         let scale = fields.iter().map(|r| work(f64::abs, r)).fold(0.0, f64::max);
-        // In units of the largest work of single loads.
-        let unit = if scale > 0.0 { scale } else { 1.0 };
+        let grip = Grip::new(of_part, parts, space, contact, &edges);
+        // In units of the largest work of single loads, or of what friction can do.
+        let strength = grip.as_ref().map_or(0.0, Grip::size);
+        let unit = [scale, strength].into_iter().find(|&size| size > 0.0).unwrap_or(1.0);
         let loads: Vec<f64> = fields.iter().map(|r| work(|w| w, r) / unit).collect();
         let none = negligible(&all(&edges), count, rounding);
+        if let Some(grip) = grip {
+            let smooth = edges.iter().filter(|(e, _)| !grip.with_cones.contains(e));
+            let normal: Vec<Vec<f64>> = smooth.flat_map(|(_, rows)| rows.clone()).collect();
+            if let Some((weights, driven)) = grip.driven(&normal, &loads, unit, none) {
+                let motion = parts.combined(of_part, &weights);
+                let drive = work(|w| w, &motion.field(parts, space)) / motion.size();
+                return Err(NotHeld { drive: driven.then_some(drive), motions: vec![motion] });
+            }
+            let rows = [all(&edges), grip.rows()].concat();
+            let free = null_space(&rows, count, |value, _| value > none);
+            sliding.extend(free.iter().map(|weights| parts.combined(of_part, weights)));
+            continue;
+        }
         let kept = press(edges.clone(), &loads, none).map_err(|left| match left {
             Some((weights, driven)) => {
                 let motion = parts.combined(of_part, &weights);
@@ -348,7 +377,7 @@ fn orthonormal(fields: impl Iterator<Item = Vec<[f64; 2]>>) -> Vec<Vec<[f64; 2]>
 }
 
 /// The part of `target` that no combination of the rows with weights >= 0 reaches, if it is larger than `tolerance`.
-fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -> Option<Vec<f64>> {
+pub(super) fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -> Option<Vec<f64>> {
     // The rows in use and their weights.
     let mut used: Vec<(usize, f64)> = Vec::new();
     let mut rest = target.to_vec();

@@ -9,6 +9,7 @@ mod beyond;
 mod body;
 mod boundary;
 mod exact;
+mod friction;
 mod mesh;
 mod method;
 mod pairs;
@@ -25,6 +26,7 @@ pub use self::body::MaterialEcho;
 use self::body::{PLANES, only_isotropic, read_loads, read_materials};
 use self::boundary::{Depth, read_boundaries, read_points};
 use self::exact::read_exact;
+use self::friction::read_friction;
 use self::mesh::{Meshed, read_mesh};
 use self::method::{read_method, read_quantities, read_settings, read_target};
 use self::source::Source;
@@ -269,9 +271,10 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
     if let (Some(pair), Some(_)) = (root.get("pair"), &solution) {
         return Err(pair.at.found("a pair beside [exact]", "the contact of the exact solution"));
     }
-    let pairs = pairs::on_mesh(root, declared, &mesh)?;
+    let pairs = pairs::on_mesh(root, declared, &mesh, of_revolution)?;
     let depth = if of_revolution { Depth::Revolution } else { Depth::Of(thickness.unwrap_or(1.0)) };
     let (conditions, kinds) = read_boundaries(root, solution.as_ref(), &mesh, depth, &pairs)?;
+    let friction = read_friction(root, of_revolution)?;
     let points = read_points(root, &mesh)?;
     let adapt = root.optional_section("adapt", |table| read_target(table, &conditions))?;
     let asked = root.optional_section("certify", |table| read_quantities(table, &conditions))?;
@@ -280,7 +283,16 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
     Ok(Case {
         file: file.to_owned(),
         title,
-        problem: Problem { mesh, material, body_force, surface_forces, conditions, points, pairs },
+        problem: Problem {
+            mesh,
+            material,
+            body_force,
+            surface_forces,
+            conditions,
+            friction,
+            points,
+            pairs,
+        },
         materials,
         units,
         thickness,

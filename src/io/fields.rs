@@ -99,14 +99,23 @@ fn solution_vtu(
 type ContactNumber = (&'static str, fn(&ContactPoint) -> f64);
 
 /// u . n~ (between two bodies the jump of that), the gap g, n~ . sigma(u) n (negative in compression), the contact pressure lambda^h
-/// (never positive), and the recovered pressure (never negative).
-const CONTACT_NUMBERS: [ContactNumber; 5] = [
+/// (never positive), and the recovered pressure (never negative); where there is friction also the slip u_t and the shear stress of
+/// friction along t, n~ turned to the left.
+const CONTACT_NUMBERS: [ContactNumber; 7] = [
     ("u_n", |p| p.u_n),
     ("gap", |p| p.gap),
     ("sigma_n", |p| p.sigma_n),
     ("lambda", |p| p.lambda),
     ("pressure", |p| p.pressure),
+    ("u_t", |p| p.u_t),
+    ("shear", |p| p.shear),
 ];
+
+/// Those of a solution.
+fn contact_numbers(s: &Solution) -> &'static [ContactNumber] {
+    let friction = s.boundaries.iter().any(|boundary| boundary.friction.is_some());
+    if friction { &CONTACT_NUMBERS } else { &CONTACT_NUMBERS[..5] }
+}
 
 /// The file contact.vtu.
 fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
@@ -124,7 +133,9 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
     let places: Vec<[f64; 2]> = points().map(|p| p.place).collect();
     let displacement: Vec<[f64; 2]> = points().map(|p| p.displacement).collect();
     let direction: Vec<[f64; 2]> = points().map(|p| p.direction).collect();
-    let numbers = CONTACT_NUMBERS.map(|(name, of)| (name, points().map(of).collect::<Vec<f64>>()));
+    let named = contact_numbers(s).iter();
+    let numbers: Vec<(&str, Vec<f64>)> =
+        named.map(|(name, of)| (*name, points().map(of).collect())).collect();
     let mut point_data = vec![DataArray::vectors("displacement", &displacement)];
     point_data.extend(numbers.iter().map(|(name, numbers)| DataArray::scalars(name, numbers)));
     point_data.push(DataArray::vectors("direction", &direction));
@@ -140,14 +151,15 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
 /// A row for each node of each contact edge: arc length from the start of the boundary, place in the undeformed body, the
 /// numbers there.
 fn contact_csv(s: &Solution) -> Result<String, NotFinite> {
+    let named = contact_numbers(s);
     let row = |p: &ContactPoint| {
         let [x, y] = p.place;
-        let numbers = CONTACT_NUMBERS.iter().map(|(_, of)| of(p));
+        let numbers = named.iter().map(|(_, of)| of(p));
         [p.arc, x, y].into_iter().chain(numbers).collect::<Vec<f64>>()
     };
     let edges = s.contact_points();
     let rows: Vec<(Vec<f64>, &str)> =
         edges.iter().flatten().map(|p| (row(p), p.boundary)).collect();
-    let names = CONTACT_NUMBERS.map(|(name, _)| name);
+    let names: Vec<&str> = named.iter().map(|(name, _)| *name).collect();
     csv::table(&[&["arc", "x", "y"], &names[..], &["boundary"]].concat(), &rows)
 }

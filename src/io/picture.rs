@@ -225,6 +225,7 @@ mod tests {
             displacement: displacement[v],
             gap: 0.0,
             pressure: (0.5 - mesh.vertices()[v][0]).max(0.0),
+            shear: None,
         };
         let part = edges.iter().flat_map(|&e| mesh.ends(e)).map(sample).collect();
         Scene {

@@ -70,6 +70,7 @@ pub(super) fn remarks(problem: &Problem, solution: &Solution, words: &Words) -> 
     }
     remarks.extend(model::overlap(problem, words));
     remarks.extend(model::interference(problem, solution, words));
+    remarks.extend(friction(solution));
     let (largest, size) = (solution.quantities.max_displacement, size(problem));
     if largest > LARGE_DISPLACEMENT * size {
         remarks.push(format!(
@@ -91,6 +92,32 @@ pub(super) fn before(problem: &Problem, degree: Degree, words: &Words) -> Vec<St
     remarks.extend(resolution::gaps(problem, Known::Data(degree), words));
     remarks.extend(model::locking(problem, degree));
     remarks.extend(model::overlap(problem, words));
+    remarks
+}
+
+/// A share of what friction bears at most that acts across open gaps, above which that is said.
+const ACROSS_GAPS: f64 = 0.01;
+
+/// Says what a reader may not expect of friction.
+fn friction(solution: &Solution) -> Vec<String> {
+    let mut remarks = Vec::new();
+    for boundary in &solution.boundaries {
+        let Some(friction) = &boundary.friction else { continue };
+        if friction.across_gaps > ACROSS_GAPS {
+            remarks.push(format!(
+                "{} % of the friction that {} can bear acts across an open gap: Tresca's slip bound does not depend on the pressure; give a bound that is 0 there, or a coefficient (friction = {{ coulomb = 0.3 }})",
+                short(100.0 * friction.across_gaps, 2),
+                quote::quoted(&boundary.boundary, '\'')
+            ));
+        }
+    }
+    if solution.boundaries.iter().any(|b| b.friction.is_some_and(|friction| friction.slides > 0.0))
+    {
+        remarks.push(
+            "one step: friction is as if the loads grew in proportion, with slip in one direction"
+                .to_owned(),
+        );
+    }
     remarks
 }
 

@@ -20,7 +20,7 @@ use crate::fem::Mesh;
 use crate::fem::contact_line::Gamma;
 use crate::fem::solvability::Play;
 use crate::quote;
-use crate::solve::enclosure::{Enclosure, Unproved};
+use crate::solve::enclosure::{Enclosure, Isolation, Unproved};
 use crate::solve::{
     ContactBoundary, EnergyBalance, GammaReport, Intervals, MethodReport, Quantities, Status,
 };
@@ -324,6 +324,8 @@ pub struct DiscreteCertificate {
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub hardly_strains: bool,
     pub unique: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub isolated: Option<IsolatedSolution>,
     pub rigorous: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
@@ -331,6 +333,26 @@ pub struct DiscreteCertificate {
     pub intervals: Option<Intervals>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probes: Vec<f64>,
+}
+
+/// With Coulomb's friction: within which distance there is no other solution, relative and in the energy norm, and below which coefficient
+/// there is none anywhere, for all loads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct IsolatedSolution {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub within: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unique_below: Option<f64>,
+}
+
+impl From<Isolation> for IsolatedSolution {
+    fn from(isolation: Isolation) -> Self {
+        let below = isolation.limits.into_iter().fold(0.0, f64::max);
+        IsolatedSolution {
+            within: isolation.relative,
+            unique_below: (below > 0.0).then_some(below),
+        }
+    }
 }
 
 impl From<&Result<Enclosure, Unproved>> for DiscreteCertificate {
@@ -343,7 +365,8 @@ impl From<&Result<Enclosure, Unproved>> for DiscreteCertificate {
                 hardly_strains: e.hardly_strains,
                 pressure: Some(e.pressure),
                 problem: Some("the loads as quadrature gives them".to_owned()),
-                unique: true,
+                unique: e.isolation.is_none_or(|isolation| isolation.everywhere),
+                isolated: e.isolation.map(IsolatedSolution::from),
                 rigorous: true,
                 intervals: Some(e.intervals.clone()),
                 ..Default::default()

@@ -7,8 +7,8 @@ use super::case::{MaterialEcho, Measure, Units};
 use super::certificate::Audit;
 use super::convergence::Study;
 use super::result::{
-    Adaptation, ContinuousCertificate, DiscreteCertificate, GammaChoice, MeshSizes, NewtonHistory,
-    Results, Seconds, StressPeak,
+    Adaptation, ContinuousCertificate, DiscreteCertificate, GammaChoice, IsolatedSolution,
+    MeshSizes, NewtonHistory, Results, Seconds, StressPeak,
 };
 use super::sweep::Sweep;
 use super::{Case, numbers};
@@ -16,6 +16,7 @@ use crate::certify::Continuous;
 use crate::certify::adapt::AdaptedLevel;
 use crate::fem::solvability::Play;
 use crate::quote;
+use crate::solve::answers::BoundaryFriction;
 use crate::solve::{ContactBoundary, MethodReport, RouteName, Status};
 
 /// Lines of a name and a text; one without a name goes on with what the one before it is about.
@@ -205,6 +206,9 @@ fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines
         lines.line(name, format!("{boundary}: force {force}{components}, length {length}"));
         let peak = shown.number(part.peak_pressure, Measure::Stress);
         lines.line("", format!("peak pressure {peak}{}", at(part.peak_at)));
+        if let Some(friction) = &part.friction {
+            lines.line("", shear(friction, shown, &at(friction.slip_at)));
+        }
         if verbose {
             let mut words =
                 format!("{boundary}: moment {}", shown.number(part.moment, Measure::Moment));
@@ -219,6 +223,18 @@ fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines
             lines.line("", words);
         }
     }
+}
+
+/// Says what friction does.
+fn shear(friction: &BoundaryFriction, shown: &QuantityFormat, at: &str) -> String {
+    let force = shown.number(friction.shear, Measure::Force);
+    let [sticks, slides, slip] = [friction.sticks, friction.slides, friction.slip]
+        .map(|length| shown.number(length, Measure::Length));
+    let mut words = format!("friction {force}, sticks on {sticks}, slides on {slides}");
+    if friction.slides > 0.0 {
+        words += &format!(", by up to {slip}{at}");
+    }
+    words
 }
 
 /// Writes two numbers, rounded outwards to two digits of their distance, and no fewer than other numbers have: by half of the
@@ -440,21 +456,27 @@ const MOST_DIGITS: f64 = 15.0;
 
 /// Says how many digits of the discrete solution are proved.
 fn solved_exactly(certificate: &DiscreteCertificate) -> String {
-    let sliding = if certificate.unique { "" } else { ", but for sliding" };
+    let (sliding, beside) = match (certificate.unique, certificate.isolated) {
+        (true, _) => ("", ""),
+        (false, None) => (", but for sliding", ""),
+        (false, Some(_)) => {
+            ("", "; with Coulomb's friction there may be others, far from this one")
+        }
+    };
     let digits = match (certificate.radius, certificate.relative) {
         (None, _) => {
             let reason = certificate.reason.as_deref().unwrap_or_default();
             return format!("for this mesh, how exactly is not proved: {reason}");
         }
         (Some(_), Some(relative)) if relative > 0.0 => (-relative.log10()).floor().min(MOST_DIGITS),
-        _ => return format!("exactly for this mesh{sliding}, rounding included"),
+        _ => return format!("exactly for this mesh{sliding}, rounding included{beside}"),
     };
     match digits {
         digits if digits >= 1.0 => {
             let digits = count(digits as usize, "digit");
-            format!("exactly for this mesh{sliding}, to {digits}, rounding included")
+            format!("exactly for this mesh{sliding}, to {digits}, rounding included{beside}")
         }
-        _ => format!("for this mesh{sliding}, to less than a digit, rounding included"),
+        _ => format!("for this mesh{sliding}, to less than a digit, rounding included{beside}"),
     }
 }
 
@@ -482,6 +504,22 @@ fn enclosed(certificate: &DiscreteCertificate) -> String {
     let at_rest = certificate.relative.is_none() && radius > 0.0 && certificate.hardly_strains;
     let size = if at_rest { format!("{size}; the body hardly strains") } else { size };
     let of = certificate.problem.as_deref().map_or(String::new(), |what| format!(", with {what}"));
+    if let Some(IsolatedSolution { within, unique_below }) = certificate.isolated {
+        let near = match within {
+            Some(within) => format!(
+                "within 1e{} of this one (relative, in the energy norm)",
+                within.log10().floor()
+            ),
+            None => "near this one".to_owned(),
+        };
+        let elsewhere = if certificate.unique { ", and no other anywhere" } else { "" };
+        let below = unique_below.map_or(String::new(), |most| {
+            format!("; with a coefficient below {most:.3} there is one for all loads")
+        });
+        return format!(
+            "with Coulomb's friction, exactly one solution of the discrete equations {near}{elsewhere}{below}; this is within {size}, rounding included{of}"
+        );
+    }
     format!("{solutions}; this is within {size}, rounding included{of}")
 }
 

@@ -132,7 +132,9 @@ where
     if E::DEGREE == 1 { S::from(1) } else { S::from(2) - cosine }
 }
 
-/// [`turning_factor`] where the component across n~ acts as well: x + (x^2 - 1)^(1/2) with x = (4 - cosine) / 3 for P2.
+/// [`turning_factor`] where both components of the stress count, that along the direction of contact and that across:
+/// int_E |s(v)|^2 is at most the factor times int_E |sigma(v) n|^2, and the factor x + (x^2 - 1)^(1/2), x = (4 - cosine) / 3, of P2 is
+/// attained (docs/theory.md, 13.2).
 #[cfg(not(kani))]
 pub fn turning_factor_of_both<E, S, const N: usize, const M: usize>(
     cosine: S,

@@ -367,20 +367,25 @@ fn monomials<E: Element<N, M>, const N: usize, const M: usize>(p: [f64; M]) -> [
     }
 }
 
-/// \[0, 1\] cut at the places where one or two polynomials of degree <= 2 may change sign.
-struct Cuts {
-    at: [f64; 6],
+/// \[0, 1\] cut at the places where up to four polynomials of degree <= 2 may change sign.
+pub(super) struct Cuts {
+    at: [f64; 10],
     len: usize,
 }
 
 impl Cuts {
-    fn new() -> Self {
-        Cuts { at: [0.0, 1.0, 0.0, 0.0, 0.0, 0.0], len: 2 }
+    pub(super) fn new() -> Self {
+        let mut at = [0.0; 10];
+        at[1] = 1.0;
+        Cuts { at, len: 2 }
     }
 
     /// Adds the roots of P inside (0, 1), by the formula that doesn't cancel. A double root changes no sign and is left
     /// out; that the two roots near it are inexact is harmless, for the integrals of \[P\]+ are C^1 in the roots.
-    fn add_roots<E: Element<N, M>, const N: usize, const M: usize>(&mut self, p: [f64; M]) {
+    pub(super) fn add_roots<E: Element<N, M>, const N: usize, const M: usize>(
+        &mut self,
+        p: [f64; M],
+    ) {
         let [a, b, c] = monomials::<E, N, M>(p);
         let discriminant = b * b - 4.0 * a * c;
         if discriminant > 0.0 {
@@ -394,7 +399,7 @@ impl Cuts {
         }
     }
 
-    fn pieces(&mut self) -> impl Iterator<Item = [f64; 2]> {
+    pub(super) fn pieces(&mut self) -> impl Iterator<Item = [f64; 2]> {
         let cuts = &mut self.at[..self.len];
         cuts.sort_unstable_by(f64::total_cmp);
         cuts.windows(2).map(|w| [w[0], w[1]])
@@ -402,7 +407,7 @@ impl Cuts {
 }
 
 /// The Gauss rule with three points on \[start, end\]: exact for polynomials of degree 5.
-fn gauss3(start: f64, end: f64) -> [(f64, f64); 3] {
+pub(super) fn gauss3(start: f64, end: f64) -> [(f64, f64); 3] {
     let (middle, half) = ((start + end) / 2.0, (end - start) / 2.0);
     let offset = 0.6_f64.sqrt() * half;
     [

@@ -19,6 +19,7 @@
 //! | [`contact_edge`] | P_gamma and sigma_n as functionals on one edge of Gamma_C |
 //! | [`edge_integral`] | the integrals over one edge in (8) and in J_h |
 //! | [`axial`] | not in the paper: the weight r and the hoop strain of bodies of revolution |
+//! | [`friction`] | not in the paper: Tresca's and Coulomb's friction at a point and over one edge |
 //! | [`squares`] | not in the paper: the energies of a strain and of a stress as sums of squares |
 //! | [`composite`] | not in the paper: stresses in equilibrium, for certificates |
 //! | [`ball`] | not in the paper: numbers with their rounding enclosed |
@@ -36,6 +37,7 @@ pub mod double_double;
 pub mod edge_integral;
 pub mod element;
 pub mod enclosing;
+pub mod friction;
 pub mod law;
 pub mod material;
 pub mod positive_part;

@@ -30,7 +30,10 @@ use nalgebra::Vector2;
 
 use crate::fem::dense::inner;
 use crate::fem::discretization::Discretization;
+use crate::fem::friction::Bound;
+use crate::fem::law::Law;
 use crate::fem::mesh::{NO_ANGLE, length};
+use crate::fem::piece::Contribution;
 use crate::fem::{Degree, EdgeRule, Piece};
 use crate::kernel::DoubleDouble;
 use crate::kernel::edge_integral::radius;
@@ -70,6 +73,33 @@ pub struct ContactBoundary {
     /// The largest g - u_n between two bodies; negative where they overlap everywhere.
     #[cfg_attr(feature = "files", serde(skip_serializing_if = "Option::is_none"))]
     pub opening: Option<f64>,
+    /// What friction does; left out without friction.
+    #[cfg_attr(feature = "files", serde(skip_serializing_if = "Option::is_none"))]
+    pub friction: Option<BoundaryFriction>,
+}
+
+/// What friction does on one part of Gamma_C.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[non_exhaustive]
+pub struct BoundaryFriction {
+    /// The sum over its edges of the magnitudes of their shear forces.
+    pub shear: f64,
+    /// The measure of where the body sticks, within the bound.
+    pub sticks: f64,
+    /// The measure of where it slides, at the bound.
+    pub slides: f64,
+    /// The largest magnitude of u_t at a node.
+    pub slip: f64,
+    /// Where that is, in the undeformed body.
+    pub slip_at: [f64; 2],
+    /// The work of friction on the slip, int lambda_t u_t with the sign turned: what is lost to heat.
+    pub dissipated: f64,
+    /// The share of the shear force that may act at most which acts where the body does not touch; 0 but for Tresca's law.
+    pub across_gaps: f64,
+    /// What may act at most there, and all along.
+    #[cfg_attr(feature = "files", serde(skip))]
+    pub(crate) most: [f64; 2],
 }
 
 #[cfg(feature = "files")]
@@ -377,7 +407,38 @@ impl ContactBoundary {
             peak_at: [0.0; 2],
             penetration: f64::NEG_INFINITY,
             penetration_at: [0.0; 2],
+            friction: None,
         }
+    }
+
+    /// Adds what friction does on an edge with nodes at these places.
+    fn add_friction(
+        &mut self,
+        (edge, bound): (&Piece, Bound),
+        contact: &Contribution,
+        u: &[[f64; 2]],
+        places: &[[f64; 2]],
+    ) {
+        let friction = self.friction.get_or_insert_default();
+        let [sticks, slides] = contact.friction;
+        friction.sticks += sticks;
+        friction.slides += slides;
+        let forces = edge.across(&contact.force);
+        friction.shear += forces.iter().sum::<f64>().abs();
+        let jumps = edge.jumps(u);
+        for ((&slip, force), &place) in edge.across(&jumps).iter().zip(forces).zip(places) {
+            friction.dissipated += force * slip;
+            if slip.abs() > friction.slip {
+                (friction.slip, friction.slip_at) = (slip.abs(), place);
+            }
+        }
+        let bound = bound.mean(contact.resultant / edge.length);
+        friction.most[1] += bound * edge.length;
+        if matches!(edge.geometry.law, Law::Friction(Bound::Tresca(_))) {
+            friction.most[0] += bound * (edge.length - contact.active).max(0.0);
+        }
+        let [open, all] = friction.most;
+        friction.across_gaps = if all > 0.0 { open / all } else { 0.0 };
     }
 
     /// Adds a piece; `open` is the place up to which a stretch of contact has come.
@@ -394,6 +455,9 @@ impl ContactBoundary {
         let place = |a: usize| edge.geometry.first().place(d.space.mesh(), a);
         let places: Vec<[f64; 2]> = (0..nodes.len()).map(place).collect();
         let contact = edge.contribution(&d.rule, p);
+        if let Law::Friction(bound) = edge.geometry.law {
+            self.add_friction((edge, bound), &contact, u, &places);
+        }
         for (i, size) in contact.force.iter().enumerate() {
             let [x, y] = places[i % nodes.len()];
             let force = edge.direction_of(i).map(|c| -size * c);

@@ -9,7 +9,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
 use super::accuracy::{Pass, Route};
-use super::body::{Body, ContactEnergy, Derivatives, Residual, Step, blocks, derivatives};
+use super::body::{
+    Body, ContactEnergy, Derivatives, Residual, Step, all_springs, blocks, derivatives, no_springs,
+};
 use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};
@@ -51,15 +53,19 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
     fn is_loose(&self, at: &Derivatives) -> bool {
         let d = self.system.d;
         let Some(slides) = &d.slides else { return false };
-        let springs = at.hessian.iter();
-        let pressing: Vec<bool> = springs.map(|h| h.iter().any(|h| *h != 0.0)).collect();
+        let nodes = d.space.degree().nodes_per_edge();
+        let springs = |h: &DMatrix<f64>| {
+            let acts = |range: std::ops::Range<usize>| range.into_iter().any(|i| h[(i, i)] != 0.0);
+            [acts(0..nodes.min(h.nrows())), acts(nodes.min(h.nrows())..h.nrows())]
+        };
+        let pressing: Vec<[bool; 2]> = at.hessian.iter().map(springs).collect();
         let parts = Parts::new(d.space.mesh());
         clearance::free_where(d, &parts, &pressing).len() > slides.basis.len()
     }
 
     /// The Hessian with a little of the springs of all edges.
     fn supported(&self, at: &Derivatives) -> Vec<DMatrix<f64>> {
-        let all = derivatives(self.system.d, &vec![1.0; at.gradient.len()]).times(at.stiffness);
+        let all = all_springs(self.system.d, at.stiffness);
         at.hessian.iter().zip(&all.hessian).map(|(h, all)| h + SUPPORT * all).collect()
     }
 
@@ -192,28 +198,26 @@ impl Body for Full<'_, '_, '_, '_, '_> {
     /// The body without contact, or, where it does not hold without, on springs of all edges, which pull as well as push.
     fn start(&mut self, edges: &impl ContactEnergy) -> Result<Option<f64>, SolveError> {
         if let Some(p) = self.route.system.course.p(self.route.system.d) {
-            let frozen = derivatives(edges, &p).pulling(&self.y());
+            let frozen = derivatives(edges, 1.0, &p).pulling(&self.y());
             let step = self.step(&frozen)?;
             self.advance(1.0, &step);
             return Ok(None);
         }
-        let open = derivatives(edges, &vec![-1.0; self.at.p.len()]);
         // What cannot let go acts all the same.
-        let none = open.pulling(&self.at.p);
+        let none = no_springs(edges).pulling(&self.at.p);
         if self.route.system.d.slides.is_none() {
             match self.step(&none) {
                 Ok(step) => {
                     self.advance(1.0, &step);
-                    let at = derivatives(edges, &self.y());
+                    let at = derivatives(edges, 1.0, &self.y());
                     return Ok(Some(self.stiffness(&at)?));
                 }
                 Err(SolveError::Singular) => {}
                 Err(error) => return Err(error),
             }
         }
-        let all = derivatives(edges, &vec![1.0; self.at.p.len()]);
         let springs = self.springs();
-        let pulling = all.times(1.0 / springs).pulling(&self.at.p);
+        let pulling = all_springs(edges, 1.0 / springs).pulling(&self.at.p);
         let step = self.step(&pulling)?;
         self.advance(1.0, &step);
         Ok(Some(springs))

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
 use crate::fem::discretization::Discretization;
-use crate::kernel::DoubleDouble;
+use crate::kernel::{DoubleDouble, Response};
 
 /// The pieces of Gamma_C as Newton's method needs them.
 pub trait ContactEnergy {
@@ -16,10 +16,19 @@ pub trait ContactEnergy {
     fn count(&self) -> usize;
     /// The numbers of the values of P on piece `e`, among those of all pieces.
     fn values(&self, e: usize) -> Range<usize>;
-    /// The gradient and the Hessian of Psi on piece `e`, where P has the values `p`.
-    fn derivatives(&self, e: usize, p: &[DoubleDouble]) -> (Vec<f64>, DMatrix<f64>);
-    /// The Bregman distance of Psi on piece `e` from `p` to `q`.
-    fn bregman(&self, e: usize, p: &[DoubleDouble], q: &[DoubleDouble]) -> f64;
+    /// The gradient and the Hessian of Psi on piece `e`, with springs of this `stiffness`, where P has the values `p`.
+    fn derivatives(&self, e: usize, stiffness: f64, p: &[DoubleDouble])
+    -> (Vec<f64>, DMatrix<f64>);
+    /// The Bregman distance of this Psi on piece `e` from `p` to `q`.
+    fn bregman(&self, e: usize, stiffness: f64, p: &[DoubleDouble], q: &[DoubleDouble]) -> f64;
+    /// Values of P on piece `e` at which all of its springs act.
+    fn closed(&self, e: usize) -> Vec<f64> {
+        vec![1.0; self.values(e).len()]
+    }
+    /// Returns whether piece `e` is without springs somewhere.
+    fn lets_go(&self, _e: usize) -> bool {
+        true
+    }
 }
 
 /// Psi of a discretization; pieces that press in no solution have none.
@@ -32,16 +41,29 @@ impl ContactEnergy for Discretization<'_> {
         self.contact[e].functionals()
     }
 
-    fn derivatives(&self, e: usize, p: &[DoubleDouble]) -> (Vec<f64>, DMatrix<f64>) {
+    fn derivatives(
+        &self,
+        e: usize,
+        stiffness: f64,
+        p: &[DoubleDouble],
+    ) -> (Vec<f64>, DMatrix<f64>) {
         if self.is_idle(e) {
             return (vec![0.0; p.len()], DMatrix::zeros(p.len(), p.len()));
         }
-        let contribution = self.contact[e].contribution(&self.rule, p);
+        let contribution = self.contact[e].softened(&self.rule, stiffness, p);
         (contribution.force, contribution.tangent)
     }
 
-    fn bregman(&self, e: usize, p: &[DoubleDouble], q: &[DoubleDouble]) -> f64 {
-        if self.is_idle(e) { 0.0 } else { self.contact[e].bregman(&self.rule, p, q) }
+    fn bregman(&self, e: usize, stiffness: f64, p: &[DoubleDouble], q: &[DoubleDouble]) -> f64 {
+        if self.is_idle(e) { 0.0 } else { self.contact[e].bregman(&self.rule, stiffness, p, q) }
+    }
+
+    fn closed(&self, e: usize) -> Vec<f64> {
+        self.contact[e].geometry.law.closed(self.contact[e].degree)
+    }
+
+    fn lets_go(&self, e: usize) -> bool {
+        self.contact[e].responses().all(|(response, _)| response == Response::Unilateral)
     }
 }
 
@@ -75,9 +97,9 @@ pub struct Residual {
     pub noise: f64,
 }
 
-/// The derivatives of s Psi at y.
+/// The derivatives of Psi at y.
 pub struct Derivatives {
-    /// s
+    /// The stiffness of its springs, 1 for those of (8).
     pub stiffness: f64,
     /// Nodal values of the gradient.
     pub gradient: Vec<f64>,
@@ -95,32 +117,44 @@ pub struct Step {
     pub curvature: f64,
 }
 
-/// The derivatives of Psi at `y`.
+/// The derivatives of Psi at `y`, with springs of this `stiffness`.
 pub fn derivatives(
     edges: &impl ContactEnergy,
+    stiffness: f64,
     y: &[impl Copy + Into<DoubleDouble>],
 ) -> Derivatives {
     let mut gradient = Vec::with_capacity(y.len());
     let mut hessian = Vec::with_capacity(edges.count());
     for e in 0..edges.count() {
         let p: Vec<DoubleDouble> = y[edges.values(e)].iter().map(|&p| p.into()).collect();
-        let (g, h) = edges.derivatives(e, &p);
+        let (g, h) = edges.derivatives(e, stiffness, &p);
         gradient.extend(g);
         hessian.push(h);
     }
+    Derivatives { stiffness, gradient, hessian }
+}
+
+/// Those where all springs act.
+pub fn all_springs(edges: &impl ContactEnergy, stiffness: f64) -> Derivatives {
+    let closed: Vec<f64> = (0..edges.count()).flat_map(|e| edges.closed(e)).collect();
+    derivatives(edges, stiffness, &closed)
+}
+
+/// Those where none acts but what cannot let go.
+pub fn no_springs(edges: &impl ContactEnergy) -> Derivatives {
+    let of = |e: usize| {
+        let closed: Vec<DoubleDouble> = edges.closed(e).into_iter().map(Into::into).collect();
+        match edges.lets_go(e) {
+            true => DMatrix::zeros(closed.len(), closed.len()),
+            false => edges.derivatives(e, 1.0, &closed).1,
+        }
+    };
+    let hessian: Vec<DMatrix<f64>> = (0..edges.count()).map(of).collect();
+    let gradient = vec![0.0; hessian.iter().map(DMatrix::nrows).sum()];
     Derivatives { stiffness: 1.0, gradient, hessian }
 }
 
 impl Derivatives {
-    /// The derivatives of s times the function.
-    pub fn times(&self, s: f64) -> Self {
-        Derivatives {
-            stiffness: s * self.stiffness,
-            gradient: self.gradient.iter().map(|g| s * g).collect(),
-            hessian: self.hessian.iter().map(|h| s * h).collect(),
-        }
-    }
-
     /// The blocks of the Hessian, each with the numbers of its values.
     pub(super) fn blocks(&self) -> impl Iterator<Item = (Range<usize>, &DMatrix<f64>)> {
         blocks(&self.hessian)

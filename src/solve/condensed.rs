@@ -183,7 +183,7 @@ impl Body for Reduced<'_, '_, '_, '_> {
 
     /// The body without contact is where it is already; the stiffness is by the power method on R^T G R.
     fn start(&mut self, edges: &impl ContactEnergy) -> Result<Option<f64>, SolveError> {
-        let at = derivatives(edges, &self.y);
+        let at = derivatives(edges, 1.0, &self.y);
         let roots = Self::roots(&at);
         let stiffness = newton::largest_eigenvalue(roots.len(), |x| {
             let mut rx = vec![0.0; self.y.len()];
@@ -203,7 +203,7 @@ impl Body for Reduced<'_, '_, '_, '_> {
         let Some(p) = self.route.system.course.p(self.route.system.d) else {
             return Ok(Some(stiffness));
         };
-        let frozen = derivatives(edges, &p).pulling(&self.y);
+        let frozen = derivatives(edges, 1.0, &p).pulling(&self.y);
         let step = self.step(&frozen)?;
         self.advance(1.0, &step);
         Ok(None)

@@ -63,9 +63,14 @@ impl<'a> Course<'a> {
         }
     }
 
+    /// The start, where it fits.
+    pub(super) fn displacement(&self, d: &Discretization) -> Option<&'a [[f64; 2]]> {
+        self.start.filter(|u| u.len() == d.space.nodes().len())
+    }
+
     /// P of the start at the nodes of the contact edges.
     pub(super) fn p(&self, d: &Discretization) -> Option<Vec<f64>> {
-        let u = self.start.filter(|u| u.len() == d.space.nodes().len())?;
+        let u = self.displacement(d)?;
         Some(d.contact.iter().flat_map(|edge| edge.p(u)).collect())
     }
 }

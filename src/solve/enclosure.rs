@@ -25,6 +25,7 @@ use super::SolveError;
 use super::balls::{field, free, kappa, length, pieces, root};
 use super::factor::Factor;
 use super::intervals::{Arithmetic, EnclosedResidual, Intervals};
+use super::isolated::{self, Isolated};
 use super::newton::SLIGHT;
 use super::pressed::{self, Pressed, SHARES};
 use super::system::System;
@@ -57,6 +58,23 @@ pub struct Enclosure {
     pub nodes: Vec<f64>,
     /// Intervals of the reported quantities.
     pub intervals: Intervals,
+    /// With Coulomb's friction: near which there is no other solution; without it there is exactly one anywhere.
+    pub isolation: Option<Isolation>,
+}
+
+/// The distance within which the discrete equations with Coulomb's friction have exactly one solution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Isolation {
+    /// There is exactly one whose difference from the displacement has no larger energy norm; `None` if that is known in another norm
+    /// only, that of 13.6 with springs, as where friction alone holds the body.
+    pub within: Option<f64>,
+    /// That over |u~|_a; `None` for a body without strain, too.
+    pub relative: Option<f64>,
+    /// There is no other anywhere.
+    pub everywhere: bool,
+    /// Two lower bounds of the coefficient below which there is exactly one for all loads, by 13.3 and by 13.3a; 0 where none is known.
+    pub limits: [f64; 2],
 }
 
 /// Why nothing is proved.
@@ -80,6 +98,14 @@ pub enum Unproved {
         "kappa is 1 or more when its rounding is counted: it over- or underflows double precision, or is next to 1"
     )]
     NoKappa,
+    #[error(
+        "Coulomb's friction: no distance is proved within which this solution is the only one; where a stretch is just at the limit of sliding or of pressing there need not be one"
+    )]
+    NotIsolated,
+    #[error(
+        "Coulomb's friction: the proof is for up to 2000 contact functionals and 2e8 entries of their compliance; there are {count} functionals"
+    )]
+    TooManyFunctionals { count: usize },
     #[error("the bound over- or underflows double precision")]
     OutOfRange,
     #[error("out of memory")]
@@ -89,12 +115,21 @@ pub enum Unproved {
 impl Unproved {
     /// Returns whether a displacement that is nearer, or better arithmetic, may tell more.
     pub(crate) fn may_be_rounding(&self) -> bool {
-        !matches!(self, Unproved::NotCoercive { .. } | Unproved::NoKappa | Unproved::NotHeld)
+        !matches!(
+            self,
+            Unproved::NotCoercive { .. }
+                | Unproved::NoKappa
+                | Unproved::NotHeld
+                | Unproved::TooManyFunctionals { .. }
+        )
     }
 
     /// Returns whether (8) is known to have exactly one solution all the same.
     pub fn is_unique(&self) -> bool {
-        !matches!(self, Unproved::HeldByContact | Unproved::NotCoercive { .. } | Unproved::NoKappa)
+        let by_friction =
+            matches!(self, Unproved::NotIsolated | Unproved::TooManyFunctionals { .. });
+        let by_contact = matches!(self, Unproved::HeldByContact | Unproved::NotCoercive { .. });
+        !(by_friction || by_contact || *self == Unproved::NoKappa)
     }
 }
 
@@ -128,6 +163,8 @@ pub struct Verifier<'s, 'd, 'p> {
     of_a: Option<Arc<Factor>>,
     /// For what is pressed: the bounds at the nodes, and the factor, once it is needed.
     held: Option<HeldByContact>,
+    /// What the proof with Coulomb's friction knows of A.
+    known: Option<isolated::Known>,
     /// The sum of the magnitudes of the residual where it was last evaluated.
     pub unbalanced: f64,
     /// The time that it has taken.
@@ -166,6 +203,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             proof,
             of_a,
             held: None,
+            known: None,
             unbalanced: f64::INFINITY,
             time,
         }
@@ -253,8 +291,21 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         let r = free(system, &at.residual);
         self.unbalanced = r.iter().map(|r| r.magnitude()).sum();
         let fields = (u, reported);
+        let nowhere = Pressed::nowhere(self.lines.len());
+        if d.has_coulomb() {
+            let by_a = match d.slides {
+                None => self.held_by(&nowhere, &at, fields, (&r, arithmetic)),
+                Some(_) => Err(Unproved::HeldByContact),
+            };
+            return match by_a {
+                Err(Unproved::NotIsolated | Unproved::NoFactor | Unproved::HeldByContact) => {
+                    let pressed = Pressed::at(d, &self.lines, &at.u, 0.0);
+                    self.held_by(&pressed, &at, fields, (&r, arithmetic))
+                }
+                found => found,
+            };
+        }
         if d.slides.is_none() {
-            let nowhere = Pressed::nowhere(self.lines.len());
             let mut best = self.held_by(&nowhere, &at, fields, (&r, arithmetic));
             // Of a slender body that lies on its obstacle A alone has no factor in doubles, or has one by luck.
             let is_enough = |found: &Result<Enclosure, Unproved>, proof: f64| match found {
@@ -319,7 +370,8 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         let known = (at.moved.max(self.proof * size) * coercivity.sqrt()).max(up_to);
         let negligible = SLIGHT * known;
         let first = weighted(r, &crude);
-        let rho = if first <= negligible {
+        let coulomb = d.has_coulomb();
+        let rho = if first <= negligible && !coulomb {
             up(first + up_to)
         } else {
             let factor = match factor {
@@ -337,9 +389,30 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             let product = Product { system, lines: &self.lines, pressed, arithmetic };
             up(dual_norm(&product, factor, r, &crude, coercivity, negligible) + up_to)
         };
-        if !pressed.stay(rho) {
+        if !coulomb && !pressed.stay(rho) {
             return Err(Unproved::HeldByContact);
         }
+        let mut isolated = None;
+        if let (true, Some(factor)) = (coulomb, factor) {
+            let arithmetic = Arithmetic::Balls;
+            let product = Product { system, lines: &self.lines, pressed, arithmetic };
+            let times = |z: &[PreciseBall]| product.times(z);
+            let body = isolated::Body { system, factor, times: &times, crude: &crude, coercivity };
+            if pressed.is_nowhere() {
+                let known = match &mut self.known {
+                    Some(known) => known,
+                    none => none.insert(isolated::Known::new(&body, &self.lines, None)?),
+                };
+                let of = [rho, size];
+                isolated = Some(isolated::isolate(d, (known, None), &self.lines, &at.u, of)?);
+            } else {
+                let known = isolated::Known::new(&body, &self.lines, Some(springs))?;
+                let of = [rho, size];
+                let by_a = self.known.as_ref();
+                isolated = Some(isolated::isolate(d, (&known, by_a), &self.lines, &at.u, of)?);
+            }
+        }
+        let rho = isolated.map_or(rho, |isolated| isolated.rho);
         let exact = up(rho / coercivity.sqrt());
         let radius = up(exact + at.moved);
         if !radius.is_finite() {
@@ -357,13 +430,26 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             let off = [0, 1].map(|c| exactly[c] - PreciseBall::from(reported[c]));
             *node = up(*node + length(off));
         }
-        let pressure = if pressed.edges().any(|is| is) { rho } else { rho / 2.0 };
+        let pressure = match isolated {
+            Some(isolated) => isolated.pressure,
+            None if pressed.edges().any(|is| is) => rho,
+            None => rho / 2.0,
+        };
         let intervals = at.intervals(d, &self.lines, (&exactly, &nodes), [rho, pressure], exact);
         if !intervals.are_finite() {
             return Err(Unproved::OutOfRange);
         }
         let hardly_strains = up(root(at.energy) + radius) <= NEGLIGIBLE * if_strained;
-        let relative = (!hardly_strains && norm > 0.0).then(|| up(radius / norm));
+        let is_measured = !hardly_strains && norm > 0.0;
+        let isolation = isolated.map(|Isolated { within, everywhere, limits, .. }| {
+            // From where the residual is known to the displacement that is reported.
+            let within = within.map(|within| (within - at.moved) * (1.0 - f64::EPSILON));
+            let within = within.filter(|within| radius <= *within);
+            let relative = |within: f64| within / up(root(at.energy)) * (1.0 - f64::EPSILON);
+            let relative = within.filter(|_| is_measured).map(relative);
+            Isolation { within, relative, everywhere, limits }
+        });
+        let relative = is_measured.then(|| up(radius / norm));
         Ok(Enclosure {
             kappa,
             radius,
@@ -373,6 +459,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             pressure,
             nodes,
             intervals,
+            isolation,
         })
     }
 }
@@ -424,7 +511,8 @@ fn stays_off(
     let stopping = d.slides.as_ref().map_or(&[][..], |slides| &slides.stopping);
     stopping.iter().map(|&e| &lines[e]).all(|line| {
         let far = line.farthest(|node| nodes[node]);
-        pressed::greatest(line.degree, &line.p(u)) + pressed::change(line, far, radius) <= 0.0
+        pressed::greatest(line.degree, line.along(&line.p(u))) + pressed::change(line, far, radius)
+            <= 0.0
     })
 }
 

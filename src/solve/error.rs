@@ -41,6 +41,10 @@ pub enum SolveError {
         "the numbers of this case would over- or underflow double precision; expected lengths from 1e-40 to 1e40, moduli from 1e-80 to 1e80, and energies (modulus times squared displacement) from 1e-270 to 1e270: choose other units"
     )]
     OutOfRange,
+    #[error(
+        "no solution with Coulomb's friction was found: the smallest relative residual is {residual:.1e} after {factorizations} factorisations; one exists, for every coefficient (docs/theory.md, 13.4). Try a smaller coefficient, a finer mesh, or friction = {{ tresca = .. }} with the shear stress that you expect"
+    )]
+    NoFrictionSolution { residual: f64, factorizations: usize },
     #[error(transparent)]
     OutsidePattern(#[from] OutsidePattern),
     #[error("the solution needs {bytes} bytes of memory, more than there are; use a coarser mesh")]
@@ -86,6 +90,7 @@ impl SolveError {
             | SolveError::IllConditioned { .. }
             | SolveError::Singular
             | SolveError::OutOfRange
+            | SolveError::NoFrictionSolution { .. }
             | SolveError::OutsidePattern(_)
             | SolveError::OutOfMemory { .. } => false,
         }

@@ -204,7 +204,7 @@ impl EnclosedResidual {
         let mut contact: Vec<(&Piece<PreciseBall>, [PreciseBall; 3], PreciseBall)> = Vec::new();
         for (line, pressure) in lines.iter().zip(&self.pressures) {
             let zero = PreciseBall::from(0);
-            let along = line.degree.nodes_per_edge();
+            let along = line.along(pressure).len();
             let of = pressure.iter().enumerate().fold([zero; 3], |sum, (i, &p)| {
                 let n = line.direction_of(i);
                 let force = if i < along { sum[0] + p } else { sum[0] };

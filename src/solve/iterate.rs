@@ -183,7 +183,8 @@ impl Evaluated {
         slides.least_norm(&mut self.u);
         for (edge, p) in d.contact.iter().zip(&mut self.p) {
             if edge.contribution(&d.rule, p).active == 0.0 {
-                *p = edge.p(&self.u).into_iter().map(|p| p.min(0.0).into()).collect();
+                let open = edge.along(&edge.p(&self.u)).to_vec();
+                p.iter_mut().zip(open).for_each(|(p, open)| *p = open.min(0.0).into());
             }
         }
         slides.plays(&self.u)

@@ -24,6 +24,8 @@ pub mod body;
 pub mod compliance;
 pub mod condensed;
 #[doc(hidden)]
+pub mod coulomb;
+#[doc(hidden)]
 pub mod course;
 #[doc(hidden)]
 pub mod enclosure;
@@ -32,6 +34,7 @@ mod error;
 pub mod factor;
 #[doc(hidden)]
 pub mod intervals;
+mod isolated;
 #[doc(hidden)]
 pub mod iterate;
 mod method;

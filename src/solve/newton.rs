@@ -15,7 +15,8 @@
 //! what it finds.
 //!
 //! **The start.** A body that bends, started as if without contact, lets go of about one edge a step. So the springs are soft
-//! at first: s Psi in place of Psi, with s so small that contact is not much stiffer than the body. When the residual at s is
+//! at first: gamma / s in place of gamma in Psi, with s so small that contact is not much stiffer than the body (what friction bears at
+//! most stays the same). When the residual at s is
 //! small beside the one that stiffer springs bring, the springs get stiffer by a factor: the contact zone of stiff springs is
 //! narrow, and a minimiser is found from near only. At s = 1 it is Newton's method on J_h, from a start that knows something.
 //! Going to the body without contact counts as a step where it takes one. A start that is given ([`super::course`]) needs no soft
@@ -70,13 +71,13 @@ pub fn minimise(
 ) -> Result<f64, SolveError> {
     let mut stiffness = 1.0;
     if first {
-        residuals.push(body.residual(&derivatives(edges, &body.y())).norm);
+        residuals.push(body.residual(&derivatives(edges, 1.0, &body.y())).norm);
         match body.start(edges)? {
             Some(contact) => stiffness = f64::min(SOFT / contact, 1.0),
-            None => residuals.push(body.residual(&derivatives(edges, &body.y())).norm),
+            None => residuals.push(body.residual(&derivatives(edges, 1.0, &body.y())).norm),
         }
     }
-    let mut at = derivatives(edges, &body.y());
+    let mut at = derivatives(edges, 1.0, &body.y());
     let mut residual = body.residual(&at);
     // A later call makes a step wherever there is a residual: its size is what tells how good the end of the first was.
     let mut may_end = first;
@@ -86,17 +87,19 @@ pub fn minimise(
         if (may_end && residual.norm <= residual.noise.max(enough)) || residual.norm == 0.0 {
             break;
         }
-        let scaled = at.times(stiffness);
-        let step = body.step(&scaled)?;
-        let Some(t) = line_search(edges, &body.y(), &scaled, &step) else { return Ok(-step.slope) };
+        let soft = (stiffness < 1.0).then(|| derivatives(edges, stiffness, &body.y()));
+        let soft = soft.as_ref().unwrap_or(&at);
+        let step = body.step(soft)?;
+        let Some(t) = line_search(edges, &body.y(), soft, &step) else { return Ok(-step.slope) };
         body.advance(t, &step);
-        at = derivatives(edges, &body.y());
+        at = derivatives(edges, 1.0, &body.y());
         residual = body.residual(&at);
         residuals.push(residual.norm);
         left = if t < 1.0 { -step.slope } else { 0.0 };
         may_end = true;
         let stiffer = f64::min(STIFFENING * stiffness, 1.0);
-        let residual_at = |stiffness: f64| body.residual(&at.times(stiffness)).norm;
+        let residual_at =
+            |stiffness: f64| body.residual(&derivatives(edges, stiffness, &body.y())).norm;
         if stiffness < 1.0 && residual_at(stiffness) <= DONE * residual_at(stiffer) {
             stiffness = stiffer;
         }
@@ -104,7 +107,7 @@ pub fn minimise(
     Ok(left)
 }
 
-/// Where along the step J_h with s Psi, which has the derivatives `at`, is least; `None` if its decrease is lost in rounding.
+/// Where along the step J_h with the Psi that has the derivatives `at` is least; `None` if its decrease is lost in rounding.
 fn line_search(
     edges: &impl ContactEnergy,
     y: &[DoubleDouble],
@@ -127,20 +130,21 @@ fn line_search(
         for e in 0..edges.count() {
             let values = edges.values(e);
             let (d, before) = (&step.dy[values.clone()], &at.gradient[values]);
-            let (g, h) = edges.derivatives(e, &point(e, t));
+            let (g, h) = edges.derivatives(e, stiffness, &point(e, t));
             for a in 0..d.len() {
-                first += (stiffness * g[a] - before[a]) * d[a];
+                first += (g[a] - before[a]) * d[a];
                 for b in 0..d.len() {
-                    second += stiffness * h[(a, b)] * d[a] * d[b];
+                    second += h[(a, b)] * d[a] * d[b];
                 }
             }
         }
         (first, second)
     };
     let falls = |t: f64| {
-        let distance: f64 =
-            (0..edges.count()).map(|e| edges.bregman(e, &y[edges.values(e)], &point(e, t))).sum();
-        t * t / 2.0 * step.curvature + stiffness * distance <= (SLIGHT - 1.0) * t * step.slope
+        let distance: f64 = (0..edges.count())
+            .map(|e| edges.bregman(e, stiffness, &y[edges.values(e)], &point(e, t)))
+            .sum();
+        t * t / 2.0 * step.curvature + distance <= (SLIGHT - 1.0) * t * step.slope
     };
     let flat = SLIGHT * step.slope.abs();
     let (mut low, mut high, mut t) = (0.0, f64::INFINITY, 1.0);

@@ -12,6 +12,7 @@ use std::ops::Range;
 use nalgebra::DMatrix;
 
 use crate::fem::korn::{Hold, Term};
+use crate::fem::law::Law;
 use crate::fem::piece::Stretch;
 use crate::fem::{Degree, Discretization, EdgeRule, Piece};
 use crate::kernel::Response;
@@ -49,10 +50,10 @@ fn most_in_revolution(count: usize, radii: [PreciseBall; 2]) -> f64 {
 }
 
 /// Values at the nodes of an edge, or what is multiplied by them.
-type Row = Vec<PreciseBall>;
+pub(super) type Row = Vec<PreciseBall>;
 
 /// A piece of an edge.
-struct EdgePiece {
+pub(super) struct EdgePiece {
     /// Where it starts and ends; a point does both at once.
     ends: [f64; 2],
     /// The coefficients on it, of a polynomial with given values at the nodes, that enclose the polynomial there (Bernstein's):
@@ -61,10 +62,12 @@ struct EdgePiece {
     /// The most that the square of a polynomial is on it whose square has the integral 1 over it; attained at the ends.
     square: PreciseBall,
     /// The integrals of N_a N_b over it.
-    mass: Vec<Row>,
+    pub(super) mass: Vec<Row>,
+    /// Its share of the edge: its length, or the weight of the point.
+    pub(super) share: PreciseBall,
 }
 
-/// What is pressed of one component on a piece of Gamma_C.
+/// What is pressed of one component on a piece of Gamma_C, or stuck: P is surely where it is integrated itself.
 struct PressedPart {
     /// The piece.
     edge: usize,
@@ -72,7 +75,8 @@ struct PressedPart {
     values: Range<usize>,
     /// Where the stretches start and end.
     pieces: Vec<[f64; 2]>,
-    /// For each stretch the least that P is on it at the displacement, and the most that P0(v) is beside |v|_S.
+    /// For each stretch the least that P is on it at the displacement, or is within the bound of friction, and the most that P0(v) is
+    /// beside |v|_S.
     bounds: Vec<[f64; 2]>,
     /// The shape functions of the piece at the ends of the stretches, and the most that P0(v) is there, beside |v|_S.
     places: Vec<(Row, f64)>,
@@ -88,11 +92,23 @@ pub struct Pressed {
     parts: Vec<PressedPart>,
 }
 
+/// A stretch with the least that P is on it, or is within the bound of friction.
+type Measured = (f64, EdgePiece);
+
+/// What may be in S of one component on a piece: the piece, the numbers of the component's values, and stretches of it.
+type Found = (usize, Range<usize>, Vec<Measured>);
+
 impl EdgePiece {
-    /// The pieces of an edge on which P is positive.
-    fn pressed(degree: Degree, rule: &EdgeRule, radii: Radii, p: &Row) -> Vec<Self> {
+    /// The pieces of an edge on which all of these polynomials are positive; `inset` is the share of a stretch that is left out at a
+    /// root or a further cut.
+    pub(super) fn positive(
+        (degree, rule): (Degree, &EdgeRule),
+        radii: Radii,
+        all: &[Row],
+        (inset, cuts): (f64, &[f64]),
+    ) -> Vec<Self> {
         let EdgeRule::Gauss(points) = rule else {
-            return Self::between_roots(degree, radii, p);
+            return Self::between_roots(degree, radii, all, (inset, cuts));
         };
         let at = |&(s, weight): &(f64, f64)| {
             let (shapes, weight) = (
@@ -105,23 +121,31 @@ impl EdgePiece {
                 coefficients: vec![shapes],
                 square: PreciseBall::from(1) / weight,
                 mass,
+                share: weight,
             }
         };
-        points.iter().map(at).filter(|piece| piece.least(p) > 0.0).collect()
+        points.iter().map(at).filter(|piece| piece.least(all) > 0.0).collect()
     }
 
-    /// Those in the stretches between the roots of P.
-    fn between_roots(degree: Degree, radii: Radii, p: &Row) -> Vec<Self> {
-        let mut cuts = degree.roots(&p.iter().map(|p| p.head()).collect::<Vec<_>>());
+    /// Those in the stretches between their roots and the further `cuts`.
+    fn between_roots(
+        degree: Degree,
+        radii: Radii,
+        all: &[Row],
+        (inset, cuts): (f64, &[f64]),
+    ) -> Vec<Self> {
+        let roots = |p: &Row| degree.roots(&p.iter().map(|p| p.head()).collect::<Vec<_>>());
+        let mut cuts: Vec<f64> = all.iter().flat_map(roots).chain(cuts.iter().copied()).collect();
         cuts.extend([0.0, 1.0]);
         cuts.sort_unstable_by(f64::total_cmp);
         let stretch = |cut: &[f64]| {
-            let inset = INSET * (cut[1] - cut[0]);
+            let inset = inset * (cut[1] - cut[0]);
             let start = if cut[0] > 0.0 { cut[0] + inset } else { 0.0 };
             let end = if cut[1] < 1.0 { cut[1] - inset } else { 1.0 };
             Self::between(degree, radii, [start, end])
         };
-        cuts.windows(2).map(stretch).filter(|piece| piece.least(p) > 0.0).collect()
+        let stretches = cuts.windows(2).filter(|cut| cut[0] < cut[1]);
+        stretches.map(stretch).filter(|piece| piece.least(all) > 0.0).collect()
     }
 
     /// The piece of an edge with these ends. Boole's rule is exact for the products. The square is at most the sum of 2 k + 1
@@ -153,13 +177,24 @@ impl EdgePiece {
             let weight = length * PreciseBall::from(weight) / PreciseBall::from(90);
             add(&mut mass, &products(weighted(radii, place(i), weight), &at(i)));
         }
-        EdgePiece { ends, coefficients, square, mass }
+        EdgePiece { ends, coefficients, square, mass, share: length }
     }
 
-    /// The least coefficient of P, or less.
-    fn least(&self, p: &Row) -> f64 {
-        self.coefficients.iter().map(|c| dot(c, p).lower()).fold(f64::INFINITY, f64::min)
+    /// The least coefficient of these polynomials, or less.
+    fn least(&self, all: &[Row]) -> f64 {
+        let of = |p: &Row| {
+            self.coefficients.iter().map(|c| dot(c, p).lower()).fold(f64::INFINITY, f64::min)
+        };
+        all.iter().map(of).fold(f64::INFINITY, f64::min)
     }
+}
+
+/// What must be positive where a piece sticks: what P_t is within the bound on both sides. Nothing is said of what never sticks.
+fn stuck(line: &Piece<PreciseBall>, p: &[PreciseBall]) -> Option<[Row; 2]> {
+    let Law::Friction(bound) = line.geometry.law else { return None };
+    let bound = bound.at_nodes(line.gamma, line.along(p));
+    let pairs = || bound.iter().zip(line.across(p));
+    Some([pairs().map(|(&m, &p)| m - p).collect(), pairs().map(|(&m, &p)| m + p).collect()])
 }
 
 impl PressedPart {
@@ -168,7 +203,7 @@ impl PressedPart {
     fn new(
         (edge, line): (usize, &Piece<PreciseBall>),
         values: Range<usize>,
-        stretches: &[&(f64, EdgePiece)],
+        stretches: &[&Measured],
     ) -> Option<Self> {
         let mut mass = vec![vec![PreciseBall::from(0); values.len()]; values.len()];
         stretches.iter().for_each(|(_, piece)| add(&mut mass, &piece.mass));
@@ -176,7 +211,7 @@ impl PressedPart {
         let bounds = stretches.iter().map(|(least, piece)| [*least, most(piece)]).collect();
         // In the plane the most of the square of P0 is above that of the stress, which is affine.
         let of_stress = SAFETY * root_of(line) * line.radii.map_or(0.0, |_| stress_factor(line));
-        let at_ends = |(_, piece): &&(f64, EdgePiece)| {
+        let at_ends = |(_, piece): &&Measured| {
             let (ends, most) = (piece.coefficients.iter().take(2), most(piece).max(of_stress));
             ends.map(|shapes| (shapes.clone(), most)).collect::<Vec<_>>()
         };
@@ -187,9 +222,6 @@ impl PressedPart {
     }
 }
 
-/// A stretch with the least that P is on it.
-type Measured = (f64, EdgePiece);
-
 impl Pressed {
     /// Nothing: |v|_S = |v|_A.
     pub fn nowhere(count: usize) -> Self {
@@ -197,7 +229,8 @@ impl Pressed {
     }
 
     /// Finds the stretches that are surely pressed at the displacement `u`, those that have their `share` of the pressure; what pulls
-    /// as well as it pushes is pressed whatever P is.
+    /// as well as it pushes is pressed whatever P is. And those that surely stick, of which the least distance to the bound has its
+    /// share likewise. Coulomb's bound moves with P_n: whether S stays so is then not for [`Pressed::stay`] to say.
     pub fn at(
         d: &Discretization,
         lines: &[Piece<PreciseBall>],
@@ -205,31 +238,38 @@ impl Pressed {
         share: f64,
     ) -> Self {
         let degree = d.space.degree();
-        let mut all: Vec<(usize, Range<usize>, Vec<Measured>)> = Vec::new();
+        let positive = |line: &Piece<PreciseBall>, all: &[Row]| -> Vec<Measured> {
+            let pieces = EdgePiece::positive((degree, &d.rule), line.radii, all, (INSET, &[]));
+            pieces.into_iter().map(|piece| (piece.least(all), piece)).collect()
+        };
+        let [mut pressed, mut sticking]: [Vec<Found>; 2] = Default::default();
         for (edge, line) in lines.iter().enumerate() {
             let p = line.p(u);
             for (response, values) in line.responses() {
-                let own = p[values.clone()].to_vec();
                 let pieces = match response {
                     Response::Bilateral => {
                         vec![(f64::INFINITY, EdgePiece::between(degree, line.radii, [0.0, 1.0]))]
                     }
-                    Response::Unilateral => {
-                        let pieces =
-                            EdgePiece::pressed(degree, &d.rule, line.radii, &own).into_iter();
-                        pieces.map(|piece| (piece.least(&own), piece)).collect()
-                    }
+                    Response::Unilateral => positive(line, &[p[values.clone()].to_vec()]),
                 };
-                all.push((edge, values, pieces));
+                pressed.push((edge, values, pieces));
+            }
+            if let Some(within) = stuck(line, &p) {
+                sticking.push((edge, degree.nodes_per_edge()..p.len(), positive(line, &within)));
             }
         }
-        let leasts = all.iter().flat_map(|(.., pieces)| pieces).map(|(least, _)| *least);
-        let enough = share * leasts.filter(|least| least.is_finite()).fold(0.0, f64::max);
-        let part = |(edge, values, pieces): &(usize, Range<usize>, Vec<(f64, EdgePiece)>)| {
-            let taken = pieces.iter().filter(|(least, _)| *least >= enough);
-            PressedPart::new((*edge, &lines[*edge]), values.clone(), &taken.collect::<Vec<_>>())
+        let parts_of = |all: &[Found]| -> Vec<PressedPart> {
+            let leasts = all.iter().flat_map(|(.., pieces)| pieces).map(|(least, _)| *least);
+            let enough = share * leasts.filter(|least| least.is_finite()).fold(0.0, f64::max);
+            let part = |(edge, values, pieces): &Found| {
+                let taken = pieces.iter().filter(|(least, _)| *least >= enough);
+                PressedPart::new((*edge, &lines[*edge]), values.clone(), &taken.collect::<Vec<_>>())
+            };
+            all.iter().filter_map(part).collect()
         };
-        Pressed { count: lines.len(), parts: all.iter().filter_map(part).collect() }
+        let mut parts = parts_of(&pressed);
+        parts.extend(parts_of(&sticking));
+        Pressed { count: lines.len(), parts }
     }
 
     /// For each piece of Gamma_C whether something of it is in S.
@@ -237,9 +277,15 @@ impl Pressed {
         (0..self.count).map(|e| self.parts.iter().any(|part| part.edge == e))
     }
 
-    /// The stretches of piece `e` that are in S, where they start and end on \[0, 1\].
+    /// The stretches of piece `e` that are pressed in S, where they start and end on \[0, 1\].
     pub fn pieces(&self, e: usize) -> &[[f64; 2]] {
-        self.parts.iter().find(|part| part.edge == e).map_or(&[], |part| &part.pieces)
+        let is_pressed = |part: &&PressedPart| part.edge == e && part.values.start == 0;
+        self.parts.iter().find(is_pressed).map_or(&[], |part| &part.pieces)
+    }
+
+    /// Returns whether it is empty.
+    pub fn is_nowhere(&self) -> bool {
+        self.parts.is_empty()
     }
 
     /// Returns whether all of S stays pressed on a ball of radius `rho` and a little more.
@@ -248,8 +294,9 @@ impl Pressed {
         all.all(|[least, most]| *least > SAFETY * most * rho)
     }
 
-    /// The holds of S: sums of n~ . v at the places of its nodes, less those on the other side, each times its shape function at a
-    /// place of the piece: the jump is P0(v) + gamma s(v), for |v|_S (1 - kappa)^{-1/2} <= 1 at most what P0(v) is beside |v|_S.
+    /// The holds of S: sums of n~ . v, or across n~ where it sticks, at the places of its nodes, less those on the other side, each
+    /// times its shape function at a place of the piece: the jump is P0(v) + gamma s(v), for |v|_S (1 - kappa)^{-1/2} <= 1 at most what
+    /// P0(v) is beside |v|_S.
     pub fn holds(&self, d: &Discretization, lines: &[Piece<PreciseBall>]) -> Vec<Hold> {
         let mut holds = Vec::new();
         for part in &self.parts {

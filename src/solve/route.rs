@@ -13,6 +13,7 @@ use super::accuracy::{self, Outcome, Route};
 use super::assembled::Assembled;
 use super::compliance::Reach;
 use super::condensed::Condensed;
+use super::coulomb::Coulomb;
 use super::course::Phase;
 use super::enclosure::Verifier;
 use super::factor::Factor;
@@ -79,7 +80,8 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
     /// The routes to take, one after the other as long as too little is proved.
     pub fn routes(&self) -> &'static [RouteName] {
         let [condensed, assembled] = self.predicted;
-        if self.system.d.slides.is_none() && condensed <= assembled {
+        let d = self.system.d;
+        if d.slides.is_none() && !d.has_coulomb() && condensed <= assembled {
             &[RouteName::Condensed, RouteName::Assembled]
         } else {
             &[RouteName::Assembled]
@@ -104,6 +106,9 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
         let mut watch = Stopwatch::start();
         let mut route: Box<dyn Route + '_> = match name {
             RouteName::Condensed => Box::new(self.condensed(times)?),
+            RouteName::Assembled if self.system.d.has_coulomb() => {
+                Box::new(Coulomb::new(self.system, self.reference))
+            }
             RouteName::Assembled => Box::new(Assembled::new(self.system, self.reference)),
         };
         watch.lap();

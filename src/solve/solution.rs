@@ -118,6 +118,10 @@ pub struct ContactValues {
     pub lambda: f64,
     /// The recovered pressure ([`super::answers`]), the one to report.
     pub pressure: f64,
+    /// u_t = u . t, t being n~ turned to the left.
+    pub u_t: f64,
+    /// The shear stress of friction along t.
+    pub shear: f64,
 }
 
 /// A piece of Gamma_C between two bodies.
@@ -152,6 +156,10 @@ pub struct PieceNodeValues {
     pub lambda: f64,
     /// The recovered pressure ([`super::answers`]), the one to report.
     pub pressure: f64,
+    /// u_t, the jump of u . t, t being n~ turned to the left.
+    pub u_t: f64,
+    /// The shear stress of friction on the first body along t.
+    pub shear: f64,
 }
 
 /// A point of a contact boundary, of an edge that faces an obstacle or of a side of a pair of bodies.
@@ -180,6 +188,10 @@ pub struct ContactPoint<'s> {
     pub lambda: f64,
     /// The recovered pressure.
     pub pressure: f64,
+    /// u . t, or the jump of that, t being n~ turned to the left.
+    pub u_t: f64,
+    /// The shear stress of friction along t.
+    pub shear: f64,
 }
 
 /// Scalars of a solution, in the units of the case.
@@ -285,6 +297,8 @@ impl Solution {
                 sigma_n: p.sigma_n,
                 lambda: p.lambda,
                 pressure: p.pressure,
+                u_t: p.u_t,
+                shear: p.shear,
             };
             edge.points.iter().map(point).collect()
         });
@@ -303,6 +317,8 @@ impl Solution {
                     sigma_n: p.sigma_n,
                     lambda: p.lambda,
                     pressure: p.pressure,
+                    u_t: p.u_t,
+                    shear: p.shear,
                 };
                 piece.points.iter().map(point).collect()
             })
@@ -408,6 +424,8 @@ fn contact_values(
                     sigma_n: (1.0 - positions[a]) * sigma_n[0] + positions[a] * sigma_n[1],
                     lambda: pressure(p[a].head(), edge.gamma) + 0.0,
                     pressure: recovered[a],
+                    u_t: y * direction[0] - x * direction[1],
+                    shear: edge.shear_at(p, a) + 0.0,
                 }
             })
             .collect();
@@ -437,15 +455,17 @@ fn piece_values(
         let response = piece.geometry.law.responses()[0];
         let value = |(a, s): (usize, f64)| {
             let PieceNode { direction, gap, .. } = piece.geometry.nodes[a];
+            let displacement = [first, second].map(|stretch| {
+                let nodes = d.space.edge_nodes(stretch.edge);
+                [0, 1].map(|c| {
+                    let values: Vec<f64> = nodes.iter().map(|&node| u[node][c]).collect();
+                    d.space.degree().value_at(&values, stretch.positions[a])
+                })
+            });
+            let [x, y] = [0, 1].map(|c| displacement[0][c] - displacement[1][c]);
             PieceNodeValues {
                 at: [first, second].map(|stretch| stretch.place(d.space.mesh(), a)),
-                displacement: [first, second].map(|stretch| {
-                    let nodes = d.space.edge_nodes(stretch.edge);
-                    [0, 1].map(|c| {
-                        let values: Vec<f64> = nodes.iter().map(|&node| u[node][c]).collect();
-                        d.space.degree().value_at(&values, stretch.positions[a])
-                    })
-                }),
+                displacement,
                 direction: direction.into(),
                 arc: start + s * piece.length,
                 u_n: jumps[a],
@@ -453,6 +473,8 @@ fn piece_values(
                 sigma_n: (1.0 - s) * sigma_n[0] + s * sigma_n[1],
                 lambda: -(response.q(p[a].head()) / piece.gamma) + 0.0,
                 pressure: recovered[a],
+                u_t: y * direction[0] - x * direction[1],
+                shear: piece.shear_at(p, a) + 0.0,
             }
         };
         let mut points: Vec<PieceNodeValues> =
@@ -482,7 +504,7 @@ fn quantities(d: &Discretization, Evaluated { u, p, residual }: &Evaluated) -> Q
         let contact = edge.contribution(&d.rule, p);
         q.contact_force += contact.resultant;
         for (i, force) in contact.force.iter().enumerate().filter(|_| edge.partner().is_none()) {
-            let n = edge.geometry.nodes[i].direction;
+            let n = edge.direction_of(i);
             for c in 0..2 {
                 q.contact_resultant[c] -= force * n[c];
             }

@@ -56,6 +56,22 @@ impl<'d, 'p> System<'d, 'p> {
         Ok(System { d, numbering, matrix, structure, course, steps: Cell::new(0) })
     }
 
+    /// The same matrices for a discretization that differs in the laws of its pieces alone.
+    pub(super) fn with_other_laws<'e>(
+        &self,
+        d: &'e Discretization<'p>,
+        course: Course<'e>,
+    ) -> System<'e, 'p> {
+        System {
+            d,
+            numbering: self.numbering.clone(),
+            matrix: self.matrix.clone(),
+            structure: Arc::clone(&self.structure),
+            course,
+            steps: Cell::new(self.steps.get()),
+        }
+    }
+
     /// Reports that a Newton step begins.
     pub(super) fn enters_step(&self) {
         self.steps.set(self.steps.get() + 1);

@@ -18,16 +18,16 @@ use signorini::solve::{
 
 use crate::common::{DEGREES, Random, constant};
 
-fn number_from(variable: &str, default: u64) -> u64 {
+pub fn number_from(variable: &str, default: u64) -> u64 {
     std::env::var(variable).ok().map_or(default, |text| text.parse().unwrap())
 }
 
 /// A well-posed problem.
-struct Body {
-    kind: &'static str,
-    said: String,
-    problem: Problem,
-    method: Method,
+pub struct Body {
+    pub kind: &'static str,
+    pub said: String,
+    pub problem: Problem,
+    pub method: Method,
 }
 
 /// What all kinds of bodies have in common: element, material, units, gamma0.
@@ -335,7 +335,7 @@ fn on_the_floor(
 }
 
 /// A body of one of the families; one in four has the Gauss points of its degree on its contact edges.
-fn of_all_families(seed: u64) -> Body {
+pub fn of_all_families(seed: u64) -> Body {
     let kinds = [beam, sheet, graded, layered, arch, resting, cornered, squeezed];
     let mut body = kinds[(seed % 8) as usize](&mut Random(seed));
     if (seed / 8).is_multiple_of(4) {
@@ -347,11 +347,11 @@ fn of_all_families(seed: u64) -> Body {
 /// Beyond this condition number no solution need be proved; nor where the matrix has no factor.
 const ILL_CONDITIONED: f64 = 1e14;
 
-const PROVED: &str = "proved";
-const FAILURES: [&str; 2] = ["not proved, radius too large", "not proved, no enclosure"];
+pub const PROVED: &str = "proved";
+pub const FAILURES: [&str; 2] = ["not proved, radius too large", "not proved, no enclosure"];
 
 /// What comes of a body, or which promise of its solution does not hold.
-fn outcome(body: &Body, steps: &mut Vec<usize>) -> Result<&'static str, String> {
+pub fn outcome(body: &Body, steps: &mut Vec<usize>) -> Result<&'static str, String> {
     let settings = Settings { max_iterations: 200, ..Settings::default() };
     let solution = match solve(&body.problem, &body.method, &settings) {
         Ok((solution, _)) => solution,

@@ -174,7 +174,7 @@ pub mod exact {
 
     use signorini::fem::{Perturbation, Structured, Trapezoid};
     use signorini::solve::{Degree, Settings};
-    use signorini::study::exact::{Corner, Kind, Singular, Smooth};
+    use signorini::study::exact::{Corner, Kind, Singular, SlipTip, Smooth, StickSlip};
     use signorini::study::{Exact, Ladder};
 
     use super::{EXACT, method, unit_material, unit_square};
@@ -192,6 +192,25 @@ pub mod exact {
     /// (a) with the exponents (4, 3) on a floor that is not flat.
     pub fn smooth_with_gap() -> Exact {
         on_a_floor(4.0, 3.0, 1.0 / 3.0, vec![0.2, -0.3, 0.5])
+    }
+
+    /// (e), which slides for x > 1/3.
+    pub fn stick_slip() -> Exact {
+        let material = unit_material();
+        let (c, bound, pressure) = (1.0 / 3.0, 0.05, 0.5);
+        Arc::new(StickSlip { material, c, k: 4.0, m: 3.0, a: 16.0, b: 0.2, bound, pressure })
+    }
+
+    /// (f), which slides for x > 1/2.
+    pub fn slip_tip() -> Exact {
+        let (c, bound, pressure) = (0.5, 0.05, 0.5);
+        Arc::new(SlipTip { material: unit_material(), c, amplitude: 0.02, bound, pressure })
+    }
+
+    /// (e) or (f) on the unit square, n x n cells on level 0.
+    pub fn with_friction(solution: &Exact, degree: Degree, n: usize) -> Ladder {
+        let sides = [Kind::Displacement; 3];
+        ladder(solution, Structured::Rectangle(unit_square(n)), sides, degree)
     }
 
     pub fn singular(c: f64) -> Exact {

@@ -62,6 +62,14 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
             ][..],
         ),
         ("cases/singular.toml", &["mesh.rectangle.nx=2", "mesh.rectangle.ny=2"]),
+        (
+            "cases/block.toml",
+            &[
+                "mesh.rectangle.nx=4",
+                "method.gamma0=auto",
+                "boundary.bottom.contact.friction={coulomb=0.3}",
+            ],
+        ),
         ("cases/singular.toml", &["method.degree=1", "adapt.target=\"20 %\""]),
         ("cases/singular.toml", &["adapt.target=\"1 %\"", "adapt.max_unknowns=10"]),
         (
@@ -122,7 +130,7 @@ fn known_to(file: &str, text: &str, settings: &[&str], table: &str) -> BTreeSet<
 }
 
 /// The tables of a case, each with a case that has it and with its name on the page.
-const TABLES: [(&str, &[&str], &str, &str); 22] = [
+const TABLES: [(&str, &[&str], &str, &str); 24] = [
     ("cases/block.toml", &[], "", ""),
     ("cases/block.toml", &["body.thickness=2"], "body", "body"),
     ("cases/block.toml", &[], "mesh", "mesh"),
@@ -134,6 +142,12 @@ const TABLES: [(&str, &[&str], &str, &str); 22] = [
     ("cases/block.toml", &[], "load", "load"),
     ("cases/block.toml", &[], "boundary.left", "boundary.NAME"),
     ("cases/block.toml", &[], "boundary.bottom.contact", "boundary.NAME.contact"),
+    (
+        "cases/block.toml",
+        &["boundary.bottom.contact.friction={coulomb=0.1}"],
+        "boundary.bottom.contact.friction",
+        "boundary.NAME.contact.friction",
+    ),
     ("cases/block.toml", &["method.degree=1"], "method", "method"),
     ("cases/block.toml", &["solver.tolerance=1e-9"], "solver", "solver"),
     ("cases/block.toml", &["method.degree=1", "adapt.target=\"1 %\""], "adapt", "adapt"),
@@ -143,6 +157,12 @@ const TABLES: [(&str, &[&str], &str, &str); 22] = [
     ("cases/pin.toml", &[], "obstacle.pin.circle", "obstacle.NAME.circle"),
     ("cases/disk.toml", &[], "obstacle.floor.plane", "obstacle.NAME.plane"),
     ("cases/block.toml", &["pair=[{boundaries=[\"left\", \"right\"]}]"], "pair.0", "pair"),
+    (
+        "cases/block.toml",
+        &["pair=[{boundaries=[\"left\", \"right\"], friction={coulomb=0.1}}]"],
+        "pair.0.friction",
+        "pair.friction",
+    ),
     ("cases/block.toml", &["point.p.displacement=[0,0]"], "point.p", "point.NAME"),
     ("cases/block.toml", &["output.probes=[]"], "output", "output"),
 ];

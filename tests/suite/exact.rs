@@ -18,7 +18,7 @@ use signorini::kernel::{Material, Plane};
 use signorini::nalgebra::{Matrix2, Vector2};
 use signorini::solve::Degree;
 use signorini::study::errors::POINTS;
-use signorini::study::exact::{Corner, Patch, Singular, Smooth};
+use signorini::study::exact::{Corner, Patch, Singular, SlipTip, Smooth, StickSlip};
 use signorini::study::{Errors, Exact};
 
 /// A solution, its name, and its body: the unit square, or the wedge 0 < theta < omega.
@@ -51,6 +51,12 @@ fn samples() -> Vec<Sample> {
         }
         for c in [0.5, 1.0 / 3.0] {
             add("singular", Arc::new(Singular { material, c, amplitude: 2.0 }), None);
+            let (bound, pressure) = (0.05, 0.5);
+            let tip = SlipTip { material, c, amplitude: 0.02, bound, pressure };
+            add("slip tip", Arc::new(tip), None);
+            let smooth =
+                StickSlip { material, c, k: 4.0, m: 3.0, a: 16.0, b: 0.2, bound, pressure };
+            add("stick slip", Arc::new(smooth), None);
         }
         for omega in [0.75 * PI, 2.0 / 3.0 * PI, 0.6 * PI] {
             let corner = Corner::new(material, omega).unwrap();
@@ -186,8 +192,16 @@ fn contact(solution: &Exact, x: f64) -> (f64, bool, bool) {
     let worst = (opening / length)
         .max(sigma_n / size)
         .max(sigma_n.abs() * opening.abs() / (size * length))
-        .max(xy.abs() / size);
+        .max(friction(solution, x) / size);
     (worst, sigma_n < -1e-9, opening < -1e-9)
+}
+
+/// How far Tresca's law is from holding at (x, 0): |sigma_xy| <= s, and s |u_x| = sigma_xy u_x; s is 0 without friction.
+fn friction(solution: &Exact, x: [f64; 2]) -> f64 {
+    let [.., shear] = solution.stress(x).components();
+    let (bound, [slip, _]) = (solution.slip_bound().unwrap_or(0.0), solution.displacement(x));
+    let over = shear.abs() - bound;
+    if bound == 0.0 { over } else { over.max(bound * slip.abs() - shear * slip) }
 }
 
 #[test]
@@ -199,6 +213,13 @@ fn conditions_2_hold_along_the_contact_line() {
             assert!(worst <= 1e-14, "{name}: {worst:e} at x = {}", f64::from(i) / 1000.0);
             pressed += i32::from(pressure);
             open += i32::from(gap);
+        }
+        if solution.slip_bound().is_some() {
+            let slips = |i: i32| solution.displacement([f64::from(i) / 1000.0, 0.0])[0] > 1e-9;
+            let slipping = (1..1000).filter(|&i| slips(i)).count();
+            // (e) and (f) have a real change between sticking and sliding.
+            assert!(pressed == 999 && (400..750).contains(&slipping), "{name}: {slipping}");
+            continue;
         }
         // (a) and (b) have a real change between contact and gap.
         if solution.features().kink.is_some() || name.starts_with("singular") {
@@ -218,6 +239,19 @@ fn control_a_tension_amplitude_of_the_wrong_sign_breaks_the_contact_conditions()
         amplitude: -1.0,
     });
     assert!((1..1000).any(|i| contact(&tension, f64::from(i) / 1000.0).0 > 0.1));
+}
+
+#[test]
+fn control_friction_with_the_wrong_sign_or_over_its_bound_breaks_trescas_law() {
+    let material = Material::lame(1.0, 1.0, Plane::Strain);
+    let tip = SlipTip { material, c: 0.5, amplitude: 0.02, bound: 0.05, pressure: 0.5 };
+    let fails = |tip: SlipTip| {
+        let tip: Exact = Arc::new(tip);
+        (1..1000).any(|i| contact(&tip, f64::from(i) / 1000.0).0 > 1e-4)
+    };
+    assert!(!fails(tip.clone()));
+    assert!(fails(SlipTip { amplitude: -0.02, ..tip.clone() }));
+    assert!(fails(SlipTip { amplitude: 0.06, ..tip }));
 }
 
 #[test]

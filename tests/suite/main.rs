@@ -22,6 +22,7 @@ mod doors;
 mod enclosure;
 mod exact;
 mod figure;
+mod friction;
 mod fuzz;
 mod gmsh_live;
 mod held;

@@ -13,6 +13,7 @@ use signorini::solve::{
 
 mod balance;
 mod curved;
+mod friction;
 mod limits;
 mod patch;
 mod random;

@@ -10,6 +10,7 @@ pub mod constants;
 pub mod curved;
 pub mod discrete_forms;
 pub mod floating_point;
+pub mod friction;
 #[cfg(not(kani))]
 pub mod interpolation;
 #[cfg(not(kani))]
@@ -62,6 +63,7 @@ pub fn all() -> Vec<Claim> {
         constants::claim(),
         variational_inequality::claim(),
         pairs::claim(),
+        friction::claim(),
     ];
     claims.sort_by_key(|claim| claim.id.parse::<u32>().expect("the id of a row is a number"));
     claims
@@ -138,5 +140,6 @@ mod tests {
         every_check_of_row_13_passes "13",
         every_check_of_row_15_passes "15",
         every_check_of_row_16_passes "16",
+        every_check_of_row_27_passes "27",
     }
 }

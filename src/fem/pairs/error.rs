@@ -52,7 +52,7 @@ pub enum PairError {
 const SPLIT: &str = "expected a mesh in which each body has vertices of its own (surfaces = [..] in place of boundaries splits the mesh along the curve between two surfaces)";
 
 /// A pair in a message.
-fn named([first, second]: &[String; 2]) -> String {
+pub(crate) fn named([first, second]: &[String; 2]) -> String {
     format!("the pair of {} and {}", quoted(first, '\''), quoted(second, '\''))
 }
 

@@ -1,9 +1,9 @@
 //! The keys that other programs have and this one has not: what they ask for is not computed, or has another key.
 
-/// What is not computed, and the keys that ask for it, alone or as the first part of a longer key (`friction_coefficient`).
+/// What is not computed, and the keys that ask for it, alone or as the first part of a longer key (`yield_stress`).
 const BEYOND: [(&str, &[&str]); 7] = [
     ("torsion", &["torsion", "torque", "twist"]),
-    ("friction", &["friction", "coulomb", "tresca", "stick", "mu_friction"]),
+    ("one load after the other", &["step", "history", "cycle"]),
     (
         "plasticity",
         &["yield", "sigma_y", "plastic", "plasticity", "hardening", "hardness", "ultimate"],
@@ -44,10 +44,14 @@ const BEYOND: [(&str, &[&str]); 7] = [
 ];
 
 /// What other keys ask for, and the keys that other programs have for that.
-const ELSEWHERE: [(&str, &[&str]); 2] = [
+const ELSEWHERE: [(&str, &[&str]); 3] = [
     (
         "two boundaries that touch each other are a [[pair]]",
         &["master", "slave", "tie", "tied", "self_contact", "bodies"],
+    ),
+    (
+        "friction stands in a contact = { friction = { coulomb = 0.3 } }, or in a [[pair]]",
+        &["friction", "coulomb", "tresca", "mu_friction", "stick"],
     ),
     (
         "a body of revolution has body.plane = \"axisymmetric\"",
@@ -74,8 +78,7 @@ mod tests {
     #[test]
     fn keys_that_ask_for_what_is_not_computed_are_told_from_others() {
         for (key, what) in [
-            ("friction", "friction"),
-            ("Friction-Coefficient", "friction"),
+            ("Yield-Stress", "plasticity"),
             ("yield", "plasticity"),
             ("density", "dynamics"),
             ("torque", "torsion"),
@@ -83,6 +86,7 @@ mod tests {
             let said = not_here(key);
             assert_eq!(said, Some(format!("{what} is not computed by this program")), "{key}");
         }
+        assert!(not_here("Friction-Coefficient").is_some_and(|said| said.contains("coulomb")));
         assert!(not_here("master").is_some_and(|said| said.ends_with("are a [[pair]]")));
         assert!(not_here("axisymmetric").is_some_and(|said| said.contains("body.plane")));
         for key in ["nonsense", "yung", "tolerence", "densities", "timeout"] {

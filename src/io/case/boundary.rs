@@ -193,7 +193,7 @@ fn read_contact(value: &Value, obstacles: &Obstacles) -> Result<Condition, FileE
         return Err(value.wrong("a table, such as { gap = \"0\" } or { obstacle = \"floor\" }"));
     }
     let contact = value.table()?;
-    contact.only(&["gap", "obstacle"])?;
+    contact.only(&["gap", "obstacle", "friction"])?;
     let Some(obstacle) = contact.get("obstacle") else {
         let gap = contact.optional("gap", Value::function)?;
         return Ok(Condition::Contact { gap: gap.unwrap_or_else(|| constant(0.0)) });

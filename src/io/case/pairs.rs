@@ -1,5 +1,6 @@
 //! `[[pair]]` of a case file: boundaries that touch each other.
 
+use super::friction;
 use super::table::{Spot, Table, Value};
 use crate::fem::mesh::split_names;
 use crate::fem::{Law, Mesh, Pair};
@@ -24,7 +25,7 @@ pub(super) fn read_pairs<'s>(root: &Table<'s>) -> Result<Vec<ReadPair<'s>>, File
 }
 
 fn read_pair(table: Table) -> Result<ReadPair, FileError> {
-    table.only(&["boundaries", "surfaces", "clearance", "reach", "law"])?;
+    table.only(&["boundaries", "surfaces", "clearance", "reach", "law", "friction"])?;
     let sides = ["boundaries", "surfaces"];
     let (boundaries, surfaces) = match table.given(&sides)[..] {
         ["boundaries"] => (names(&table.require("boundaries", "two names")?)?, None),
@@ -46,6 +47,10 @@ fn read_pair(table: Table) -> Result<ReadPair, FileError> {
     pair.reach = table.optional("reach", Value::positive)?;
     let laws = [("contact", Law::Contact), ("sliding", Law::Sliding), ("bonded", Law::Bonded)];
     table.set("law", &mut pair.law, |law| law.one_of(&laws))?;
+    if let Some(friction) = table.get("friction").filter(|_| pair.law != Law::Contact) {
+        return Err(friction.wrong("no friction, or law = \"contact\""));
+    }
+    pair.friction = table.optional("friction", friction::read)?;
     Ok(ReadPair { at: table.at, pair, surfaces })
 }
 
@@ -81,10 +86,14 @@ pub(super) fn on_mesh(
     root: &Table,
     pairs: Vec<ReadPair>,
     mesh: &Mesh,
+    of_revolution: bool,
 ) -> Result<Vec<Pair>, FileError> {
     let conditions = root.section("boundary")?;
     let mut checked: Vec<Pair> = Vec::new();
     for ReadPair { at, pair, .. } in pairs {
+        if of_revolution && pair.friction.is_some() {
+            return Err(at.found("friction", friction::NOT_IN_REVOLUTION));
+        }
         for name in &pair.boundaries {
             if mesh.edges_of(name).map_err(|error| at.mesh(error))?.is_empty() {
                 let found = format!("no edge on the boundary {}", quoted(name, '\''));

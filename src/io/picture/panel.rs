@@ -1,4 +1,4 @@
-//! A panel for each contact boundary: its pressure over the arc length, the peak marked; below it, where there is a
+//! A panel for each contact boundary: its pressure over the arc length, the peak marked, and the shear stress of friction; below it, where there is a
 //! certificate, a strip that says what is bounded and by what: the opening where the body presses, in the mean over a stretch,
 //! the pressure where it is off the obstacle, and neither elsewhere.
 //!
@@ -10,7 +10,7 @@ use svg::node::element::Group;
 use super::contact::{RADIUS, tag};
 use super::draw::{
     Axes, GREY, LIGHT, PageAxis, PathData, Point, RED, anchored, clean, dot, fitting, range,
-    rectangle, red_area, short, text, thinned, width_of,
+    rectangle, red_area, short, stroke, text, thinned, width_of,
 };
 use super::scene::{ContactSample, ContactSurface, Scene};
 use crate::certify::quantities::{Limit, Zone};
@@ -85,7 +85,9 @@ fn panel(
     let pressures = if top > 0.0 { ticks(0.0, top) } else { Vec::new() };
     let grid = axes.grid([ticks(first, last), pressures]);
     let in_brackets = |i: usize| units.as_ref().map_or(String::new(), |u| format!(" ({})", u[i]));
-    let title = clean(&format!("{}: contact pressure{}", surface.name, in_brackets(0)));
+    let is_rough = surface.parts.iter().flatten().any(|sample| sample.shear.is_some());
+    let what = if is_rough { "contact pressure, friction (blue)" } else { "contact pressure" };
+    let title = clean(&format!("{}: {what}{}", surface.name, in_brackets(0)));
     let title = text(&title, [left, y + 16.0])
         .set("font-size", fitting(&title, 14.0 / 0.9, width) * 0.9)
         .set("font-weight", "bold");
@@ -99,8 +101,11 @@ fn panel(
     match peak {
         Some(peak) => {
             let stress = units.as_ref().map_or("", |[stress, _]| stress);
-            group =
-                group.add(curve(surface, &axes)).add(axes.frame()).add(mark(peak, stress, &axes));
+            group = group.add(curve(surface, &axes));
+            if is_rough {
+                group = group.add(shear(surface, &axes));
+            }
+            group = group.add(axes.frame()).add(mark(peak, stress, &axes));
         }
         None => {
             let at = [left + width / 2.0, bottom - PLOT / 2.0];
@@ -166,6 +171,18 @@ fn curve(surface: &ContactSurface, axes: &Axes) -> Group {
         }
     }
     red_area(area, line).set("stroke-linejoin", "round")
+}
+
+/// Draws the sizes of the shear stress as a line.
+fn shear(surface: &ContactSurface, axes: &Axes) -> Group {
+    let ([first, last], highest) = (axes.x.range, axes.y.range[1]);
+    let mut line = PathData::default();
+    for part in &surface.parts {
+        let shown = part.iter().filter(|s| (first..=last).contains(&s.arc));
+        let point = |s: &ContactSample| Some(axes.at([s.arc, s.shear?.min(highest)]));
+        line.line(thinned(&shown.filter_map(point).collect::<Vec<Point>>()));
+    }
+    Group::new().add(stroke(line, OPEN, 1.6).set("stroke-linejoin", "round"))
 }
 
 /// A dot at the peak, and its value above it.

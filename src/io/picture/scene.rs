@@ -82,6 +82,8 @@ pub(super) struct ContactSample {
     pub(super) gap: f64,
     /// The recovered pressure, >= 0.
     pub(super) pressure: f64,
+    /// The size of the shear stress, where there is friction.
+    pub(super) shear: Option<f64>,
 }
 
 /// A pressure this many times that of all but this share of the length in contact is a spike.
@@ -286,6 +288,7 @@ fn contact_surfaces(case: &Case, s: &Solution, results: &Results) -> Vec<Contact
             displacement: s.displacement[p.node],
             gap: p.gap,
             pressure: if presses { p.pressure } else { 0.0 },
+            shear: carries.and_then(|part| part.friction.map(|_| p.shear.abs())),
         };
         let parts = edges.chunk_by(connected);
         let zones = |c: &ContinuousCertificate| {
@@ -329,6 +332,7 @@ fn pairs(s: &Solution, results: &Results) -> Vec<ContactSurface> {
             displacement: p.displacement[0],
             gap: f64::INFINITY,
             pressure: if presses { p.pressure } else { 0.0 },
+            shear: carries.and_then(|part| part.friction.map(|_| p.shear.abs())),
         };
         let connected = |a: &PieceValues, b: &PieceValues| {
             // The end of one piece and the start of the next are one place up to rounding.

@@ -6,14 +6,19 @@
 //! | [`Singular`] | unit square | the r^(3/2) singularity where contact ends | s < 5/2 |
 //! | [`Corner`] | trapezoid | contact everywhere, pressure r^(alpha - 1) at one end | s < 1 + alpha |
 //! | [`Patch`] | any | d1 to d5: u affine, so it lies in V^h | |
+//! | [`StickSlip`] | unit square | contact, friction: sticks for x < c and slides for x > c | s < min(k - 1/2, m + 1/2) |
+//! | [`SlipTip`] | unit square | the r^(3/2) singularity where sliding ends | s < 5/2 |
 //!
-//! Gamma_C lies on y = 0 in all of them: n = (0, -1), u_n = -u_y, sigma_n = sigma_yy, and sigma_t = 0 means sigma_xy = 0.
+//! Gamma_C lies on y = 0 in all of them: n = (0, -1), u_n = -u_y, sigma_n = sigma_yy. sigma_t = 0 means sigma_xy = 0; with
+//! friction t = (1, 0), so that u_t = u_x and sigma_t = -sigma_xy.
 //! lambda is the coefficient that acts in the plane, so plane stress needs no second set of formulas.
 
 mod corner;
 mod patch;
 mod singular;
+mod slip_tip;
 mod smooth;
+mod stick_slip;
 
 use std::collections::BTreeMap;
 use std::fmt::Debug;
@@ -22,14 +27,16 @@ use std::sync::Arc;
 pub use corner::Corner;
 pub use patch::Patch;
 pub use singular::{Place, Singular};
+pub use slip_tip::SlipTip;
 pub use smooth::Smooth;
+pub use stick_slip::StickSlip;
 
 use nalgebra::Matrix2;
 
 use crate::fem::graded_quadrature::Features;
 use crate::fem::mesh::Mesh;
 use crate::fem::problem::{Condition, Problem};
-use crate::fem::{Function, SharedFunction};
+use crate::fem::{Friction, Function, SharedFunction};
 use crate::kernel::{Material, Scalar, Stress};
 
 /// A displacement field that solves (1)-(2), with its data.
@@ -56,6 +63,11 @@ pub trait ExactSolution: Debug + Send + Sync {
     /// g, the initial gap on Gamma_C.
     fn gap(&self, _: [f64; 2]) -> f64 {
         0.0
+    }
+
+    /// The slip bound of Tresca's friction on Gamma_C; `None` if there is no friction.
+    fn slip_bound(&self) -> Option<f64> {
+        None
     }
 
     /// The least upper bound of the s for which u is in H^s.
@@ -106,7 +118,14 @@ pub fn body_force(solution: &Exact) -> [SharedFunction; 2] {
 /// The problem that `solution` solves on a mesh of its body.
 pub fn problem(solution: &Exact, mesh: Mesh, kinds: &BTreeMap<String, Kind>) -> Problem {
     let conditions = kinds.iter().map(|(name, kind)| (name.clone(), kind.condition(solution)));
-    Problem::new(mesh, *solution.material(), body_force(solution), conditions.collect())
+    let body_force = body_force(solution);
+    let mut problem = Problem::new(mesh, *solution.material(), body_force, conditions.collect());
+    if let Some(bound) = solution.slip_bound() {
+        for (name, _) in kinds.iter().filter(|(_, kind)| **kind == Kind::Contact) {
+            problem = problem.with_friction(name, Friction::tresca(move |_| bound));
+        }
+    }
+    problem
 }
 
 /// One number of an exact solution as a function of the place.
@@ -161,4 +180,29 @@ impl Function for Component {
 fn kolosov<S: Scalar>(material: &Material<S>) -> S {
     let (lambda, mu) = (material.lambda(), material.mu());
     (lambda + S::from(3) * mu) / (lambda + mu)
+}
+
+/// f = -(lambda + mu) grad div u - mu Laplace u, or -div (A eps(u)), from \[u_xx, u_xy, u_yy\] of each component.
+fn force_of(material: &Material<f64>, [[xx, xy, yy], [vxx, vxy, vyy]]: [[f64; 3]; 2]) -> [f64; 2] {
+    if !material.is_isotropic() {
+        let along_x = material.stress(Matrix2::new(xx, xy, vxx, vxy));
+        let along_y = material.stress(Matrix2::new(xy, yy, vxy, vyy));
+        let divergence = along_x.matrix().column(0) + along_y.matrix().column(1);
+        return [-divergence[0], -divergence[1]];
+    }
+    let mu = material.mu();
+    let both = material.lambda() + mu;
+    [-both * (xx + vxy) - mu * (xx + yy), -both * (xy + vyy) - mu * (vxx + vyy)]
+}
+
+/// amplitude \[t\]+^exponent and its first derivatives with respect to t.
+fn truncated_power<const K: usize>(amplitude: f64, exponent: f64, t: f64) -> [f64; K] {
+    let mut factor = amplitude;
+    let mut exponent = exponent;
+    [(); K].map(|()| {
+        let value = if t > 0.0 { factor * t.powf(exponent) } else { 0.0 };
+        factor *= exponent;
+        exponent -= 1.0;
+        value
+    })
 }

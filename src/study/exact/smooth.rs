@@ -8,7 +8,7 @@
 
 use nalgebra::Matrix2;
 
-use super::ExactSolution;
+use super::{ExactSolution, force_of, truncated_power};
 use crate::fem::graded_quadrature::Features;
 use crate::kernel::Material;
 
@@ -41,9 +41,9 @@ struct Factors {
 
 impl Smooth {
     fn factors(&self, [x, y]: [f64; 2]) -> Factors {
-        let p = derivatives::<4>(self.ap, self.k, x - self.c);
+        let p = truncated_power::<4>(self.ap, self.k, x - self.c);
         // Each derivative of [c - x]+^m changes the sign once more.
-        let [q0, q1, q2] = derivatives::<3>(-self.aq, self.m, self.c - x);
+        let [q0, q1, q2] = truncated_power::<3>(-self.aq, self.m, self.c - x);
         let y2 = y * y;
         let y3 = y2 * y;
         Factors {
@@ -66,18 +66,6 @@ impl Smooth {
             [b[0] * pi[2] - a[0] * q[2], b[1] * pi[1] - a[1] * q[1], b[2] * pi[0] - a[2] * q[0]],
         ]
     }
-}
-
-/// amplitude \[t\]+^exponent and its first derivatives with respect to t.
-fn derivatives<const K: usize>(amplitude: f64, exponent: f64, t: f64) -> [f64; K] {
-    let mut factor = amplitude;
-    let mut exponent = exponent;
-    [(); K].map(|()| {
-        let value = if t > 0.0 { factor * t.powf(exponent) } else { 0.0 };
-        factor *= exponent;
-        exponent -= 1.0;
-        value
-    })
 }
 
 /// The derivative of order `j` of the polynomial with these coefficients, by Horner's rule.
@@ -110,18 +98,8 @@ impl ExactSolution for Smooth {
         Some(self.hessians(x))
     }
 
-    /// f = -(lambda + mu) grad div u - mu Laplace u, or -div (A eps(u)).
     fn body_force(&self, x: [f64; 2]) -> Option<[f64; 2]> {
-        let [[xx, xy, yy], [vxx, vxy, vyy]] = self.hessians(x);
-        if !self.material.is_isotropic() {
-            let along_x = self.material.stress(Matrix2::new(xx, xy, vxx, vxy));
-            let along_y = self.material.stress(Matrix2::new(xy, yy, vxy, vyy));
-            let divergence = along_x.matrix().column(0) + along_y.matrix().column(1);
-            return Some([-divergence[0], -divergence[1]]);
-        }
-        let mu = self.material.mu();
-        let both = self.material.lambda() + mu;
-        Some([-both * (xx + vxy) - mu * (xx + yy), -both * (xy + vyy) - mu * (vxx + vyy)])
+        Some(force_of(&self.material, self.hessians(x)))
     }
 
     fn gap(&self, [x, _]: [f64; 2]) -> f64 {

@@ -36,16 +36,16 @@ impl ContactEnergy for Springs {
         e..e + 1
     }
 
-    fn derivatives(&self, _: usize, p: &[DoubleDouble]) -> (Vec<f64>, DMatrix<f64>) {
+    fn derivatives(&self, _: usize, s: f64, p: &[DoubleDouble]) -> (Vec<f64>, DMatrix<f64>) {
         let p = p[0].head();
-        let stiffness = if p > 0.0 { STIFFNESS } else { 0.0 };
+        let stiffness = if p > 0.0 { s * STIFFNESS } else { 0.0 };
         (vec![stiffness * p], DMatrix::from_element(1, 1, stiffness))
     }
 
-    fn bregman(&self, _: usize, p: &[DoubleDouble], q: &[DoubleDouble]) -> f64 {
+    fn bregman(&self, _: usize, s: f64, p: &[DoubleDouble], q: &[DoubleDouble]) -> f64 {
         let (p, q) = (p[0].head(), q[0].head());
         let step = q.max(0.0) - p.max(0.0);
-        STIFFNESS * (step * step / 2.0 + p.max(0.0) * (-q).max(0.0))
+        s * STIFFNESS * (step * step / 2.0 + p.max(0.0) * (-q).max(0.0))
     }
 }
 
@@ -153,7 +153,7 @@ fn ends(body: &mut Body, first: bool) -> Result<(f64, usize), String> {
     let mut residuals = Vec::new();
     let until = Until { steps: MOST, residual: 0.0 };
     newton::minimise(&Springs, body, first, &mut residuals, until).map_err(text)?;
-    let at = body::derivatives(&Springs, &body.y());
+    let at = body::derivatives(&Springs, 1.0, &body.y());
     let Residual { norm, noise } = body.residual(&at);
     Ok((norm / noise, residuals.len()))
 }

@@ -1,0 +1,495 @@
+//! Friction, which the paper does not have: Tresca's law as one equation, the clip that it is made of, and the inequalities on which
+//! existence, uniqueness and error bounds with friction rest. v is the slip, sigma the shear stress, s the slip bound, mu Coulomb's
+//! coefficient; the laws are written out here, clip, gap and integrals are the kernel's.
+
+use signorini::kernel::edge_integral::ExactEdge;
+use signorini::kernel::friction::{
+    ExactFriction, clip, clip_bregman, clip_energy, clip_slopes, fenchel_gap,
+};
+use signorini::kernel::{P1, positive_part};
+
+use crate::harness::{any, assume};
+use crate::numbers::Whole;
+use crate::verdict::{Ordered, Verdict};
+use crate::{ensure, given, harnesses};
+
+fn abs<S: Ordered>(a: S) -> S {
+    if a < S::from(0) { -a } else { a }
+}
+
+/// Tresca's law: |sigma| <= s, and where there is slip sigma is as large as that and against the slip.
+fn tresca<S: Ordered>(v: S, sigma: S, s: S) -> bool {
+    let zero = S::from(0);
+    abs(sigma) <= s && if v > zero { sigma == -s } else { v == zero || sigma == s }
+}
+
+/// A shear stress that satisfies Tresca's law at the slip v; each one for some w.
+fn shear<S: Ordered>(v: S, w: S, s: S) -> S {
+    let zero = S::from(0);
+    if v > zero {
+        -s
+    } else if v < zero {
+        s
+    } else {
+        within(w, s)
+    }
+}
+
+/// A number of \[-s, s\]; each one for some w.
+fn within<S: Ordered>(w: S, s: S) -> S {
+    if w > s {
+        s
+    } else if w < -s {
+        -s
+    } else {
+        w
+    }
+}
+
+fn class<S: Ordered>(v: S) -> &'static str {
+    if v == S::from(0) { "sticks" } else { "slides" }
+}
+
+/// Tresca's law if and only if gamma sigma = -clip(v - gamma sigma; bound).
+fn equation<S: Ordered>([v, sigma, s, gamma]: [S; 4], bound: S) -> Verdict {
+    let zero = S::from(0);
+    given!(gamma > zero && s >= zero);
+    let law = tresca(v, sigma, s);
+    let equation = gamma * sigma == -clip(v - gamma * sigma, bound);
+    ensure!(law == equation);
+    Verdict::Holds(if law { class(v) } else { "neither holds" })
+}
+
+/// Proposition 2.1 for Tresca's law, for every gamma > 0.
+pub fn tresca_is_one_equation<S: Ordered>(x: [S; 4]) -> Verdict {
+    equation(x, x[3] * x[2])
+}
+
+/// The bound without gamma.
+pub fn control_clip_without_gamma<S: Ordered>(x: [S; 4]) -> Verdict {
+    equation(x, x[2])
+}
+
+/// Friction along the slip, in place of against it.
+pub fn control_friction_along_the_slip<S: Ordered>([v, sigma, s, gamma]: [S; 4]) -> Verdict {
+    let zero = S::from(0);
+    given!(gamma > zero && s >= zero);
+    let (law, p) = (tresca(v, sigma, s), v + gamma * sigma);
+    ensure!(law == (gamma * sigma == clip(p, gamma * s)));
+    Verdict::Holds("always")
+}
+
+/// What a glued interface says, v = 0, is gamma sigma = -(v - gamma sigma).
+pub fn glue_is_one_equation<S: Ordered>([v, sigma, gamma]: [S; 3]) -> Verdict {
+    given!(gamma > S::from(0));
+    let law = v == S::from(0);
+    let equation = gamma * sigma == -(v - gamma * sigma);
+    ensure!(law == equation);
+    Verdict::Holds(if law { "glued" } else { "neither holds" })
+}
+
+/// Coulomb's law with contact, for the bound mu q of friction: n is the normal displacement beyond the gap, p the normal stress.
+fn coulomb<S: Ordered>([n, p, v, sigma, mu, gamma]: [S; 6], bound_of: impl Fn(S) -> S) -> Verdict {
+    let zero = S::from(0);
+    given!(gamma > zero && mu >= zero);
+    // (2), and Tresca's law with the slip bound mu |p|.
+    let law = n <= zero && p <= zero && n * p == zero && tresca(v, sigma, -(mu * p));
+    let normal = n - gamma * p;
+    let equations = gamma * p == -positive_part(normal)
+        && gamma * sigma == -clip(v - gamma * sigma, mu * bound_of(normal));
+    ensure!(law == equations);
+    Verdict::Holds(match (law, p < zero) {
+        (false, _) => "neither holds",
+        (true, false) => "open",
+        (true, true) => class(v),
+    })
+}
+
+/// Coulomb's law is two equations, with the bound mu \[P_n\]+ of the same point.
+pub fn coulomb_is_two_equations<S: Ordered>(x: [S; 6]) -> Verdict {
+    coulomb(x, positive_part)
+}
+
+/// The bound mu |P_n|: friction across an open gap.
+pub fn control_friction_of_a_pressure_that_pulls<S: Ordered>(x: [S; 6]) -> Verdict {
+    coulomb(x, abs)
+}
+
+/// The clip is the point of \[-m, m\] nearest to x: by the variational inequality.
+pub fn clip_is_the_projection_on_the_bounds<S: Ordered>([x, w, m]: [S; 3]) -> Verdict {
+    let zero = S::from(0);
+    given!(m >= zero);
+    let (q, other) = (clip(x, m), within(w, m));
+    ensure!(-m <= q && q <= m);
+    ensure!((other - q) * (x - q) <= zero);
+    ensure!(clip(-x, m) == -q);
+    Verdict::Holds(if q == x { "within" } else { "beyond" })
+}
+
+/// (q_a - q_b)^2 <= (q_a - q_b) (a - b): all that the theory of the method uses of \[.\]+.
+pub fn clip_is_firmly_nonexpansive<S: Ordered>([a, b, m]: [S; 3]) -> Verdict {
+    given!(m >= S::from(0));
+    let d = clip(a, m) - clip(b, m);
+    ensure!(d * d <= d * (a - b));
+    Verdict::Holds(if d == S::from(0) { "the same" } else { "differ" })
+}
+
+/// Twice the clip.
+pub fn control_twice_the_clip_is_firmly_nonexpansive<S: Ordered>([a, b, m]: [S; 3]) -> Verdict {
+    given!(m >= S::from(0));
+    let d = S::from(2) * (clip(a, m) - clip(b, m));
+    ensure!(d * d <= d * (a - b));
+    Verdict::Holds("always")
+}
+
+/// |clip(x; m) - clip(x; n)| <= |m - n|
+pub fn clip_is_lipschitz_in_its_bound<S: Ordered>([x, m, n]: [S; 3]) -> Verdict {
+    given!(m >= S::from(0) && n >= S::from(0));
+    let d = clip(x, m) - clip(x, n);
+    ensure!(abs(d) <= abs(m - n));
+    Verdict::Holds(if d == S::from(0) { "the same" } else { "differ" })
+}
+
+/// The slopes that Newton's method uses: one of them at most is not zero, and with them clip(x; \[m\]+) is homogeneous.
+pub fn slopes_of_the_clip_add_up_to_it<S: Ordered>([x, m]: [S; 2]) -> Verdict {
+    let (zero, one) = (S::from(0), S::from(1));
+    let [by_x, by_m] = clip_slopes(x, m);
+    ensure!(by_x + abs(by_m) <= one && by_x >= zero);
+    ensure!(clip(x, positive_part(m)) == by_x * x + by_m * m);
+    Verdict::Holds(if by_x == one {
+        "sticks"
+    } else if by_m == zero {
+        "open"
+    } else {
+        "slides"
+    })
+}
+
+/// The energy is convex with the clip for its derivative: its Bregman distance is not negative, and is what the kernel computes.
+pub fn bregman_distance_of_friction_is_its_definition<S: Ordered>([a, b, m]: [S; 3]) -> Verdict {
+    let zero = S::from(0);
+    given!(m >= zero);
+    let distance = clip_bregman(a, b, m);
+    ensure!(distance == clip_energy(b, m) - clip_energy(a, m) - clip(a, m) * (b - a));
+    ensure!(distance >= zero);
+    Verdict::Holds(if distance == zero { "none" } else { "some" })
+}
+
+/// s |v| + tau v >= 0, and 0 exactly where v and tau satisfy Tresca's law.
+pub fn gap_of_friction_is_zero_exactly_where_tresca_holds<S: Ordered>(
+    [v, tau, s]: [S; 3],
+) -> Verdict {
+    let zero = S::from(0);
+    given!(abs(tau) <= s);
+    let gap = fenchel_gap(v, tau, s);
+    ensure!(gap == s * abs(v) + tau * v);
+    ensure!(gap >= zero);
+    ensure!((gap == zero) == tresca(v, tau, s));
+    Verdict::Holds(if gap > zero { "neither holds" } else { class(v) })
+}
+
+/// The gap for a traction of any size.
+pub fn control_gap_of_friction_for_any_traction<S: Ordered>([v, tau, s]: [S; 3]) -> Verdict {
+    given!(s >= S::from(0));
+    ensure!(fenchel_gap(v, tau, s) >= S::from(0));
+    Verdict::Holds("always")
+}
+
+/// What contact gains in monotonicity pays for friction whose bound it moves: d^2 - mu |d| |p| >= -mu^2 p^2 / 4.
+pub fn pressure_pays_for_friction<S: Ordered>([d, p, mu]: [S; 3]) -> Verdict {
+    given!(mu >= S::from(0));
+    let moved = mu * abs(d) * abs(p);
+    ensure!(S::from(4) * (d * d - moved) >= -(mu * mu * p * p));
+    Verdict::Holds("always")
+}
+
+/// Twice as cheaply.
+pub fn control_pressure_pays_for_friction_twice<S: Ordered>([d, p, mu]: [S; 3]) -> Verdict {
+    given!(mu >= S::from(0));
+    let moved = mu * abs(d) * abs(p);
+    ensure!(S::from(8) * (d * d - moved) >= -(mu * mu * p * p));
+    Verdict::Holds("always")
+}
+
+/// Existence for every coefficient: with P_n, P_t of some u and c_n, c_t of another one, twice the work of contact and friction on the
+/// difference is at least -(c_n^2 + mu^2 c_t^2).
+pub fn friction_does_not_drive<S: Ordered>([p, x, c, b, mu]: [S; 5]) -> Verdict {
+    let two = S::from(2);
+    given!(mu >= S::from(0));
+    let q = positive_part(p);
+    ensure!(two * q * (p - c) >= q * q - c * c);
+    let m = mu * q;
+    let work = clip(x, m) * (x - b);
+    ensure!(work >= -(m * abs(b)));
+    ensure!(-(two * m * abs(b)) >= -(q * q) - mu * mu * b * b);
+    Verdict::Holds(if q == S::from(0) { "open" } else { "pressed" })
+}
+
+/// The identity of the error bound at a point: gap of (v, tau) - gap of (v, sigma) - gap of (u, tau) = (sigma - tau) (u - v), where u and
+/// sigma satisfy Tresca's law.
+pub fn gaps_of_friction_are_the_work_of_the_errors<S: Ordered>([u, v, w, t, s]: [S; 5]) -> Verdict {
+    given!(s >= S::from(0));
+    let (sigma, tau) = (shear(u, w, s), within(t, s));
+    let gaps = fenchel_gap(v, tau, s) - fenchel_gap(v, sigma, s) - fenchel_gap(u, tau, s);
+    ensure!(gaps == (sigma - tau) * (u - v));
+    Verdict::Holds(class(u))
+}
+
+/// The same without friction's share of the gap: as if tau v were all of it.
+pub fn control_error_bound_without_the_gap_of_friction<S: Ordered>(
+    [u, v, w, t, s]: [S; 5],
+) -> Verdict {
+    given!(s >= S::from(0));
+    let (sigma, tau) = (shear(u, w, s), within(t, s));
+    let gaps = tau * v - fenchel_gap(v, sigma, s) - fenchel_gap(u, tau, s);
+    ensure!(gaps == (sigma - tau) * (u - v));
+    Verdict::Holds("always")
+}
+
+/// The same for Coulomb's law, with the pressures a of u and b of tau: one more term, mu (b - a) (|u| - |v|), which may have any sign.
+pub fn coulomb_has_one_term_without_a_sign<S: Ordered>([u, v, w, t, a, b, mu]: [S; 7]) -> Verdict {
+    let zero = S::from(0);
+    given!(a >= zero && b >= zero && mu >= zero);
+    let (sigma, tau) = (shear(u, w, mu * a), within(t, mu * b));
+    let of_tau = mu * b * abs(v) + tau * v;
+    let [of_sigma, of_u] = [mu * a * abs(v) + sigma * v, mu * b * abs(u) + tau * u];
+    ensure!(of_tau >= zero && of_sigma >= zero && of_u >= zero);
+    let rest = mu * (b - a) * (abs(u) - abs(v));
+    ensure!(of_tau - of_sigma - of_u + rest == (sigma - tau) * (u - v));
+    Verdict::Holds(class(u))
+}
+
+/// That term is not negative: there would be a bound for Coulomb's law.
+pub fn control_the_term_without_a_sign_has_one<S: Ordered>([u, v, a, b]: [S; 4]) -> Verdict {
+    given!(a >= S::from(0) && b >= S::from(0));
+    ensure!((b - a) * (abs(u) - abs(v)) >= S::from(0));
+    Verdict::Holds("always")
+}
+
+/// The integrals of friction over an edge, by those of contact: F = \[P + m\]+ - \[P - m\]+ - m.
+fn sections<S: Ordered>(p: [S; 2], m: [S; 2], shift: [S; 2]) -> Verdict {
+    let (zero, two, six) = (S::from(0), S::from(2), S::from(6));
+    given!(m[0] >= zero && m[1] >= zero);
+    let e = P1::exact_friction(p, m);
+    let upper = P1::exact([p[0] + shift[0], p[1] + shift[1]]);
+    let lower = P1::exact([p[0] - shift[0], p[1] - shift[1]]);
+    let mass = |v: [S; 2], i: usize| (two * v[i] + v[1 - i]) / six;
+    for i in 0..2 {
+        ensure!(e.gradient[i] == upper.gradient[i] - lower.gradient[i] - mass(m, i));
+    }
+    let (between, half) =
+        (mass(m, 0) * p[0] + mass(m, 1) * p[1], mass(m, 0) * m[0] + mass(m, 1) * m[1]);
+    ensure!(e.energy == upper.energy - lower.energy - between - half / two);
+    // Where P is the bound all along, which of the two derivatives is taken is a choice: the edge slides.
+    let is_bound = p[0] == m[0] && p[1] == m[1];
+    for i in 0..2 {
+        for j in 0..2 {
+            ensure!(is_bound || e.by_p[i][j] == upper.hessian[i][j] - lower.hessian[i][j]);
+        }
+    }
+    ensure!(if is_bound { e.sticks == zero } else { e.sticks == upper.active - lower.active });
+    ensure!(e.sticks + e.slides <= S::from(1));
+    Verdict::Holds(if e.slides == zero {
+        "sticks"
+    } else if e.sticks == zero {
+        "slides"
+    } else {
+        "cut"
+    })
+}
+
+/// By sections they are what the definition says, for a bound that is constant along the edge.
+pub fn sections_of_friction_are_their_definition<S: Ordered>([p0, p1, m]: [S; 3]) -> Verdict {
+    given!(m > S::from(0));
+    sections([p0, p1], [m, m], [m, m])
+}
+
+/// For a bound that is affine along the edge.
+pub fn sections_with_an_affine_bound_are_their_definition<S: Ordered>(
+    [p0, p1, m0, m1]: [S; 4],
+) -> Verdict {
+    given!(m0 > S::from(0) && m1 > S::from(0));
+    sections([p0, p1], [m0, m1], [m0, m1])
+}
+
+/// For a bound that is taken for its value at the start.
+pub fn control_sections_with_the_bound_of_one_end<S: Ordered>([p0, p1, m0, m1]: [S; 4]) -> Verdict {
+    given!(m0 > S::from(0) && m1 > S::from(0));
+    sections([p0, p1], [m0, m1], [m0, m0])
+}
+
+/// P is the bound times this at the ends of an edge: sticking, sliding and cut, both ways.
+const SHARES: [[f64; 2]; 6] =
+    [[0.5, -0.25], [2.0, 1.5], [-3.0, -1.5], [0.0, 2.0], [2.0, -2.0], [-4.0, 0.0]];
+
+/// How far the derivatives with respect to P and m are from those of the gradient in the direction of (P, m), which is the
+/// gradient itself: clip is homogeneous. `factor` multiplies the second one.
+fn tangent_error(p: [f64; 2], m: [f64; 2], factor: f64) -> f64 {
+    let e = P1::exact_friction(p, m);
+    let error = |a: usize| {
+        let by_p = e.by_p[a][0] * p[0] + e.by_p[a][1] * p[1];
+        let by_m = e.by_bound[a][0] * m[0] + e.by_bound[a][1] * m[1];
+        (by_p + factor * by_m - e.gradient[a]).abs()
+    };
+    error(0) + error(1)
+}
+
+harnesses! {
+    /// The clip is x, m or -m, bit for bit, and within the bounds.
+    holds clip_is_the_number_or_a_bound_for_all_finite_doubles() {
+        let (x, m): (f64, f64) = (any(), any());
+        assume(x.is_finite() && m.is_finite() && m >= 0.0);
+        let q = clip(x, m);
+        assert!(-m <= q && q <= m && (q == x || (q == m && x >= m) || (q == -m && x <= -m)));
+    }
+    /// The false twin: always the number.
+    fails control_clip_is_the_number_for_all_finite_doubles([2.0, 1.0]) {
+        let (x, m): (f64, f64) = (any(), any());
+        assume(x.is_finite() && m.is_finite() && m >= 0.0);
+        assert!(clip(x, m) == x);
+    }
+    /// A NaN must not become "no friction".
+    holds clip_of_nan_is_nan_for_all_bounds() {
+        let m: f64 = any();
+        assume(m.is_finite() && m >= 0.0);
+        assert!(clip(f64::NAN, m).is_nan());
+    }
+    /// The false twin: by `f64::clamp`'s order of questions it would be a bound.
+    fails control_clip_of_nan_by_tests_for_within([1.0]) {
+        let m: f64 = any();
+        assume(m.is_finite() && m >= 0.0);
+        let x = f64::NAN;
+        let q = if x < m && x > -m { x } else { m };
+        assert!(q.is_nan());
+    }
+    /// Where the products are exact: firmly nonexpansive.
+    holds clip_is_firmly_nonexpansive_for_all_i8() {
+        let (a, b, m): (i8, i8, i8) = (any(), any(), any());
+        let v = [a, b, m].map(|v| Whole(i32::from(v)));
+        assert!(!clip_is_firmly_nonexpansive(v).fails());
+    }
+    /// The false twin: twice the clip.
+    fails control_twice_the_clip_is_firmly_nonexpansive_for_all_i8([1.0, 0.0, 1.0]) {
+        let (a, b, m): (i8, i8, i8) = (any(), any(), any());
+        let v = [a, b, m].map(|v| Whole(i32::from(v)));
+        assert!(!control_twice_the_clip_is_firmly_nonexpansive(v).fails());
+    }
+    /// Sections of an edge, with a bound that grows along it: with both derivatives the integrals are homogeneous.
+    holds tangent_of_friction_times_its_data_is_the_gradient_on_six_edges() {
+        for [a, b] in SHARES {
+            assert!(tangent_error([8.0 * a, 16.0 * b], [8.0, 16.0], 1.0) < 1e-12);
+        }
+    }
+    /// The false twin: without what the bound does.
+    fails control_tangent_of_friction_without_the_bound_on_six_edges([]) {
+        for [a, b] in SHARES {
+            assert!(tangent_error([8.0 * a, 16.0 * b], [8.0, 16.0], 0.0) < 1e-12);
+        }
+    }
+    /// Sections of an edge with a constant bound, by the integrals of contact.
+    holds sections_have_the_moments_of_the_clip_on_six_edges() {
+        for [a, b] in SHARES {
+            let e = P1::exact_friction([8.0 * a, 8.0 * b], [8.0; 2]);
+            let upper = P1::exact([8.0 * a + 8.0, 8.0 * b + 8.0]);
+            let lower = P1::exact([8.0 * a - 8.0, 8.0 * b - 8.0]);
+            for i in 0..2 {
+                let expected = upper.gradient[i] - lower.gradient[i] - 4.0;
+                assert!((e.gradient[i] - expected).abs() < 1e-12);
+            }
+        }
+    }
+    /// The false twin: the clip of the ends, interpolated.
+    fails control_sections_have_the_moments_of_the_clip_of_the_ends([]) {
+        for [a, b] in SHARES {
+            let e = P1::exact_friction([8.0 * a, 8.0 * b], [8.0; 2]);
+            let q = [clip(8.0 * a, 8.0), clip(8.0 * b, 8.0)];
+            for i in 0..2 {
+                let expected = (2.0 * q[i] + q[1 - i]) / 6.0;
+                assert!((e.gradient[i] - expected).abs() < 1e-12);
+            }
+        }
+    }
+}
+
+#[cfg(not(kani))]
+pub use row::claim;
+
+#[cfg(not(kani))]
+mod row {
+    use super::*;
+    use crate::claim::{Claim, Outcome, model_checked};
+    use crate::numbers::Exact;
+
+    /// The row of friction.
+    pub fn claim() -> Claim {
+        Claim {
+            id: "27",
+            title: "Friction",
+            paper: "(not in the paper, which has sigma_t = 0 on Gamma_C.)",
+            limits: "One point of Gamma_C, or one P1 edge; P2 edges are compared with a fine rule in the tests of the kernel. From the inequalities to existence and uniqueness it is Brouwer's and Banach's theorem (docs/theory.md, 12), which nothing here runs.",
+            single: None,
+            checks: [
+                statements! {
+                    proved + tested tresca_is_one_equation[v, sigma, s, gamma]: "sticks", "slides", "neither holds";
+                    proved + tested glue_is_one_equation[v, sigma, gamma]: "glued", "neither holds";
+                    proved + tested coulomb_is_two_equations[n, p, v, sigma, mu, gamma]
+                        : "open", "sticks", "slides", "neither holds" prepared(on_coulombs_law);
+                    proved + tested clip_is_the_projection_on_the_bounds[x, w, m]: "within", "beyond";
+                    proved + tested clip_is_firmly_nonexpansive[a, b, m]: "the same", "differ";
+                    proved + tested clip_is_lipschitz_in_its_bound[x, m, n]: "the same", "differ";
+                    proved + tested slopes_of_the_clip_add_up_to_it[x, m]: "sticks", "slides", "open";
+                    proved + tested bregman_distance_of_friction_is_its_definition[a, b, m]: "none", "some";
+                    proved + tested gap_of_friction_is_zero_exactly_where_tresca_holds[v, tau, s]
+                        : "sticks", "slides", "neither holds";
+                    proved + tested pressure_pays_for_friction[d, p, mu]
+                        hints(|v| { let (two, m) = (v[0] + v[0], v[2] * v[1]); vec![two - m, two + m] });
+                    proved + tested friction_does_not_drive[p, x, c, b, mu]: "open", "pressed"
+                        hints(|v| { let m = v[4] * v[3]; vec![v[0] - v[2], v[0] - m, v[0] + m] });
+                    proved + tested gaps_of_friction_are_the_work_of_the_errors[u, v, w, t, s]: "sticks", "slides";
+                    proved + tested coulomb_has_one_term_without_a_sign[u, v, w, t, a, b, mu]: "sticks", "slides";
+                    tested sections_of_friction_are_their_definition[p0, p1, m]: "sticks", "slides", "cut";
+                    tested sections_with_an_affine_bound_are_their_definition[p0, p1, m0, m1]
+                        : "sticks", "slides", "cut";
+                    refuted control_clip_without_gamma[v, sigma, s, gamma] fails "law == equation";
+                    refuted control_friction_along_the_slip[v, sigma, s, gamma]
+                        fails "law == (gamma * sigma == clip(p, gamma * s))";
+                    refuted control_friction_of_a_pressure_that_pulls[n, p, v, sigma, mu, gamma]
+                        fails "law == equations";
+                    refuted control_twice_the_clip_is_firmly_nonexpansive[a, b, m] fails "d * d <= d * (a - b)";
+                    refuted control_gap_of_friction_for_any_traction[v, tau, s]
+                        fails "fenchel_gap(v, tau, s) >= S::from(0)";
+                    refuted control_pressure_pays_for_friction_twice[d, p, mu]
+                        fails "S::from(8) * (d * d - moved) >= -(mu * mu * p * p)";
+                    refuted control_error_bound_without_the_gap_of_friction[u, v, w, t, s]
+                        fails "gaps == (sigma - tau) * (u - v)";
+                    refuted control_the_term_without_a_sign_has_one[u, v, a, b]
+                        fails "(b - a) * (abs(u) - abs(v)) >= S::from(0)";
+                },
+                vec![exact!("control_sections_with_the_bound_of_one_end" => bound_of_one_end())],
+                model_checked(HARNESSES, &[]),
+            ]
+            .concat(),
+        }
+    }
+
+    /// An edge that sticks at its start and slides at its end, with a bound that grows.
+    fn bound_of_one_end() -> Outcome {
+        let data = [1, 5, 2, 3].map(Exact::from);
+        match control_sections_with_the_bound_of_one_end(data) {
+            Verdict::Fails(what) => Ok(format!("rejected: {what}")),
+            other => Err(format!("not noticed: {other:?}")),
+        }
+    }
+
+    /// Moves half of the draws onto Coulomb's law, which they would hardly meet: n p = 0, and the shear stress as it must be.
+    fn on_coulombs_law(values: &mut [Exact]) {
+        let zero = Exact::from(0);
+        let [n, p, v, sigma, mu, _] = values else { return };
+        if *n > *sigma {
+            return;
+        }
+        *n = if *p < zero { zero } else { *n };
+        *p = if *n < zero { zero } else { *p };
+        *sigma = shear(*v, *sigma, -(*mu * *p));
+    }
+}

@@ -1,0 +1,495 @@
+//! Coulomb's friction: the discrete equations F(u) = 0 with the slip bound mu \[P_n\]+ of the same point. F is no gradient, so no energy
+//! leads Newton's method. docs/theory.md, 13.5:
+//!
+//! 1. two problems with Tresca's friction, each the minimum of an energy: first without a bound (where friction alone holds the
+//!    body, with one that is never reached), then with mu times the pressure at the ends of each piece;
+//! 2. Newton's method on F as long as its residual, in the dual norm of A, falls by a tenth in each step;
+//! 3. where it does not, the problem with Tresca's friction for the pressures of the step that was not taken, then 2. again;
+//! 4. where that leads nowhere, Newton's method from one coefficient to a larger one.
+//!
+//! The tangent of F is S + B^T D B: S is symmetric positive definite, with the springs of what is pressed and of what sticks, and is
+//! factored; D couples the friction of what slides to its pressure. With z = D B d the step is
+//! d = S^-1 (-F - B^T z), (I + D B S^-1 B^T) z = -D B S^-1 F, solved by GMRES: as many unknowns as functionals that slide.
+
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::SolveError;
+use super::accuracy::{Pass, Route};
+use super::assembled::Assembled;
+use super::body::{Derivatives, all_springs, derivatives};
+use super::course::Course;
+use super::factor::Factor;
+use super::iterate::{Evaluation, Iterate};
+use super::newton::Until;
+use super::system::System;
+use crate::fem::dense::norm;
+use crate::fem::friction::Bound;
+use crate::fem::law::Law;
+use crate::fem::{Discretization, Piece};
+
+/// A step is taken where the residual falls to this share of what it was.
+const FALLS: f64 = 0.9;
+
+/// The shares of a step that are tried, one after the other: evaluations, no factorisations.
+const SHARES_OF_A_STEP: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
+
+/// Where the residual is below this share of |u|_a it is rounding.
+const ROUNDING: f64 = 3e-14;
+
+/// Below this it may be: of 12,000 unknowns the level of rounding is some 1e-13.
+const NEAR_ROUNDING: f64 = 1e-12;
+
+/// After so many factorisations beyond the start it is tried by continuation: of 45 problems none took more than 24.
+const MOST_FACTORIZATIONS: usize = 40;
+
+/// The first and the least share of the coefficient by which continuation goes on, the steps that it may take for one, and the residual
+/// beside the size of the solution that is enough before it goes on.
+const FIRST_SHARE: f64 = 0.25;
+const LEAST_SHARE: f64 = 1.0 / 512.0;
+const STEPS_OF_A_SHARE: usize = 12;
+const NEARLY_THERE: f64 = 1e-8;
+
+/// The share of the springs of all pieces that is added to a tangent without a factor.
+const SUPPORT: f64 = 1e-6;
+
+impl Discretization<'_> {
+    /// Returns whether a piece has Coulomb's friction.
+    pub(super) fn has_coulomb(&self) -> bool {
+        self.contact.iter().any(|piece| coefficient(piece).is_some())
+    }
+}
+
+/// mu, where a piece has Coulomb's friction.
+pub(super) fn coefficient(piece: &Piece<impl Sized>) -> Option<f64> {
+    match piece.geometry.law {
+        Law::Friction(Bound::Coulomb(mu)) => Some(mu),
+        _ => None,
+    }
+}
+
+/// The way to a solution with Coulomb's friction.
+pub struct Coulomb<'a, 'd, 'p> {
+    system: &'a System<'d, 'p>,
+    /// The size that residuals are relative to.
+    reference: f64,
+    /// L of A, or, where it has none, with springs of all pieces: residuals are measured by it.
+    metric: Option<Arc<Factor>>,
+    of_a: Option<Arc<Factor>>,
+    factorizations: usize,
+    /// Those of the problems with Tresca's friction at the start.
+    at_start: usize,
+    first: bool,
+}
+
+impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
+    /// Before anything is factored.
+    pub fn new(system: &'a System<'d, 'p>, reference: f64) -> Self {
+        Coulomb {
+            system,
+            reference,
+            metric: None,
+            of_a: None,
+            factorizations: 0,
+            at_start: 0,
+            first: true,
+        }
+    }
+
+    fn metric(&mut self) -> Result<Arc<Factor>, SolveError> {
+        if let Some(metric) = &self.metric {
+            return Ok(Arc::clone(metric));
+        }
+        self.factorizations += 1;
+        let d = self.system.d;
+        let own = match &d.slides {
+            None => Factor::with(&self.system.structure, &self.system.matrix).map(Arc::new),
+            Some(_) => Err(SolveError::NotPositiveDefinite),
+        };
+        let metric = match own {
+            Ok(factor) => Arc::clone(self.of_a.insert(factor)),
+            Err(SolveError::NotPositiveDefinite) => {
+                self.system.factor(&all_springs(d, 1.0).hessian)?
+            }
+            Err(error) => return Err(error),
+        };
+        Ok(Arc::clone(self.metric.insert(metric)))
+    }
+
+    /// F where the linear part of the equations is `at`, and the derivatives of the friction and contact terms there.
+    fn residual(&self, at: &Evaluation) -> (Vec<f64>, Derivatives) {
+        let terms = derivatives(self.system.d, 1.0, &at.p);
+        let mut r = at.linear.clone();
+        self.system.add_forces(&terms.gradient, &mut r);
+        (r, terms)
+    }
+
+    /// The dual norm of a residual.
+    fn dual(&mut self, r: &[f64]) -> Result<f64, SolveError> {
+        let metric = self.metric()?;
+        let mut x = r.to_vec();
+        metric.forward(&mut x);
+        Ok(norm(&x))
+    }
+
+    /// B x
+    fn functionals(&self, x: &[f64]) -> Vec<f64> {
+        let mut values = vec![0.0; self.system.functionals()];
+        self.system.each_functional(|row, i, entry| values[i] += entry * x[row]);
+        values
+    }
+
+    /// Newton's step for F.
+    fn step(&mut self, r: &[f64], terms: &Derivatives) -> Result<Vec<f64>, SolveError> {
+        self.system.enters_step();
+        let nodes = self.system.d.space.degree().nodes_per_edge();
+        let mut springs = terms.hessian.clone();
+        // The functionals whose force depends on the pressure of their piece: piece, first number, and the block of D.
+        let mut coupled: Vec<(usize, DMatrix<f64>)> = Vec::new();
+        for (piece, h) in self.system.d.contact.iter().zip(&mut springs) {
+            if coefficient(piece).is_none() {
+                continue;
+            }
+            let mut block = h.view_mut((nodes, 0), (nodes, nodes));
+            if block.iter().any(|entry| *entry != 0.0) {
+                coupled.push((piece.functionals().start, block.clone_owned()));
+                block.fill(0.0);
+            }
+        }
+        self.factorizations += 1;
+        let factor = match self.system.factor(&springs) {
+            Err(SolveError::NotPositiveDefinite) => {
+                let all = all_springs(self.system.d, 1.0).hessian;
+                springs.iter_mut().zip(&all).for_each(|(h, all)| *h += SUPPORT * all);
+                self.factorizations += 1;
+                self.system.factor(&springs)?
+            }
+            factored => factored?,
+        };
+        let mut d: Vec<f64> = r.iter().map(|r| -r).collect();
+        factor.solve(&mut d);
+        if coupled.is_empty() {
+            return Ok(d);
+        }
+        let by_pressure = |values: &[f64]| -> Vec<f64> {
+            let of = |(start, block): &(usize, DMatrix<f64>)| {
+                let product = block * DVector::from_column_slice(&values[*start..start + nodes]);
+                product.iter().copied().collect::<Vec<f64>>()
+            };
+            coupled.iter().flat_map(of).collect()
+        };
+        // S^-1 B^T z
+        let bent = |z: &[f64]| {
+            let mut forces = vec![0.0; self.system.functionals()];
+            for ((start, _), z) in coupled.iter().zip(z.chunks_exact(nodes)) {
+                forces[start + nodes..start + 2 * nodes].copy_from_slice(z);
+            }
+            let mut x = vec![0.0; r.len()];
+            self.system.add_forces(&forces, &mut x);
+            factor.solve(&mut x);
+            x
+        };
+        let right = by_pressure(&self.functionals(&d));
+        let times = |z: &[f64]| {
+            let product = by_pressure(&self.functionals(&bent(z)));
+            z.iter().zip(product).map(|(z, p)| z + p).collect::<Vec<f64>>()
+        };
+        let z = gmres(times, &right);
+        for (d, x) in d.iter_mut().zip(bent(&z)) {
+            *d -= x;
+        }
+        Ok(d)
+    }
+
+    /// Moves the iterate to the solution with Tresca's friction whose slip bound is mu times the `pressure` at the ends of each piece; one
+    /// that is never reached where that is infinite.
+    fn tresca(
+        &mut self,
+        iterate: &mut Iterate,
+        residuals: &mut Vec<f64>,
+        until: Until,
+        (pressure, from_here): (&[[f64; 2]], bool),
+    ) -> Result<(), SolveError> {
+        let bound = |e: usize, mu: f64| pressure[e].map(|p| (mu * p).min(f64::MAX / 1e200));
+        let d = self.system.d.with_slip_bounds(bound);
+        let here = iterate.rounded();
+        let course = Course::default();
+        let course = if from_here { course.from_displacement(&here) } else { course };
+        let system = self.system.with_other_laws(&d, course);
+        let mut route = Assembled::new(&system, self.reference);
+        let mut other = Iterate::lift(&d);
+        let mut at = other.evaluate(&system, false);
+        let mut own = Vec::new();
+        let steps = until.steps.saturating_sub(residuals.len());
+        let end = Until { steps, ..until };
+        let passed = route.pass(&mut other, &mut at, &mut own, end);
+        self.factorizations += route.factorizations();
+        residuals.extend(own);
+        passed?;
+        *iterate = other;
+        Ok(())
+    }
+
+    /// The pressure at the ends of each piece: with it for a slip bound Tresca's problem is that of Coulomb on all pieces that press all
+    /// along, of linear elements.
+    fn pressures(&self, at: &Evaluation) -> Vec<[f64; 2]> {
+        let at_ends = |piece: &Piece| {
+            let p = &at.p[piece.functionals()];
+            [0, 1].map(|a| p[a].head().max(0.0) / piece.gamma)
+        };
+        self.system.d.contact.iter().map(at_ends).collect()
+    }
+}
+
+impl Route for Coulomb<'_, '_, '_> {
+    fn factor_of_a(&self) -> Option<Arc<Factor>> {
+        self.of_a.clone()
+    }
+
+    fn factorizations(&self) -> usize {
+        self.factorizations
+    }
+
+    fn pass(
+        &mut self,
+        iterate: &mut Iterate,
+        at: &mut Evaluation,
+        residuals: &mut Vec<f64>,
+        until: Until,
+    ) -> Result<Pass, SolveError> {
+        let system = self.system;
+        let precisely = at.precisely;
+        let is_first = std::mem::replace(&mut self.first, false);
+        let given = system.course.displacement(system.d).filter(|_| is_first);
+        if let Some(given) = given {
+            // With the prescribed components as they are.
+            let free = system.d.constraints.values().iter().map(|held| held.map(|c| c.is_none()));
+            for ((u, free), given) in iterate.u.iter_mut().zip(free).zip(given) {
+                for c in (0..2).filter(|&c| free[c]) {
+                    u[c] = given[c].into();
+                }
+            }
+            *at = iterate.evaluate(system, precisely);
+        } else if is_first {
+            let start = if system.d.slides.is_some() { f64::INFINITY } else { 0.0 };
+            let pieces = system.d.contact.len();
+            self.tresca(iterate, residuals, until, (&vec![[start; 2]; pieces], false))?;
+            *at = iterate.evaluate(system, precisely);
+            let pressures = self.pressures(at);
+            // A body that the bounds of this start do not hold is left where friction glued it.
+            let held = self.tresca(iterate, residuals, until, (&pressures, true));
+            if system.d.slides.is_none() {
+                held?;
+            }
+            *at = iterate.evaluate(system, precisely);
+        }
+        if is_first {
+            self.at_start = self.factorizations;
+        }
+        let mut way = Way { is_first, precisely, ..Way::default() };
+        let mut is_continued = false;
+        while let Some(next) = self.newton(iterate, at, residuals, until, &mut way)? {
+            if self.factorizations < self.at_start + MOST_FACTORIZATIONS {
+                let pressures = self.pressures(&next);
+                self.tresca(iterate, residuals, until, (&pressures, true))?;
+            } else if !std::mem::replace(&mut is_continued, true) {
+                self.continued(iterate, until)?;
+            } else {
+                return Err(SolveError::NoFrictionSolution {
+                    residual: way.least / self.reference,
+                    factorizations: self.factorizations,
+                });
+            }
+            *at = iterate.evaluate(system, precisely);
+        }
+        Ok(Pass {
+            energy: if way.taken > 0 { way.moved } else { way.size * way.size },
+            left: 0.0,
+            softness: way.softness,
+        })
+    }
+}
+
+/// How Newton's method goes.
+#[derive(Default)]
+struct Way {
+    /// It comes from afar.
+    is_first: bool,
+    precisely: bool,
+    /// The steps that are taken, their largest change of the residual, and the softest of them.
+    taken: usize,
+    moved: f64,
+    softness: f64,
+    /// The dual norm of the residual where it ends, and the least norm of one.
+    size: f64,
+    least: f64,
+}
+
+impl<'d, 'p> Coulomb<'_, 'd, 'p> {
+    /// Takes Newton's steps for F as long as they lead on; returns the evaluation at the end of one that does not.
+    fn newton(
+        &mut self,
+        iterate: &mut Iterate,
+        at: &mut Evaluation,
+        residuals: &mut Vec<f64>,
+        until: Until,
+        way: &mut Way,
+    ) -> Result<Option<Evaluation>, SolveError> {
+        let system = self.system;
+        let (mut r, mut terms) = self.residual(at);
+        way.size = self.dual(&r)?;
+        let first = norm(&r);
+        way.least = if way.least > 0.0 { way.least.min(first) } else { first };
+        residuals.push(first / self.reference);
+        let mut halved = true;
+        loop {
+            let scale = system.size(at.energy.sqrt(), &iterate.rounded());
+            let is_rounding = way.size <= ROUNDING * scale;
+            if (is_rounding && (way.is_first || way.taken > 0)) || residuals.len() > until.steps {
+                return Ok(None);
+            }
+            let d = self.step(&r, &terms)?;
+            let is_near = way.size <= NEAR_ROUNDING * scale || !way.is_first;
+            let mut rejected = None;
+            for t in SHARES_OF_A_STEP {
+                let mut trial = Iterate { u: iterate.u.clone() };
+                trial.add(system, t, &d);
+                let next = trial.evaluate(system, way.precisely);
+                let (next_r, next_terms) = self.residual(&next);
+                let next_size = self.dual(&next_r)?;
+                let falls = next_size <= (1.0 - (1.0 - FALLS) * t) * way.size;
+                if falls || (is_near && next_size <= way.size) {
+                    let square = d.iter().map(|d| d * d).sum::<f64>();
+                    halved = next_size <= way.size / 2.0;
+                    way.moved = way.moved.max(way.size * way.size);
+                    way.softness = way.softness.max(square / (way.size * way.size));
+                    *iterate = trial;
+                    *at = next;
+                    (r, terms, way.size) = (next_r, next_terms, next_size);
+                    way.least = way.least.min(norm(&r));
+                    residuals.push(norm(&r) / self.reference);
+                    way.taken += 1;
+                    rejected = None;
+                    break;
+                }
+                rejected.get_or_insert(next);
+                if is_near {
+                    break;
+                }
+            }
+            match rejected {
+                None if is_near && !halved => return Ok(None),
+                None => {}
+                Some(_) if is_near => return Ok(None),
+                rejected => return Ok(rejected),
+            }
+        }
+    }
+
+    /// Moves the iterate to a solution by continuation: from the coefficient 0, or from glue where friction alone holds the body, to the
+    /// one that is meant.
+    fn continued(&mut self, iterate: &mut Iterate, until: Until) -> Result<(), SolveError> {
+        let glued = self.system.d.slides.is_some();
+        let pieces = self.system.d.contact.len();
+        let start = if glued { f64::INFINITY } else { 0.0 };
+        self.tresca(iterate, &mut Vec::new(), until, (&vec![[start; 2]; pieces], false))?;
+        let (mut done, mut by) = (0.0, FIRST_SHARE);
+        while done < 1.0 && by >= LEAST_SHARE {
+            let next = f64::min(done + by, 1.0);
+            let d = self.system.d.with_coefficients(if glued { 1.0 / next } else { next });
+            let system = self.system.with_other_laws(&d, Course::default());
+            let mut other =
+                Coulomb { metric: self.metric.clone(), ..Coulomb::new(&system, self.reference) };
+            let mut trial = Iterate { u: iterate.u.clone() };
+            let mut at = trial.evaluate(&system, false);
+            let mut way = Way { is_first: true, ..Way::default() };
+            let few = Until { steps: STEPS_OF_A_SHARE, ..until };
+            let left = other.newton(&mut trial, &mut at, &mut Vec::new(), few, &mut way)?;
+            self.factorizations += other.factorizations;
+            let scale = system.size(at.energy.sqrt(), &trial.rounded());
+            if left.is_none() && way.size <= NEARLY_THERE * scale {
+                (*iterate, done, by) = (trial, next, 1.5 * by);
+            } else {
+                by /= 2.0;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A solution of (what `times` multiplies by) x = b, by GMRES, until its residual is some 1e-12 of b or no longer falls.
+fn gmres(times: impl Fn(&[f64]) -> Vec<f64>, b: &[f64]) -> Vec<f64> {
+    let size = norm(b);
+    if !(size > 0.0) {
+        return vec![0.0; b.len()];
+    }
+    let most = b.len().min(200);
+    let mut basis: Vec<Vec<f64>> = vec![b.iter().map(|b| b / size).collect()];
+    let mut columns: Vec<Vec<f64>> = Vec::new();
+    let mut rotations: Vec<[f64; 2]> = Vec::new();
+    let mut right = vec![size];
+    for k in 0..most {
+        let mut w = times(&basis[k]);
+        let mut column = Vec::with_capacity(k + 2);
+        for v in &basis {
+            let along: f64 = v.iter().zip(&w).map(|(v, w)| v * w).sum();
+            w.iter_mut().zip(v).for_each(|(w, v)| *w -= along * v);
+            column.push(along);
+        }
+        let rest = norm(&w);
+        column.push(rest);
+        for (j, &[c, s]) in rotations.iter().enumerate() {
+            let (a, b) = (column[j], column[j + 1]);
+            (column[j], column[j + 1]) = (c * a + s * b, c * b - s * a);
+        }
+        let length = column[k].hypot(column[k + 1]);
+        let rotation =
+            if length > 0.0 { [column[k] / length, column[k + 1] / length] } else { [1.0, 0.0] };
+        let [c, s] = rotation;
+        rotations.push(rotation);
+        (column[k], column[k + 1]) = (length, 0.0);
+        let last = right[k];
+        right[k] = c * last;
+        right.push(-s * last);
+        columns.push(column);
+        let is_done = right[k + 1].abs() <= 1e-12 * size || !(rest > f64::EPSILON * size);
+        if is_done || k + 1 == most {
+            break;
+        }
+        basis.push(w.iter().map(|w| w / rest).collect());
+    }
+    let count = columns.len();
+    let mut y = vec![0.0; count];
+    for i in (0..count).rev() {
+        let sum: f64 = (i + 1..count).map(|j| columns[j][i] * y[j]).sum();
+        y[i] = if columns[i][i] == 0.0 { 0.0 } else { (right[i] - sum) / columns[i][i] };
+    }
+    let mut x = vec![0.0; b.len()];
+    for (v, y) in basis.iter().zip(&y) {
+        x.iter_mut().zip(v).for_each(|(x, v)| *x += y * v);
+    }
+    x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gmres_solves_what_is_not_symmetric_and_a_wrong_product_does_not() {
+        let a = [[2.0, -1.0, 0.5], [0.0, 1.0, 3.0], [1.0, 0.0, 1.0]];
+        let product = |a: [[f64; 3]; 3], x: &[f64]| -> Vec<f64> {
+            a.iter().map(|row| row.iter().zip(x).map(|(a, x)| a * x).sum()).collect()
+        };
+        let b = [1.0, -2.0, 0.25];
+        let left = |x: &[f64]| -> f64 {
+            product(a, x).iter().zip(b).map(|(p, b)| (p - b).abs()).fold(0.0, f64::max)
+        };
+        assert!(left(&gmres(|x| product(a, x), &b)) < 1e-14);
+        let mut transposed = a;
+        (transposed[0][1], transposed[1][0]) = (a[1][0], a[0][1]);
+        assert!(left(&gmres(|x| product(transposed, x), &b)) > 1e-2);
+        assert_eq!(gmres(|x| product(a, x), &[0.0; 3]), [0.0; 3]);
+    }
+}

@@ -1,0 +1,566 @@
+//! Friction, Tresca's and Coulomb's: exact solutions, the law at the nodes, limits, what is proved and what is refused, and bodies at
+//! random.
+
+use std::collections::BTreeMap;
+
+use signorini::certify::certify;
+use signorini::fem::friction::Bound;
+use signorini::fem::law::Law;
+use signorini::fem::{Condition, Diagonal, Friction, Obstacle, Problem, Rectangle, Side};
+use signorini::kernel::{Material, Plane, PreciseBall};
+use signorini::solve::route;
+use signorini::solve::system::System;
+use signorini::solve::{
+    Course, Degree, Gamma0, Method, RouteName, Settings, Solution, SolveError, Times, Verdict,
+    discretize, solve,
+};
+use signorini::study::Exact;
+use signorini::study::ladder::rates;
+
+use crate::bodies::{self, FAILURES, PROVED};
+use crate::common::exact::{slip_tip, stick_slip, with_friction};
+use crate::common::*;
+
+/// A block pressed and turned by its top, on a floor.
+fn block_on_floor(n: usize, diagonal: Diagonal) -> Problem {
+    let mesh = Rectangle { diagonal, ..unit_square(n) }.mesh().unwrap();
+    Problem::of(mesh, unit_material())
+        .with("top", Condition::displacement(|[x, _]| 0.02 + 0.01 * x, |[x, _]| -0.05 - 0.02 * x))
+        .with("bottom", Condition::contact(|_| 0.0))
+}
+
+fn rough(problem: Problem, bound: f64) -> Problem {
+    problem.with_friction("bottom", Friction::tresca(move |_| bound))
+}
+
+fn solved(problem: &Problem, degree: Degree) -> Solution {
+    let (solution, _) = solve(problem, &method(degree, EXACT), &Settings::default()).unwrap();
+    assert_eq!(solution.verdict, Verdict::Proved);
+    solution
+}
+
+/// The largest difference of two displacements beside the largest of one.
+fn apart(a: &Solution, b: &Solution) -> f64 {
+    let pairs = a.displacement.as_flattened().iter().zip(b.displacement.as_flattened());
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / a.quantities.max_displacement
+}
+
+/// The rates of the error in the energy norm on four meshes.
+fn rates_of(solution: &Exact, degree: Degree) -> Vec<f64> {
+    let ladder = with_friction(solution, degree, if degree == Degree::One { 8 } else { 4 });
+    let levels: Vec<_> = (0..4).map(|level| ladder.solve(level).unwrap()).collect();
+    assert!(levels.iter().all(|(_, _, s)| s.verdict == Verdict::Proved));
+    let (h, errors): (Vec<f64>, Vec<f64>) =
+        levels.iter().map(|(level, ..)| (level.h, level.errors.energy)).unzip();
+    rates(&h, &errors)
+}
+
+#[test]
+fn the_error_falls_as_the_regularity_of_the_solution_allows() {
+    for (solution, degree, promised) in [
+        (stick_slip(), Degree::One, 1.0),
+        (stick_slip(), Degree::Two, 2.0),
+        (slip_tip(), Degree::One, 1.0),
+        (slip_tip(), Degree::Two, 1.5),
+    ] {
+        let found = rates_of(&solution, degree);
+        // What is left of lower order after three refinements.
+        assert!((found[2] - promised).abs() < 0.05, "{solution:?} {degree:?}: {found:?}");
+    }
+}
+
+#[test]
+fn control_with_twice_the_slip_bound_the_error_does_not_fall() {
+    let ladder = with_friction(&stick_slip(), Degree::Two, 8);
+    let error = |level: usize| {
+        let problem = ladder.problem(level).unwrap();
+        let problem = problem.with_friction("bottom", Friction::tresca(|_| 0.1));
+        let (solution, _) = solve(&problem, &ladder.method, &ladder.settings).unwrap();
+        error_of(&problem, &ladder.solution, &solution.displacement)
+    };
+    // Of order 2 it would be a quarter.
+    let errors = [1, 2].map(error);
+    assert!(errors[1] > 0.5 * errors[0], "{errors:?}");
+}
+
+#[test]
+fn energies_are_those_of_an_independent_program() {
+    // Numpy, its own assembly and formulas, n = 8 and 16; kappa = 1/2.
+    for (n, bound, expected) in
+        [(8, 0.05, 0.005021900), (8, 0.2, 0.005025207), (16, 0.05, 0.005015875)]
+    {
+        let problem = rough(block_on_floor(n, Diagonal::Crossed), bound);
+        let d = discretize(&problem, &method(Degree::One, EXACT)).unwrap();
+        let found = d.energy(&solved(&problem, Degree::One).displacement);
+        // Nine decimals were printed.
+        assert!((found - expected).abs() < 5e-10, "{n} {bound}: {found}");
+    }
+}
+
+#[test]
+fn a_slip_bound_of_zero_is_no_friction_to_the_bit() {
+    for degree in DEGREES {
+        let smooth = block_on_floor(6, Diagonal::Right);
+        let expected = solved(&smooth, degree);
+        for friction in [Friction::tresca(|_| 0.0), Friction::Coulomb(0.0)] {
+            let found = solved(&smooth.clone().with_friction("bottom", friction), degree);
+            assert_eq!(found.displacement, expected.displacement);
+            assert_eq!(found.boundaries, expected.boundaries);
+        }
+        // The control: next to nothing is another method, by the stress that A takes off.
+        assert!(apart(&solved(&rough(smooth, 1e-12), degree), &expected) > 1e-6);
+    }
+}
+
+#[test]
+fn a_slip_bound_above_the_largest_shear_glues() {
+    for degree in DEGREES {
+        let problem = |bound| rough(block_on_floor(8, Diagonal::Left), bound);
+        let expected = solved(&problem(0.5), degree);
+        let friction = expected.boundaries[0].friction.unwrap();
+        assert_eq!(friction.slides, 0.0);
+        for bound in [1.0, 1e6] {
+            // Newton's method ends at the level of rounding.
+            assert!(apart(&solved(&problem(bound), degree), &expected) < 1e-12, "{bound}");
+        }
+        assert!(apart(&solved(&problem(0.02), degree), &expected) > 1e-3);
+    }
+}
+
+#[test]
+fn the_shear_is_within_the_bound_and_against_the_slip() {
+    for degree in DEGREES {
+        let bound = 0.05;
+        let solution = solved(&rough(block_on_floor(16, Diagonal::Crossed), bound), degree);
+        let (mut sticks, mut slides) = (0, 0);
+        for point in solution.contact.iter().flat_map(|edge| &edge.points) {
+            assert!(point.shear.abs() <= bound * (1.0 + 1e-14));
+            if point.shear.abs() < bound {
+                sticks += 1;
+            } else {
+                slides += 1;
+                assert!(point.shear * point.u_t < 0.0, "along the slip: {point:?}");
+            }
+        }
+        assert!(sticks > 4 && slides > 4);
+        let friction = solution.boundaries[0].friction.unwrap();
+        assert!((friction.sticks + friction.slides - 1.0).abs() < 1e-12);
+        assert!(friction.dissipated > 0.0 && friction.across_gaps == 0.0);
+        // Newton's third law, along x: what friction does to the block, the top bears.
+        let q = &solution.quantities;
+        let sum = q.contact_resultant[0] + q.reactions["top"][0];
+        // To the tolerance of Newton's method.
+        assert!(sum.abs() < 1e-10 && q.contact_resultant[0].abs() > 5e-3, "{q:?}");
+        assert!((solution.boundaries[0].resultant[0] - q.contact_resultant[0]).abs() < 1e-15);
+        assert!(solution.balance.imbalance.abs() < 1e-12);
+    }
+}
+
+/// A ring's lower half in a bearing, so that directions turn along the contact line.
+fn in_a_bearing(cells: usize) -> Problem {
+    let circle = Obstacle::Circle { center: [0.0, 0.0], radius: 1.001, side: Side::Inside };
+    let mesh = moved_to(&skewed_square(cells, Diagonal::Crossed), |[x, y]| {
+        let (r, angle) = (1.0 - 0.5 * y, 1.4 * (x - 0.5));
+        [r * angle.sin(), -r * angle.cos()]
+    });
+    Problem::of(mesh, Material::young_poisson(1.0, 0.3, Plane::Strain))
+        .with("top", Condition::displacement(|_| 0.004, |_| -0.01))
+        .with("bottom", Condition::obstacle("bearing", circle))
+        .with_friction("bottom", Friction::tresca(|[x, _]| 0.002 + 0.001 * x))
+}
+
+#[test]
+fn both_routes_end_at_one_solution_where_directions_turn() {
+    for degree in DEGREES {
+        let problem = in_a_bearing(8);
+        let d = discretize(&problem, &method(degree, EXACT)).unwrap();
+        let system = System::new(&d).unwrap();
+        let settings = Settings::default();
+        let [a, b] = [RouteName::Condensed, RouteName::Assembled]
+            .map(|name| route::by(name, &system, &settings, &mut Times::default()).unwrap());
+        let size = a.u.as_flattened().iter().fold(0.0, |m: f64, u| m.max(u.abs()));
+        let pairs = a.u.as_flattened().iter().zip(b.u.as_flattened());
+        // Both are proved to some 1e-12.
+        assert!(pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) < 1e-9 * size);
+        let solution = solved(&problem, degree);
+        let friction = solution.boundaries[0].friction.unwrap();
+        assert!(friction.sticks > 0.05 && friction.slides > 0.05, "{friction:?}");
+    }
+}
+
+#[test]
+fn the_residual_is_the_gradient_of_the_energy() {
+    for degree in DEGREES {
+        let problem = in_a_bearing(4);
+        let d = discretize(&problem, &method(degree, EXACT)).unwrap();
+        let mut random = Random(5);
+        for _ in 0..10 {
+            let nodes = d.space.nodes().len();
+            let (u, v) = (random.field(nodes), random.field(nodes));
+            let at = |t: f64| -> Vec<[f64; 2]> {
+                let pairs = u.iter().zip(&v);
+                pairs.map(|(u, v)| [0, 1].map(|c| 0.01 * (u[c] + t * v[c]))).collect()
+            };
+            let t = 1e-5;
+            let difference = (d.energy(&at(t)) - d.energy(&at(-t))) / (2.0 * t);
+            let r = d.residual(&at(0.0)).values;
+            let slope: f64 =
+                r.as_flattened().iter().zip(v.as_flattened()).map(|(r, v)| 0.01 * r * v).sum();
+            // A difference quotient of a function whose second derivative jumps.
+            assert!(
+                (difference - slope).abs() < 1e-5 * slope.abs().max(1e-3),
+                "{difference} {slope}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_block_that_friction_alone_holds_is_proved_up_to_the_limit_of_sliding() {
+    let problem = |push: f64| {
+        let mesh = unit_square(6).mesh().unwrap();
+        Problem::of(mesh, unit_material())
+            .with_body_force(move |_| push, |_| -0.1)
+            .with("bottom", Condition::contact(|_| 0.0))
+            .with_friction("bottom", Friction::tresca(|_| 0.02))
+    };
+    for degree in DEGREES {
+        for push in [0.0, 0.01, 0.019] {
+            let solution = solved(&problem(push), degree);
+            let [x, y] = solution.quantities.contact_resultant;
+            // Friction and floor bear all of the load.
+            assert!((x + push).abs() < 1e-9 && (y - 0.1).abs() < 1e-9, "{push}: {x} {y}");
+        }
+        for push in [0.02, 0.0201, 0.1, -0.021] {
+            let error = solve(&problem(push), &method(degree, EXACT), &Settings::default());
+            let error = error.unwrap_err().to_string();
+            assert!(error.contains("nothing stops the translation along"), "{push}: {error}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_friction_is_refused_with_its_place() {
+    let problem = block_on_floor(4, Diagonal::Right);
+    let message = |problem: &Problem| {
+        let error = solve(problem, &method(Degree::One, EXACT), &Settings::default());
+        error.unwrap_err().to_string()
+    };
+    let negative = problem.clone().with_friction("bottom", Friction::tresca(|[x, _]| 0.5 - x));
+    assert_eq!(
+        message(&negative),
+        "[boundary.bottom] contact.friction.tresca is -0.25 at (0.75, 0); expected a stress that is not negative at every point of the boundary"
+    );
+    let elsewhere = problem.clone().with_friction("left", Friction::Coulomb(0.3));
+    assert_eq!(
+        message(&elsewhere),
+        "[boundary.left] has friction and no contact; expected a boundary with contact, or no friction"
+    );
+    let coefficient = problem.with_friction("bottom", Friction::Coulomb(-0.3));
+    assert!(message(&coefficient).contains("the coefficient of friction is -0.3"));
+}
+
+#[test]
+fn a_certificate_is_refused_with_the_reason() {
+    let problem = rough(block_on_floor(4, Diagonal::Right), 0.01);
+    let solution = solved(&problem, Degree::One);
+    let error = certify(&problem, &solution).unwrap_err().to_string();
+    assert!(error.contains("the boundary 'bottom' has friction"), "{error}");
+}
+
+#[test]
+fn friction_across_a_gap_is_reported() {
+    let open =
+        block_on_floor(8, Diagonal::Right).with("top", Condition::displacement(|_| 0.1, |_| 0.1));
+    let solution = solved(&rough(open, 0.01), Degree::One);
+    let friction = solution.boundaries[0].friction.unwrap();
+    assert_eq!((friction.across_gaps, solution.quantities.contact_force), (1.0, 0.0));
+    assert!(solution.quantities.contact_resultant[0] < -0.009);
+}
+
+/// A body of one of the families with friction on all of its contact boundaries: a share of the mean pressure that it has without.
+fn with_random_friction(seed: u64) -> bodies::Body {
+    let mut body = bodies::of_all_families(seed);
+    let mut dice = Random(seed + 7_000_000);
+    let share = dice.decades(-1.5, 0.7);
+    let settings = Settings { max_iterations: 200, ..Settings::default() };
+    let smooth = solve(&body.problem, &body.method, &settings).map(|(s, _)| s.quantities);
+    let mean = smooth.map_or(0.0, |q| q.contact_force / q.contact_length.max(1e-300));
+    let bound = share * mean;
+    let names: Vec<String> = body
+        .problem
+        .conditions
+        .iter()
+        .filter(|(_, c)| matches!(c, Condition::Contact { .. }))
+        .map(|(name, _)| name.clone())
+        .collect();
+    for name in names {
+        body.problem = body.problem.with_friction(name, Friction::tresca(move |_| bound));
+    }
+    let d = discretize(&body.problem, &Method { gamma0: Gamma0::Auto, ..body.method.clone() });
+    if let (Ok(d), Gamma0::Value(gamma0)) = (d, &body.method.gamma0) {
+        // Where directions turn the limit is lower with friction.
+        body.method.gamma0 = Gamma0::Value(gamma0.min(0.99 * d.coercivity.limit()));
+    }
+    body.said = format!("slip bound {bound:e}; {}", body.said);
+    body
+}
+
+#[test]
+fn forty_nine_of_fifty_bodies_with_friction_are_proved_or_ill_conditioned() {
+    let from = bodies::number_from("SIGNORINI_BODIES_FROM", 1);
+    let count = bodies::number_from("SIGNORINI_BODIES", 64);
+    let mut table: BTreeMap<(&str, &str), u64> = BTreeMap::new();
+    let (mut failures, mut steps) = (Vec::new(), Vec::new());
+    for seed in from..from + count {
+        let body = with_random_friction(seed);
+        match bodies::outcome(&body, &mut steps) {
+            Ok(what) => {
+                *table.entry((body.kind, what)).or_default() += 1;
+                if FAILURES.contains(&what) {
+                    println!("seed {seed}: {}: {what} [{}]", body.kind, body.said);
+                }
+            }
+            Err(why) => failures.push(format!("seed {seed}: {}: {why} [{}]", body.kind, body.said)),
+        }
+    }
+    for ((kind, what), bodies) in &table {
+        println!("{kind:9} {bodies:5} {what}");
+    }
+    steps.sort_unstable();
+    let at = |share: usize| steps[(steps.len() - 1) * share / 10];
+    println!("median {} steps, nine of ten at most {}, most {}", at(5), at(9), at(10));
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    let of = |all: &[&str]| {
+        let found = table.iter().filter(|((_, what), _)| all.contains(what));
+        found.map(|(_, bodies)| bodies).sum::<u64>()
+    };
+    assert!(50 * of(&FAILURES) <= count, "{} of {count} bodies, shown above", of(&FAILURES));
+    assert!(4 * of(&[PROVED]) >= 3 * count, "{} of {count} are proved", of(&[PROVED]));
+}
+
+fn with_coefficient(problem: Problem, mu: f64) -> Problem {
+    problem.with_friction("bottom", Friction::Coulomb(mu))
+}
+
+#[test]
+fn coulombs_friction_of_a_uniform_pressure_is_as_accurate_as_trescas() {
+    for degree in DEGREES {
+        let ladder = with_friction(&stick_slip(), degree, 8);
+        let (level, problem, _) = ladder.solve(1).unwrap();
+        // sigma_n is -p all along, and s = 0.1 p.
+        let (solution, _) =
+            solve(&with_coefficient(problem.clone(), 0.1), &ladder.method, &ladder.settings)
+                .unwrap();
+        let error = error_of(&problem, &ladder.solution, &solution.displacement);
+        assert!((error / level.errors.energy - 1.0).abs() < 1e-3, "{degree:?}: {error}");
+        assert!(solution.verdict == Verdict::Proved || degree == Degree::Two);
+        // The control: where the error is small enough to tell.
+        let other = with_coefficient(problem.clone(), 0.4);
+        let (other, _) = solve(&other, &ladder.method, &ladder.settings).unwrap();
+        let off = error_of(&problem, &ladder.solution, &other.displacement);
+        assert!(off > 1.5 * error || degree == Degree::One, "{off} {error}");
+    }
+}
+
+#[test]
+fn a_solution_with_coulombs_friction_satisfies_the_law_and_is_isolated() {
+    for degree in DEGREES {
+        // Of P2 it is proved for few of the other coefficients.
+        let all = [0.01, 0.1, 0.3, 0.6, 1.0, 1.5];
+        let count = if degree == Degree::One { all.len() } else { 1 };
+        for &mu in &all[..count] {
+            let problem = with_coefficient(block_on_floor(10, Diagonal::Crossed), mu);
+            let solution = solved(&problem, degree);
+            let mut slides = 0;
+            for point in solution.contact.iter().flat_map(|edge| &edge.points) {
+                let most = -mu * point.lambda;
+                assert!(point.shear.abs() <= most * (1.0 + 1e-12) + 1e-15, "{mu}: {point:?}");
+                if most > 0.0 && point.shear.abs() >= most * (1.0 - 1e-12) {
+                    slides += 1;
+                    assert!(point.shear * point.u_t <= 0.0, "{mu}: {point:?}");
+                }
+            }
+            assert!(slides > 0 || mu > 0.3, "{mu}");
+            let enclosure = solution.enclosure.as_ref().unwrap();
+            let isolation = enclosure.isolation.unwrap();
+            println!(
+                "{degree:?} mu {mu}: within {:.1e}, only one within {:.1e}, anywhere {}; {} factorisations, {} steps",
+                enclosure.relative.unwrap(),
+                isolation.relative.unwrap(),
+                isolation.everywhere,
+                solution.newton.factorizations,
+                solution.newton.iterations(),
+            );
+            assert!(enclosure.relative.unwrap() < 1e-11 && isolation.relative.unwrap() > 1e-8);
+            assert_eq!(isolation.everywhere, mu < 0.05, "{mu}");
+            assert!(solution.newton.factorizations <= 40);
+        }
+    }
+}
+
+#[test]
+fn a_block_with_coulombs_friction_is_held_up_to_its_coefficient_or_until_it_tips() {
+    let is_held = |push: f64, height: f64, mu: f64| {
+        let mesh = unit_square(4).mesh().unwrap();
+        // A force (push, -1) in all, at this height: body forces, and a couple that moves the first one up or down.
+        let couple = 12.0 * push * (height - 0.5);
+        let problem = Problem::of(mesh, unit_material())
+            .with_body_force(move |[_, y]| push + couple * (y - 0.5), |_| -1.0)
+            .with("bottom", Condition::contact(|_| 0.0));
+        discretize(&with_coefficient(problem, mu), &method(Degree::One, EXACT)).is_ok()
+    };
+    for mu in [0.3, 0.8] {
+        for height in [0.5, 1.0] {
+            let limit = if height == 1.0 { f64::min(mu, 0.5) } else { mu };
+            for sign in [-1.0, 1.0] {
+                assert!(is_held(sign * (limit - 1e-5), height, mu), "{mu} {height}");
+                assert!(!is_held(sign * (limit + 1e-5), height, mu), "{mu} {height}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_smooth_piece_and_a_rough_one_feel_one_and_two_components() {
+    let problem = rough(block_on_floor(4, Diagonal::Right), 0.01);
+    let d = discretize(&problem, &method(Degree::Two, EXACT)).unwrap();
+    for piece in &d.contact {
+        assert_eq!(piece.geometry.law, Law::Friction(Bound::Tresca([0.01, 0.01])));
+        assert_eq!(piece.p0.len(), 6);
+        assert_eq!(piece.geometry.law.closed(Degree::Two), [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
+    }
+}
+
+/// A leaning strip of 45 degrees, clamped on top, its foot on a floor: with a large coefficient it jams, slides or lifts off under the same
+/// forces on its two corners.
+fn leaning_strip() -> Problem {
+    let strip = Rectangle { width: 0.5, height: 3.0, nx: 1, ny: 4, diagonal: Diagonal::Right };
+    let mesh = moved_to(&strip.mesh().unwrap(), |[x, y]| [x + y, y]);
+    Problem::of(mesh, unit_material())
+        .with("top", Condition::clamped())
+        .with("bottom", Condition::contact(|_| 0.0))
+}
+
+/// A displacement, the forces of the floor, how far the solution can be, and the distance within which there is no other.
+type Found = (Vec<[f64; 2]>, [f64; 2], f64, f64);
+
+/// The solutions that Newton's method finds from starts at random, each once.
+fn solutions(mu: f64, starts: usize) -> Vec<Found> {
+    let problem = with_coefficient(leaning_strip(), mu);
+    let method = Method { gamma0: Gamma0::Local(0.5), ..Method::default() };
+    let mut d = discretize(&problem, &method).unwrap();
+    let corners = [([0.0, 0.0], [0.023, -0.018]), ([0.5, 0.0], [-0.049, 0.001])];
+    for (place, force) in corners {
+        let node = d.space.nodes().iter().position(|x| *x == place).unwrap();
+        d.load[node] = force;
+        d.enclosed_load[node] = force.map(PreciseBall::from);
+    }
+    let mut found: Vec<Found> = Vec::new();
+    let mut random = Random(11);
+    for k in 0..starts {
+        let size = if k == 0 { 0.0 } else { random.decades(-2.0, 0.5) };
+        let start: Vec<[f64; 2]> =
+            random.field(d.space.nodes().len()).iter().map(|u| u.map(|c| size * c)).collect();
+        let system = System::on(&d, Course::default().from_displacement(&start)).unwrap();
+        let settings = Settings { max_iterations: 200, ..Settings::default() };
+        let Ok(outcome) =
+            route::by(RouteName::Assembled, &system, &settings, &mut Times::default())
+        else {
+            continue;
+        };
+        let far = |u: &[[f64; 2]]| {
+            let pairs = u.as_flattened().iter().zip(outcome.u.as_flattened());
+            pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        };
+        if found.iter().any(|(u, ..)| far(u) < 1e-8) {
+            continue;
+        }
+        let enclosure = outcome.enclosure.as_ref().unwrap();
+        let isolation = enclosure.isolation.unwrap();
+        let force = d.contact.iter().fold([0.0; 2], |sum: [f64; 2], piece| {
+            let force = piece.contribution(&d.rule, &outcome.p[piece.functionals()]).force;
+            let [n, t] = [piece.along(&force), piece.across(&force)];
+            [sum[0] + n.iter().sum::<f64>(), sum[1] + t.iter().sum::<f64>()]
+        });
+        found.push((
+            outcome.u.clone(),
+            force,
+            enclosure.relative.unwrap(),
+            isolation.relative.unwrap(),
+        ));
+    }
+    found
+}
+
+#[test]
+fn a_leaning_strip_has_three_solutions_each_isolated_and_with_a_smaller_coefficient_one() {
+    let found = solutions(1.5, 60);
+    for (_, force, radius, within) in &found {
+        println!(
+            "normal {:.6}, shear {:.6}: within {radius:.0e}, only one within {within:.1e}",
+            force[0], force[1]
+        );
+        assert!(*radius < 1e-10 && *within > 1e3 * radius);
+    }
+    assert_eq!(found.len(), 3);
+    // The balls are disjoint: no solution is in that of another.
+    assert_eq!(solutions(0.3, 10).len(), 1);
+}
+
+/// A body of a family that supports hold, with Coulomb's friction on its floor.
+fn with_random_coefficient(seed: u64) -> (bodies::Body, f64) {
+    let seed = seed / 5 * 8 + seed % 5;
+    let mut body = bodies::of_all_families(seed);
+    let mu = Random(seed + 9_000_000).decades(-1.3, 0.18);
+    body.problem = with_coefficient(body.problem, mu);
+    let d = discretize(&body.problem, &Method { gamma0: Gamma0::Auto, ..body.method.clone() });
+    if let (Ok(d), Gamma0::Value(gamma0)) = (d, &body.method.gamma0) {
+        body.method.gamma0 = Gamma0::Value(gamma0.min(0.99 * d.coercivity.limit()));
+    }
+    body.said = format!("seed {seed}, coefficient {mu:.2}; {}", body.said);
+    (body, mu)
+}
+
+#[test]
+fn four_of_five_bodies_with_coulombs_friction_are_solved_and_half_are_isolated() {
+    let from = bodies::number_from("SIGNORINI_BODIES_FROM", 1);
+    let count = bodies::number_from("SIGNORINI_BODIES", 40);
+    let mut table: BTreeMap<String, u64> = BTreeMap::new();
+    let mut most = 0;
+    for seed in from..from + count {
+        let (body, _) = with_random_coefficient(seed);
+        let settings = Settings { max_iterations: 200, ..Settings::default() };
+        let what = match solve(&body.problem, &body.method, &settings) {
+            Ok((solution, _)) => {
+                most = most.max(solution.newton.factorizations);
+                match solution.verdict {
+                    Verdict::Proved => "proved".to_owned(),
+                    Verdict::NotProved(_) if solution.method.condition > 1e14 => {
+                        "ill-conditioned".to_owned()
+                    }
+                    Verdict::NotProved(why) => why,
+                }
+            }
+            Err(error @ (SolveError::IllConditioned { .. } | SolveError::Singular)) => error
+                .to_string()
+                .split(':')
+                .next()
+                .map_or_else(String::new, |_| "ill-conditioned".to_owned()),
+            Err(error) => error.to_string(),
+        };
+        if what != "proved" && what != "ill-conditioned" {
+            println!("{}: {what} [{}]", body.kind, body.said);
+        }
+        *table.entry(what.chars().take(60).collect()).or_default() += 1;
+    }
+    for (what, bodies) in &table {
+        println!("{bodies:5} {what}");
+    }
+    println!("at most {most} factorisations");
+    let of = |what: &str| table.iter().filter(|(w, _)| w.starts_with(what)).map(|(_, n)| n).sum();
+    let (proved, unsolved): (u64, u64) = (of("proved"), of("no "));
+    assert!(2 * proved >= count, "{proved} of {count} are proved");
+    // Of 40, measured, 23 are proved and 5 not solved.
+    assert!(5 * unsolved <= count, "{unsolved} of {count} are not solved");
+}

@@ -1,0 +1,303 @@
+//! Friction between two bodies: a stiff one is a rough obstacle, the names of the bodies do not matter, what sticks is glued along the
+//! boundary, forces cancel, friction alone holds a body, and Coulomb's law has one solution near.
+
+use signorini::fem::Friction;
+
+use super::*;
+use crate::common::DEGREES;
+
+/// Two unit blocks, the lower one of modulus 1; the upper one is pressed down, turned and dragged by its top.
+fn dragged(cells: [usize; 2], modulus: f64, friction: &Friction, swapped: bool) -> Problem {
+    let (lower, upper) = (rectangle([0.0, 0.0], [1.0, 1.0]), rectangle([0.0, 1.0], [1.0, 2.0]));
+    let block =
+        |name, n, modulus, map| Block { name, cells: [n, n], material: young(modulus, 0.3), map };
+    let mut sides = ["lower.top", "upper.bottom"];
+    if swapped {
+        sides.reverse();
+    }
+    let pair = Pair::new(sides[0], sides[1]).with_friction(friction.clone());
+    bodies(
+        &[block("lower", cells[0], 1.0, &lower), block("upper", cells[1], modulus, &upper)],
+        &[pair],
+    )
+    .with("lower.bottom", Condition::displacement(|_| 0.0, |[x, _]| 0.05 + 0.02 * (x - 0.5)))
+    .with("upper.top", Condition::displacement(|_| 0.03, |_| 0.0))
+}
+
+/// The lower block under a rigid obstacle that is dragged: it is dragged back.
+fn under_a_rough_obstacle(n: usize, friction: &Friction) -> Problem {
+    let lower = rectangle([0.0, 0.0], [1.0, 1.0]);
+    let block = Block { name: "lower", cells: [n, n], material: young(1.0, 0.3), map: &lower };
+    bodies(&[block], &[])
+        .with("lower.bottom", Condition::displacement(|_| -0.03, |[x, _]| 0.05 + 0.02 * (x - 0.5)))
+        .with("lower.top", Condition::contact(|_| 0.0))
+        .with_friction("lower.top", friction.clone())
+}
+
+fn laws() -> [Friction; 2] {
+    [Friction::tresca(|[x, _]| 0.008 + 0.004 * x), Friction::Coulomb(0.2)]
+}
+
+#[test]
+fn a_stiff_body_acts_as_a_rough_obstacle() {
+    for friction in laws() {
+        for degree in DEGREES {
+            let obstacle = proved(&under_a_rough_obstacle(14, &friction), &with_kappa(degree, 0.5));
+            let force = |ratio: f64| {
+                let s = proved(&dragged([14, 5], ratio, &friction, false), &method(degree));
+                let of = s.boundaries[0].friction.unwrap();
+                assert!(of.sticks > 0.05 && of.slides > 0.05, "{of:?}");
+                s.boundaries[0].resultant
+            };
+            let expected = obstacle.boundaries[0].resultant;
+            let off =
+                |found: [f64; 2]| [0, 1].map(|c| (found[c] / expected[c] - 1.0).abs()).into_iter();
+            let worst = off(force(1e9)).fold(0.0, f64::max);
+            assert!(worst <= 1e-7, "{degree:?}: {worst:e}");
+            // The control: a body that is not so stiff gives way.
+            assert!(off(force(1e2)).fold(0.0, f64::max) > 1e-5);
+        }
+    }
+}
+
+#[test]
+fn the_names_of_rough_bodies_do_not_matter() {
+    for friction in laws() {
+        for degree in DEGREES {
+            let [a, b] = [false, true]
+                .map(|swapped| proved(&dragged([7, 11], 3.0, &friction, swapped), &method(degree)));
+            let off = apart(&a.displacement, &b.displacement) / largest(&a.displacement);
+            // Coulomb's equations are solved to the level of rounding, not beyond.
+            assert!(off <= 1e-11, "{degree:?}: {off:e}");
+            let sum =
+                Vector2::from(a.boundaries[0].resultant) + Vector2::from(b.boundaries[0].resultant);
+            assert!(size(sum) <= 1e-10 * a.boundaries[0].force, "{sum}");
+        }
+    }
+}
+
+#[test]
+fn the_law_holds_and_what_one_body_bears_the_other_does() {
+    for friction in laws() {
+        for degree in DEGREES {
+            let s = proved(&dragged([9, 13], 2.0, &friction, false), &method(degree));
+            let (mut sticks, mut slides) = (0, 0);
+            for point in s.between.iter().flat_map(|piece| &piece.points) {
+                let most = match friction {
+                    Friction::Coulomb(mu) => -mu * point.lambda,
+                    _ => 0.008 + 0.004 * point.at[0][0],
+                };
+                assert!(point.shear.abs() <= most * (1.0 + 1e-12) + 1e-15, "{point:?} {most}");
+                if point.shear.abs() >= most * (1.0 - 1e-12) && most > 0.0 {
+                    slides += 1;
+                    assert!(point.shear * point.u_t <= 0.0, "{point:?}");
+                } else {
+                    sticks += 1;
+                }
+            }
+            assert!(sticks > 3 && slides > 3, "{sticks} {slides}");
+            let of = &s.boundaries[0];
+            let friction = of.friction.unwrap();
+            assert!((friction.sticks + friction.slides - of.length).abs() < 1e-12);
+            assert!(friction.dissipated > 0.0);
+            let force = Vector2::from(of.resultant);
+            let reaction = |name: &str| Vector2::from(s.quantities.reactions[name]);
+            // The tolerance of Newton's method.
+            assert!(size(reaction("lower.bottom") + force) <= 1e-10);
+            assert!(size(reaction("upper.top") - force) <= 1e-10);
+            assert!(force[0].abs() > 1e-3);
+            assert!(s.balance.imbalance < 1e-10, "{:?}", s.balance);
+        }
+    }
+}
+
+#[test]
+fn what_sticks_all_along_is_glued() {
+    for degree in DEGREES {
+        let stuck = |bound: f64| {
+            let problem = dragged([7, 11], 2.0, &Friction::tresca(move |_| bound), false);
+            proved(&problem, &method(degree))
+        };
+        let mut problem = dragged([7, 11], 2.0, &Friction::Coulomb(0.0), false);
+        problem.pairs[0] = Pair::new("lower.top", "upper.bottom").with_law(Law::Bonded);
+        let glued = proved(&problem, &method(degree));
+        // It is pressed all along, so that contact is glue as well.
+        assert!(glued.between.iter().flat_map(|piece| &piece.points).all(|p| p.lambda < 0.0));
+        let off = |s: &Solution| apart(&s.displacement, &glued.displacement);
+        assert!(off(&stuck(10.0)) <= 1e-11 * largest(&glued.displacement));
+        assert!(off(&stuck(0.01)) > 1e-3 * largest(&glued.displacement));
+    }
+}
+
+#[test]
+fn a_slip_bound_of_zero_between_bodies_is_no_friction_to_the_bit() {
+    for friction in [Friction::tresca(|_| 0.0), Friction::Coulomb(0.0)] {
+        let rough = dragged([5, 7], 2.0, &friction, false);
+        let mut smooth = rough.clone();
+        smooth.pairs[0].friction = None;
+        let [a, b] = [rough, smooth].map(|problem| proved(&problem, &method(Degree::One)));
+        assert_eq!(a.displacement, b.displacement);
+        assert_eq!(a.boundaries, b.boundaries);
+    }
+}
+
+#[test]
+fn the_stress_that_friction_adds_is_at_most_kappa_times_the_energy_in_balls_too() {
+    for degree in DEGREES {
+        let s = proved(&dragged([4, 9], 50.0, &laws()[0], false), &with_kappa(degree, 0.5));
+        let kappa = s.enclosure.as_ref().unwrap().kappa;
+        assert!((0.5..0.5 + 1e-9).contains(&kappa), "{kappa}");
+    }
+}
+
+/// A block that lies on another one, which is held, pressed by its weight and pushed to the side.
+fn lying(push: f64, friction: &Friction) -> Problem {
+    let (lower, upper) = (rectangle([0.0, 0.0], [1.0, 1.0]), rectangle([0.2, 1.0], [0.8, 1.3]));
+    let block = |name, cells, map| Block { name, cells, material: young(1.0, 0.3), map };
+    let pair = Pair::new("lower.top", "upper.bottom").with_friction(friction.clone());
+    bodies(&[block("lower", [8, 8], &lower), block("upper", [5, 3], &upper)], &[pair])
+        .with("lower.bottom", Condition::clamped())
+        .with("upper.top", Condition::traction(move |_| push, |_| -0.01))
+}
+
+#[test]
+fn friction_alone_holds_a_body_on_another_up_to_the_limit_of_sliding() {
+    // The bound 0.004 on the length of 0.6, or 0.4 times the pressure of 0.01.
+    for friction in [Friction::tresca(|_| 0.004), Friction::Coulomb(0.4)] {
+        for push in [0.0, 0.001, 0.0015] {
+            let s = proved(&lying(push, &friction), &method(Degree::One));
+            let [x, y] = s.boundaries[0].resultant;
+            // On the lower body.
+            assert!((x - 0.6 * push).abs() < 1e-9 && (y + 0.006).abs() < 1e-9, "{push}: {x} {y}");
+        }
+        for push in [0.00401, 0.01, -0.00401] {
+            let error = solve(&lying(push, &friction), &method(Degree::One), &Settings::default());
+            let error = error.unwrap_err().to_string();
+            assert!(error.contains("nothing stops"), "{push}: {error}");
+        }
+    }
+}
+
+#[test]
+fn friction_without_contact_between_bodies_is_refused() {
+    let message = |pair: Pair| {
+        let mut problem = dragged([3, 4], 1.0, &Friction::Coulomb(0.1), false);
+        problem.pairs[0] = pair;
+        solve(&problem, &method(Degree::One), &Settings::default()).unwrap_err().to_string()
+    };
+    let pair = || Pair::new("lower.top", "upper.bottom");
+    assert_eq!(
+        message(pair().with_law(Law::Bonded).with_friction(Friction::Coulomb(0.1))),
+        "the pair of 'lower.top' and 'upper.bottom' has friction and no contact; expected a boundary with contact, or no friction"
+    );
+    let negative = message(pair().with_friction(Friction::tresca(|_| -1.0)));
+    assert!(
+        negative
+            .starts_with("the slip bound of the pair of 'lower.top' and 'upper.bottom' is -1 at (")
+            && negative
+                .ends_with("expected a stress that is not negative at every point of the boundary"),
+        "{negative}"
+    );
+    assert!(
+        message(pair().with_friction(Friction::Coulomb(f64::NAN)))
+            .contains("the coefficient of friction is NaN")
+    );
+}
+
+/// Two equal cylinders of radius 1 that touch in the origin, pressed together and dragged; cells are finest there.
+fn cylinders(cells: [usize; 2], drag: f64, mu: f64) -> Problem {
+    let grow = |t: f64| (2.8 * t).sinh() / 2.8_f64.sinh();
+    let place = move |s: f64, depth: f64| {
+        let (angle, r) = (0.4 * grow(2.0 * s - 1.0), 1.0 - 0.6 * grow(depth));
+        [r * angle.sin(), r * angle.cos() - 1.0]
+    };
+    let lower = move |[s, t]: [f64; 2]| place(s, 1.0 - t);
+    let upper = move |[s, t]: [f64; 2]| {
+        let [x, y] = place(s, t);
+        [x, -y]
+    };
+    let block = |name, n, map| Block { name, cells: [n, n / 2], material: young(1.0, 0.3), map };
+    let pair = Pair::new("lower.top", "upper.bottom").with_friction(Friction::Coulomb(mu));
+    bodies(&[block("lower", cells[0], &lower), block("upper", cells[1], &upper)], &[pair])
+        .with("lower.bottom", Condition::clamped())
+        .with("upper.top", Condition::displacement(move |_| drag, |_| -0.0085))
+}
+
+#[test]
+fn dragged_cylinders_stick_and_slide_as_cattaneo_and_mindlin_say() {
+    let mu = 0.3;
+    for (degree, cells, most) in [(Degree::One, [64, 48], 2e-2), (Degree::Two, [32, 24], 2e-2)] {
+        let problem = cylinders(cells, 0.0016, mu);
+        let s = proved(&problem, &method(degree));
+        let [shear, force] = s.boundaries[0].resultant.map(f64::abs);
+        let share = shear / (mu * force);
+        assert!((0.3..0.8).contains(&share), "{share}");
+        let modulus = 1.0 / (2.0 * (1.0 - 0.09));
+        let a = (4.0 * force * 0.5 / (std::f64::consts::PI * modulus)).sqrt();
+        let c = a * (1.0 - share).sqrt();
+        let friction = s.boundaries[0].friction.unwrap();
+        // int q x^2 = mu p0 (pi / 8) (a^3 - c^4 / a), p0 = 2 force / (pi a).
+        let expected = mu * force / (4.0 * a) * (a.powi(3) - c.powi(4) / a);
+        let d = discretize(&problem, &method(degree)).unwrap();
+        let of_piece = |piece: &Piece| -> f64 {
+            let p = piece.p(&s.displacement);
+            let force = piece.contribution(&d.rule, &p).force;
+            let place = |i: usize| piece.geometry.stretches[0].place(d.space.mesh(), i)[0];
+            piece.across(&force).iter().enumerate().map(|(i, f)| f * place(i).powi(2)).sum()
+        };
+        let second = d.contact.iter().map(of_piece).sum::<f64>().abs();
+        let off = [friction.sticks / 2.0 / c - 1.0, second / expected - 1.0];
+        println!(
+            "{degree:?}: a {a:.4}, Q/(mu P) {share:.4}, c/a {:.4} for {:.4}, second moment off by {:.1e}, {} factorisations",
+            friction.sticks / 2.0 / a,
+            c / a,
+            off[1],
+            s.newton.factorizations
+        );
+        assert!(off.iter().all(|off| off.abs() <= most), "{degree:?}: {off:?}");
+        // The control: as if all of it slid.
+        assert!((second / (mu * force * a * a / 4.0) - 1.0).abs() > 0.1);
+    }
+}
+
+#[test]
+fn below_a_coefficient_there_is_one_solution_for_all_loads() {
+    // An independent program (numpy, eigenvalues in doubles) printed these for kappa = 1/2.
+    for (cells, ratio, expected) in
+        [([7, 11], 1.0, [0.124, 0.154]), ([7, 11], 10.0, [0.136, 0.045])]
+    {
+        let problem = |mu: f64| dragged(cells, ratio, &Friction::Coulomb(mu), false);
+        let isolation = |mu: f64| {
+            let s = proved(&problem(mu), &method(Degree::One));
+            s.enclosure.as_ref().unwrap().isolation.unwrap()
+        };
+        let limits = isolation(0.02).limits;
+        println!("E2/E1 = {ratio}: {limits:?}");
+        for (found, expected) in limits.iter().zip(expected) {
+            assert!((found / expected - 1.0).abs() < 0.03, "{limits:?} {expected}");
+        }
+        let most = limits[0].max(limits[1]);
+        assert!(isolation(0.99 * most).everywhere && !isolation(1.02 * most).everywhere);
+    }
+}
+
+#[test]
+fn near_a_solution_there_is_one_for_small_and_large_coefficients_after_few_factorisations() {
+    let mut most = 0;
+    for mu in [0.1, 0.3, 0.6, 1.0] {
+        for (cells, ratio) in [([7, 11], 1.0), ([14, 22], 10.0), ([28, 44], 1.0)] {
+            let problem = dragged(cells, ratio, &Friction::Coulomb(mu), false);
+            let s = proved(&problem, &method(Degree::One));
+            let enclosure = s.enclosure.as_ref().unwrap();
+            let isolation = enclosure.isolation.unwrap();
+            let [radius, within] = [enclosure.relative, isolation.relative].map(Option::unwrap);
+            println!(
+                "mu {mu}, {cells:?}, E2/E1 {ratio}: within {radius:.1e}, only one within {within:.1e}, {} factorisations",
+                s.newton.factorizations
+            );
+            assert!(radius <= 1e-11 && within >= 1e-8, "{radius:e} {within:e}");
+            most = most.max(s.newton.factorizations);
+        }
+    }
+    assert!(most <= 30, "{most}");
+}
