@@ -140,6 +140,7 @@ mod tests {
         every_check_of_row_13_passes "13",
         every_check_of_row_15_passes "15",
         every_check_of_row_16_passes "16",
+        every_check_of_row_17_passes "17",
         every_check_of_row_27_passes "27",
     }
 }

@@ -159,7 +159,7 @@ fn what_a_body_of_revolution_has_not_is_refused_with_place_found_and_expected() 
         (
             "friction",
             with("contact.obstacle = \"it\"", "contact = { obstacle = \"it\", friction = 0.3 }"),
-            "friction is not computed by this program",
+            "expected no friction in a body of revolution, where it is not computed by this program",
         ),
         (
             "axis",
