@@ -51,7 +51,7 @@ impl Solution {
 pub(super) fn remarks(problem: &Problem, solution: &Solution, words: &Words) -> Vec<String> {
     let mut remarks = Vec::new();
     remarks.extend(model::separate_bodies(problem, Some(solution)));
-    remarks.extend(resolution::short_stretches(solution, words));
+    remarks.extend(resolution::short_stretches(problem, solution, words));
     remarks.extend(resolution::gaps(problem, Known::Solution(solution), words));
     remarks.extend(motion::off_the_obstacle(problem, solution, words));
     remarks.extend(motion::beside_the_line(problem, solution, words));

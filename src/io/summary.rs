@@ -89,8 +89,9 @@ pub(crate) fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
             lines.line("proved", enclosed(discrete));
         }
         let is_plane = r.stress.as_ref().is_none_or(|stress| stress.hoop_max.is_none());
+        let has_certificates = is_plane && r.contact.iter().all(ContactBoundary::may_be_certified);
         let how_far = match continuous {
-            None if is_plane => "; how far the mesh is off: --certificate",
+            None if has_certificates => "; how far the mesh is off: --certificate",
             _ => "",
         };
         lines.line("solved", solved_exactly(discrete) + how_far);

@@ -393,6 +393,11 @@ impl ContactBoundary {
         label(&self.boundary, self.partner.as_deref())
     }
 
+    /// There are certificates of contact with a rigid obstacle without friction, if the body is not one of revolution.
+    pub(crate) fn may_be_certified(&self) -> bool {
+        self.partner.is_none() && self.friction.is_none()
+    }
+
     fn empty(boundary: &str, partner: Option<String>) -> Self {
         ContactBoundary {
             boundary: boundary.to_owned(),

@@ -166,15 +166,21 @@ impl Stretch {
 }
 
 /// Says which boundaries are in contact along so few edges that force and pressure depend on the mesh.
-pub(super) fn short_stretches(solution: &Solution, words: &Words) -> Vec<String> {
+pub(super) fn short_stretches(
+    problem: &Problem,
+    solution: &Solution,
+    words: &Words,
+) -> Vec<String> {
     let lines = solution.contact.chunk_by(|a, b| a.boundary == b.boundary);
-    lines.filter_map(|edges| short_stretch(solution, words, edges)).collect()
+    let is_plane = !problem.material.are_of_revolution();
+    lines.filter_map(|edges| short_stretch(solution, words, edges, is_plane)).collect()
 }
 
 fn short_stretch(
     solution: &Solution,
     words: &Words,
     edges: &[ContactEdgeValues],
+    is_plane: bool,
 ) -> Option<String> {
     let line = Line { edges, nodes: &solution.nodes };
     let name = &*edges.first()?.boundary;
@@ -201,6 +207,8 @@ fn short_stretch(
     };
     let depends = if words.known_force.as_deref() == Some(name) {
         "the pressure depends on the mesh; make it finer there".to_owned()
+    } else if !(is_plane && part.may_be_certified()) {
+        "force and pressure depend on the mesh; make it finer there".to_owned()
     } else {
         format!(
             "force and pressure depend on the mesh; make it finer there, or ask for the force: --within \"force {} 5 %\"",
