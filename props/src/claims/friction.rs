@@ -426,7 +426,7 @@ mod row {
             id: "27",
             title: "Friction",
             paper: "(not in the paper, which has sigma_t = 0 on Gamma_C.)",
-            limits: "One point of Gamma_C, or one P1 edge; P2 edges are compared with a fine rule in the tests of the kernel. From the inequalities to existence and uniqueness it is Brouwer's and Banach's theorem (docs/theory.md, 12), which nothing here runs.",
+            limits: "One point of Gamma_C, or one P1 edge; P2 edges are compared with a fine rule in the tests of the kernel. From the inequalities to existence and uniqueness it is Brouwer's and Banach's theorem (docs/theory.md, 13), which nothing here runs.",
             single: None,
             checks: [
                 statements! {
