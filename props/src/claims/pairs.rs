@@ -82,7 +82,7 @@ pub fn the_gap_of_fenchel_is_not_negative<S: Ordered>([y, sigma]: [S; 2]) -> Ver
     Verdict::Holds("always")
 }
 
-/// [C] at a point: u with sigma satisfies the law; y and tau are allowed. G - A - B = (sigma - tau) (j(u) - j(v)), all three >= 0.
+/// \[C\] at a point: u with sigma satisfies the law; y and tau are allowed. G - A - B = (sigma - tau) (j(u) - j(v)), all three >= 0.
 pub fn identity_c_holds_at_a_point<S: Ordered>([y_u, y_v, sigma, tau]: [S; 4]) -> Verdict {
     let zero = S::from(0);
     for law in BOTH {
