@@ -468,6 +468,8 @@ def _is_zero(expression):
 
 
 def _contact(table, obstacles):
+    if "friction" in table.content:
+        table.refuse("friction", "friction", "contact without it: this engine has no friction")
     if table.has("gap") and table.has("obstacle"):
         table.refuse("", "gap, obstacle", "one of the two")
     if table.has("obstacle"):
