@@ -74,7 +74,7 @@ const PUSHES: usize = 5;
 /// the forces, wrenches and tractions in doubles and in intervals.
 const PER_TRIANGLE: u64 = 3000;
 
-/// The same where forces are asked for to second order, on a mesh of so many triangles: the dual solutions and their factors, whose size
+/// As [`PER_TRIANGLE`], with forces to second order, on a mesh of so many triangles: the dual solutions and their factors, whose size
 /// grows like N log N. Measured: 10 kB for 7,200 triangles, 14.6 kB for 115,200.
 fn per_triangle_with_forces(triangles: usize) -> u64 {
     5000 + 600 * u64::from(triangles.max(1).ilog2() + 1)

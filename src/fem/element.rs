@@ -143,7 +143,7 @@ impl Degree {
         length * sharp / S::from(plane)
     }
 
-    /// The same as [`Degree::turning_factor`] where the component across acts as well: [`contact_edge::turning_factor_of_both`].
+    /// As [`Degree::turning_factor`], where the component across acts as well: [`contact_edge::turning_factor_of_both`].
     pub fn turning_factor_of_both<S: Scalar>(self, cosine: S, root: impl Fn(S) -> S) -> S {
         with_element!(self, E => contact_edge::turning_factor_of_both::<E, _, _, _>(cosine, root))
     }
