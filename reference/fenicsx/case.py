@@ -291,7 +291,7 @@ def read_case(path):
         bodies=_bodies(load),
         boundaries=_boundaries(root.table("boundary"), solution, _obstacles(root)),
         points=_points(root),
-        degree=method.integer("degree", "1 or 2", lambda p: p in (1, 2), default=1),
+        degree=method.integer("degree", "1 or 2", lambda p: p in (1, 2), default=2 if root.table("mesh").has("gmsh") else 1),
         gamma0=_gamma0(method),
         gauss=_quadrature(method),
         allow_noncoercive=method.boolean("allow_noncoercive", False),

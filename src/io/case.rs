@@ -250,7 +250,11 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
         Some(title) => title.text()?.to_owned(),
         None => file.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
     };
-    let method = root.optional_section("method", read_method)?.unwrap_or_default();
+    let mesh = root.section("mesh")?;
+    let of_file = mesh.is_some_and(|mesh| mesh.get("gmsh").is_some());
+    let default = Method { degree: method::default_degree(of_file), ..Method::default() };
+    let method = root.optional_section("method", |table| read_method(table, default.clone()));
+    let method = method?.unwrap_or(default);
     let settings = root.optional_section("solver", read_settings)?.unwrap_or_default();
     let units = root.optional_section("units", read_units)?;
     let folder = file.parent().unwrap_or(Path::new(""));

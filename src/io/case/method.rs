@@ -12,8 +12,13 @@ use crate::solve::{
     ContactQuadrature, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
 };
 
-pub(super) fn read_method(table: &Table) -> Result<Method, FileError> {
-    let mut method = Method::default();
+/// The degree where a case says none. On meshes of parts quadratic elements are nearer at equal time: the table is in docs/case.md.
+pub(super) fn default_degree(mesh_of_a_file: bool) -> Degree {
+    if mesh_of_a_file { Degree::Two } else { Degree::One }
+}
+
+/// `method` is what holds where the table says nothing.
+pub(super) fn read_method(table: &Table, mut method: Method) -> Result<Method, FileError> {
     table.only(&["degree", "gamma0", "kappa", "contact_quadrature", "allow_noncoercive"])?;
     table.set("degree", &mut method.degree, |degree| {
         match degree.whole_number(1..=2).map_err(|_| degree.wrong("1 or 2"))? {
