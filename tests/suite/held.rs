@@ -3,7 +3,8 @@
 
 use approx::assert_abs_diff_eq;
 use signorini::fem::{
-    Condition, DataError, Mesh, Obstacle, PointSupport, Problem, Side, Space, contact_line,
+    Condition, DataError, Discretization, EdgeRule, Mesh, Obstacle, PointSupport, Problem, Side,
+    Space, contact_line,
 };
 use signorini::kernel::{Material, Plane};
 use signorini::solve::{
@@ -164,6 +165,21 @@ fn a_block_between_walls_that_it_does_not_touch_is_where_its_displacement_is_lea
                 assert_abs_diff_eq!(play.most.unwrap(), gap - most, epsilon = 1e-3);
             }
             assert!(s.enclosure.is_ok(), "{:?}", s.enclosure.err());
+        }
+    }
+}
+
+#[test]
+fn walls_that_no_load_presses_press_in_no_solution_and_are_left_out_of_the_energy() {
+    for degree in DEGREES {
+        let problem = beside_walls([Some(0.1), Some(0.0)]);
+        let rule = EdgeRule::Exact;
+        let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, rule).unwrap();
+        let idle = &d.slides.as_ref().unwrap().idle;
+        assert_eq!(idle.len(), d.contact.len());
+        for (piece, idle) in d.contact.iter().zip(idle) {
+            // Control: the floor carries the load.
+            assert_eq!(*idle, piece.boundary().to_string() != "bottom");
         }
     }
 }

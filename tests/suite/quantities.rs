@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use approx::assert_relative_eq;
 use signorini::certify::dual::WrongPair;
 use signorini::certify::forces::{self, Evidence, Motion, WrongLifting};
 use signorini::certify::proof::{Certificate, Role};
@@ -294,6 +295,19 @@ fn adapted_to_the_force_it_is_known_to_a_fiftieth_of_a_per_cent_with_ten_thousan
     let whole = |(target, _): &(forces::ForceTarget, _)| target.motion == Motion::Along(None);
     let k = evidence.liftings.iter().position(whole).unwrap();
     assert!(half_width(first[k].clone().unwrap()) > 0.05);
+}
+
+#[test]
+fn a_level_says_half_the_width_of_its_force_over_the_middle() {
+    let target = Target { relative: 1e-4, max_unknowns: 200 };
+    let how = (&Method::default(), &Settings::default());
+    let goal = (target, Some("bottom"));
+    let (_, adapted) = adapt_to(tilted_punch(4), how, goal, &Asked::default(), &|_| {}).unwrap();
+    let [low, high] = interval(&adapted.certified.unwrap(), Name::ContactForce, "bottom");
+    let middle = low / 2.0 + high / 2.0;
+    let said = adapted.levels[adapted.level].force.unwrap();
+    // Three roundings.
+    assert_relative_eq!(said, (high - middle) / middle, max_relative = 1e-12);
 }
 
 #[test]
