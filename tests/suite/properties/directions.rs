@@ -7,11 +7,13 @@
 use std::collections::BTreeMap;
 
 use approx::abs_diff_eq;
-use signorini::fem::{Condition, Diagonal, Piece, Problem, Rectangle};
+use signorini::contact::Piece;
 use signorini::kernel::triangle::on_edge;
 use signorini::kernel::{Material, Plane};
+use signorini::model::Degree;
+use signorini::model::{Condition, Diagonal, Problem, Rectangle};
 use signorini::nalgebra::Vector2;
-use signorini::solve::{Degree, Method, discretize};
+use signorini::solve::{Method, discretize};
 
 use super::{Outcome, field, for_all, properties, text};
 use crate::common::moved_to;

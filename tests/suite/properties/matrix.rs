@@ -7,8 +7,9 @@ use proptest::array::uniform2;
 use proptest::collection::vec;
 use proptest::option::weighted;
 use proptest::strategy::{Just, Strategy};
-use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
-use signorini::fem::{Discretization, EdgeRule};
+use signorini::contact::{Discretization, EdgeRule};
+use signorini::linear::matrix;
+use signorini::linear::matrix::{LowerTriangle, Neighbours, Numbering};
 
 use super::bodies::on_bodies;
 use super::{Outcome, any_order, field, for_all, properties, text};

@@ -12,10 +12,11 @@ use proptest::array::uniform3;
 use proptest::strategy::Strategy;
 use signorini::kernel::DoubleDouble;
 use signorini::nalgebra::DMatrix;
+use signorini::results::{Status, Verdict};
 use signorini::solve::accuracy::Outcome as Solved;
 use signorini::solve::body::{self, Body as _, ContactEnergy, Derivatives, Residual, Step};
 use signorini::solve::newton::{self, Until};
-use signorini::solve::{Method, Settings, SolveError, Status, Verdict, solve};
+use signorini::solve::{Method, Settings, SolveError, solve};
 
 use super::bodies::loaded_bodies;
 use super::{Outcome, for_all, properties, text};

@@ -7,10 +7,11 @@ use approx::abs_diff_eq;
 use proptest::array::uniform3;
 use proptest::sample::select;
 use proptest::strategy::Strategy;
-use signorini::fem::constraints::Constraints;
-use signorini::fem::{
-    Condition, Degree, Diagonal, Function, Mesh, Piece, PointSupport, Problem, Rectangle,
-    SharedFunction, Space, contact_line, loads,
+use signorini::contact::{Piece, contact_line};
+use signorini::model::constraints::Constraints;
+use signorini::model::{
+    Condition, Degree, Diagonal, Function, Mesh, PointSupport, Problem, Rectangle, SharedFunction,
+    Space, loads,
 };
 
 use super::{Outcome, any_order, for_all, properties, text};
@@ -114,7 +115,7 @@ fn free(problem: &Problem, x: [f64; 2]) -> Result<Vec<(String, f64)>, String> {
     let space = Space::new(&problem.mesh, Degree::One);
     let constraints = Constraints::new(problem, &space).map_err(text)?;
     let (_, motions) = constraints.free_motions(&space);
-    let said = |m: &signorini::fem::FreeMotion| {
+    let said = |m: &signorini::held::FreeMotion| {
         let [ux, uy] = m.at(x);
         (format!("{m}: {}", m.remedy()), ux.hypot(uy))
     };
@@ -170,7 +171,7 @@ fn curved(corners: usize, expected: bool) -> Outcome {
 /// The constant of a line is the largest of its triangles', the typical one that in the middle of their order, and a local
 /// gamma is reported as its kappa times the limit, all `times` that.
 fn ordered(times: f64) -> Outcome {
-    for_all(6, (select(&[1, 4, 9][..]), 0..1000), |(nx, seed)| {
+    for_all(6, (select(&[1, 4, 9][..]), 0_u64..1000), |(nx, seed)| {
         let mesh = moved([nx, 1], seed)?;
         let mut problem = body(mesh);
         let contact = Condition::contact(|_| 0.0);
@@ -203,7 +204,7 @@ fn ordered(times: f64) -> Outcome {
 /// in any order, follow each other, but for as many `breaks`.
 fn chained(sides: &[&str], breaks: usize) -> Outcome {
     let vertices = moved([12, 1], 0)?.vertices().len();
-    let data = (0..1000, any_order(vertices), any_order(12 * sides.len()));
+    let data = (0_u64..1000, any_order(vertices), any_order(12 * sides.len()));
     for_all(10, data, |(seed, number, order)| {
         let straight = moved([12, 1], seed)?;
         let mut vertices = vec![[0.0; 2]; number.len()];
