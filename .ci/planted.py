@@ -63,12 +63,11 @@ def is_of_the_program(path):
 
 
 def is_a_unit_test(entry):
-    """Whether the file with the mistake, or the one with its tests, has a test beside the code of this name."""
-    file = ROOT / entry["file"]
+    """Whether the crate with the mistake has a test of this name beside the code."""
     module, _, name = entry["unit"].partition("::tests::")
-    texts = [f.read_text() for f in (file, file.with_suffix("") / "tests.rs") if f.is_file()]
-    of_file = "::".join(file.relative_to(ROOT / package(entry)).with_suffix("").parts)
-    return module in (of_file, of_file.removesuffix("::mod")) and any(f"fn {name}(" in text for text in texts)
+    folder = ROOT / package(entry) / module.replace("::", "/")
+    files = folder.with_suffix(".rs"), folder / "mod.rs", folder / "tests.rs"
+    return any(f"fn {name}(" in file.read_text() for file in files if file.is_file())
 
 
 def test_of(entry):
