@@ -175,11 +175,12 @@ fn a_wall_that_no_load_presses_is_left_out_of_the_energy_and_two_walls_may_squee
             let rule = EdgeRule::Exact;
             let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, rule).unwrap();
             let idle = &d.slides.as_ref().unwrap().idle;
-            assert_eq!(idle.len(), d.contact.len());
-            for (piece, idle) in d.contact.iter().zip(idle) {
-                // Control: the floor carries the load.
-                assert_eq!(*idle, is_left_out && **piece.boundary() != *"bottom");
-            }
+            let found = d.contact.iter().map(|piece| piece.boundary().to_string()).zip(idle);
+            let found: Vec<(String, bool)> = found.map(|(name, idle)| (name, *idle)).collect();
+            // Control: the floor carries the load.
+            let is_right =
+                |(name, idle): &(String, bool)| *idle == (is_left_out && name != "bottom");
+            assert!(found.len() > 6 && found.iter().all(is_right), "{gaps:?}: {found:?}");
         }
     }
 }

@@ -15,7 +15,7 @@ mod refinement;
 
 use proptest::array::uniform2;
 use proptest::collection::vec;
-use proptest::strategy::{Just, Strategy};
+use proptest::strategy::{Just, Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
 
 /// What was found where a property does not hold.
@@ -32,6 +32,12 @@ fn for_all<D: Strategy>(draws: u32, data: D, holds: impl Fn(D::Value) -> Outcome
         TestError::Fail(why, data) => format!("{why}, of {data:?}"),
         TestError::Abort(why) => why.to_string(),
     })
+}
+
+/// One draw of `data`, the same in each run.
+fn one<D: Strategy>(data: D) -> Result<D::Value, String> {
+    let tree = data.new_tree(&mut TestRunner::deterministic()).map_err(text)?;
+    Ok(tree.current())
 }
 
 /// A vector at each node, with components below 1.

@@ -315,6 +315,31 @@ fn a_level_says_half_the_width_of_its_force_over_the_middle() {
 }
 
 #[test]
+fn components_of_a_force_along_an_axis_have_the_sign_that_the_obstacle_pushes_with() {
+    // The obstacle is below, then above: its force on the body points away from it.
+    for (side, other, sign) in [("bottom", "top", 1.0), ("top", "bottom", -1.0)] {
+        let pushed = ["0".to_owned(), format!("{sign} * (0.15*x - 0.2)")];
+        let pushed = pushed.map(|u| Some(expression(&u)));
+        let problem = Problem::of(unit_square(8).mesh().unwrap(), unit_material());
+        let problem = Problem { body_force: [expression("0"), expression("0")], ..problem }
+            .with(other, Condition::Displacement(pushed))
+            .with(side, Condition::Contact { gap: expression("0") });
+        let c = certified(&problem, Degree::One);
+        let force = interval(&c, Name::ContactForce, side);
+        let along = interval(&c, Name::ContactComponent(1), side);
+        assert_eq!(interval(&c, Name::ContactComponent(0), side), [0.0; 2]);
+        let expected = if sign > 0.0 { force } else { [-force[1], -force[0]] };
+        assert_eq!(along, expected);
+        // Control: there is a force, on the side of its interval.
+        let of = |q: &&signorini::certificates::quantities::Quantity| {
+            q.name == Name::ContactComponent(1)
+        };
+        let value = c.quantities.list.iter().find(of).unwrap().value;
+        assert!(force[0] > 0.0 && along[0] <= value && value <= along[1], "{along:?} {value}");
+    }
+}
+
+#[test]
 fn no_more_contact_and_no_more_opening_than_the_zones_say() {
     let fine = solved(&tilted_punch(64), Degree::Two);
     for n in [8, 16, 32] {
