@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Plants the mistakes of `props/planted.toml` in the sources, one at a time, and asks what is named there: a check of VERIFY.md
-(`row` and `check`), a test of `tests/suite` (`test`), or one of `props/tests/program` (`program`).
+(`row` and `check`), a test of `tests/suite` (`test`), one of `props/tests/program` (`program`), or one beside the code (`unit`).
 
     python3 .ci/planted.py --all              every mistake must be noticed by its check, and no check without one; date and count
                                               of the run are written into props/mutants.md
@@ -35,7 +35,7 @@ TREE = TARGET / "tree"
 BUILD = TARGET / "build"
 PROGRAM = BUILD / "debug/props"
 # Each crate has a switch of its own.
-CRATES = ["src", "src/kernel", "src/audit"]
+CRATES = {"src": "signorini", "src/kernel": "signorini-kernel", "src/audit": "signorini-audit"}
 SWITCH = """//! Which of the planted mistakes is on: `.ci/planted.py`.
 
 /// Whether it is mistake `k`.
@@ -62,13 +62,35 @@ def is_of_the_program(path):
     return file.is_file() and f"    {name} => " in file.read_text()
 
 
+def is_a_unit_test(entry):
+    """Whether the crate with the mistake has a test of this name beside the code."""
+    module, _, name = entry["unit"].partition("::tests::")
+    folder = ROOT / package(entry) / module.replace("::", "/")
+    files = folder.with_suffix(".rs"), folder / "mod.rs", folder / "tests.rs"
+    return any(f"fn {name}(" in file.read_text() for file in files if file.is_file())
+
+
+def test_of(entry):
+    """Of which program the test of an entry is, as cargo is told, and its name there; nothing for a check of VERIFY.md."""
+    if "unit" in entry:
+        return ("-p", CRATES[package(entry)], "--lib"), entry["unit"]
+    if "program" in entry:
+        return ("-p", "props", "--test", "program"), f"{entry['program']}::check"
+    return (("--test", "suite"), entry["test"]) if "test" in entry else (None, None)
+
+
+def package(entry):
+    """The folder of the crate with the file of a mistake."""
+    return next(crate for crate in reversed(CRATES) if entry["file"].startswith(f"{crate}/"))
+
+
 def mistakes(path):
     """The mistakes, numbered from 1, each with the place of its text."""
     found, wrong, names = [], [], set()
     claims = "".join(file.read_text() for file in (ROOT / "props/src").rglob("*.rs"))
     for k, entry in enumerate(tomllib.loads(path.read_text())["mistake"], 1):
         what = f"{path.name}, mistake {k} ({entry.get('name')})"
-        asked = next(({key} for key in ("test", "program") if key in entry), {"row", "check"})
+        asked = next(({key} for key in ("test", "program", "unit") if key in entry), {"row", "check"})
         if missing := (KEYS | asked) - entry.keys():
             wrong.append(f"{what}: no {', '.join(sorted(missing))}")
             continue
@@ -76,6 +98,8 @@ def mistakes(path):
             wrong.append(f"{what}: no test {entry['test']}")
         if "program" in entry and not is_of_the_program(entry["program"]):
             wrong.append(f"{what}: no test {entry['program']} of props/tests/program")
+        if "unit" in entry and not is_a_unit_test(entry):
+            wrong.append(f"{what}: no test {entry['unit']} beside the code")
         if "check" in entry and not re.search(rf"\b{entry['check']}\b", claims):
             wrong.append(f"{what}: no check {entry['check']}")
         if any(re.search(r"^let |[;=]$", entry[key]) for key in ("old", "new")):
@@ -212,25 +236,23 @@ def main():
         if options.survey or any("row" in entry for entry in group):
             build("build", "--quiet", "-p", "props")
         programs = {}
-        for key, of in (("test", ["--test", "suite"]), ("program", ["-p", "props", "--test", "program"])):
-            if not options.survey and any(key in entry for entry in group):
-                said = build("test", *of, "--no-run")
-                programs[key] = str(TREE / said.rsplit("(", 1)[1].split(")")[0])
         for entry in group:
-            row, check, test, program = (None if options.survey else entry.get(key) for key in ("row", "check", "test", "program"))
+            row, check = (None if options.survey else entry.get(key) for key in ("row", "check"))
+            of, test = (None, None) if options.survey else test_of(entry)
+            if of and of not in programs:
+                said = build("test", *of, "--no-run")
+                programs[of] = str(TREE / said.rsplit("(", 1)[1].split(")")[0])
 
             def asking(number):
                 if test:
-                    return ask_test(programs["test"], number, test, options.seconds)
-                if program:
-                    return ask_test(programs["program"], number, f"{program}::check", options.seconds)
+                    return ask_test(programs[of], number, test, options.seconds)
                 return ask(number, row, check, options.seconds)
 
-            if (row, check, test, program) not in asked:
-                asked.add((row, check, test, program))
+            if (row, check, test) not in asked:
+                asked.add((row, check, test))
                 if (failed := asking(0)) != {}:
                     bad += 1
-                    print(f"WITHOUT A MISTAKE, {test or program or check or 'all checks'}: {failed}", flush=True)
+                    print(f"WITHOUT A MISTAKE, {test or check or 'all checks'}: {failed}", flush=True)
             start = time.monotonic()
             failed = asking(entry["number"])
             took = time.monotonic() - start
@@ -242,7 +264,7 @@ def main():
                 verdict = f"SURVIVES {failed or ''}"
             bad += not verdict.startswith("noticed")
             print(f"{entry['name']}: {verdict} ({took:.0f} s)", flush=True)
-            table.append(f"| {entry['name']} | `{entry['file']}` | {entry.get('row', entry.get('program', 'test'))} | {verdict} |")
+            table.append(f"| {entry['name']} | `{entry['file']}` | {entry.get('row', test_of(entry)[1])} | {verdict} |")
     head = ["| mistake | file | row | found |", "| --- | --- | --- | --- |"]
     (TARGET / "table.md").write_text("\n".join(head + table) + "\n")
     if options.all:

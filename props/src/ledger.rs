@@ -17,7 +17,7 @@ const HEAD: &str = "\
 
 Printed by `cargo run -p props -- ledger > VERIFY.md` from the claims themselves; a test fails when it is stale. Each name is a
 link to the line of the sources that is meant: an item of the paper leads to the line of the program that it is about and to its
-checks, a check to its predicate or to the function that runs it.
+checks, a check to its predicate or to the function that runs it. §9 is row 9.
 
 The paper is F. Chouly, P. Hild, *A Nitsche-based method for unilateral contact problems: numerical analysis*, SIAM J.
 Numer. Anal. 51 (2013) 1295-1307. n is the outward normal, sigma_n is negative in compression, P(v) = v_n - g - gamma
@@ -44,8 +44,7 @@ is not met), or *fails*. Other checks assemble on random bodies, solve, or compa
   these very files.
 - **all cases**: each of at most 2^20 cases is run. **draws**: a harness on random draws, *and no more is known*.
 
-`cargo install --locked kani-verifier && cargo kani setup` installs Kani, `cargo kani` at the root runs every harness: one that passes
-holds for all numbers that it ranges over, and its false twin fails. Receipts are in `props/receipts`, written by `props receipt`,
+Each harness of Kani has a false twin, which must fail. Receipts are in `props/receipts`, written by `props receipt`,
 `.ci/rocq.py` and `.ci/smt.py`. The whole solver is compared with FEniCSx, which shares nothing with it but the case files
 (`reference/`): what the rows can't see. What the program promises beyond the paper is tested: enclosures and certificates beside
 exact rationals in `props/tests/program`, the rest in `tests/suite`. CONTRIBUTING.md says how engines are run and a row is added.
@@ -231,11 +230,12 @@ fn of_item(item: &Item, claims: &[Claim], places: &Places) -> Result<String, Str
     let found = item.found(claims);
     let mut rows: Vec<&str> = found.iter().map(|(claim, _)| claim.id).collect();
     rows.dedup();
-    let rows: Vec<String> = rows.iter().map(|id| format!("[{id}](#row-{id})")).collect();
-    let mut text = format!("\n**{}** {}.", item.name, item.says);
+    let rows: Vec<String> = rows.iter().map(|id| format!("[§{id}](#row-{id})")).collect();
+    let mut text = format!("\n**{}** {}", item.name, item.says);
     if !rows.is_empty() {
-        let _ = write!(text, " *Row* {}.", rows.join(", "));
+        let _ = write!(text, ", {}", rows.join(" "));
     }
+    text.push('.');
     for (n, &place) in item.code.iter().enumerate() {
         let (file, start) = place;
         let name = start.trim_start_matches("pub ").trim_end_matches(['(', '<', ')']);
@@ -322,7 +322,7 @@ fn row(claim: &Claim, places: &Places) -> Result<String, String> {
     let Claim { id, title, paper, limits, .. } = claim;
     let single = claim.single.map_or(String::new(), |why| format!(" **One engine:** {why}"));
     let mut text = format!(
-        "\n### Row {id}\n\n**{title}.** **The paper:** {paper} **Not established:** {limits}{single}\n\n"
+        "\n### Row {id}\n\n**{title}.** **Paper:** {paper} **Not established:** {limits}{single}\n\n"
     );
     let mut others: Vec<&Check> = Vec::new();
     for checks in by_name(claim.checks.iter().filter(|check| !check.control)) {

@@ -139,6 +139,7 @@ fn with_traction(
 #[cfg(test)]
 mod tests {
     use approx::{assert_abs_diff_eq, assert_relative_eq};
+    use nalgebra::Matrix2;
 
     use super::*;
     use crate::kernel::Plane;
@@ -193,6 +194,36 @@ mod tests {
         let before = square(&f);
         take_off(&T, &material, &mut f);
         assert!(square(&f) > 1e-6 * before && square(&f) < before);
+    }
+
+    #[test]
+    fn the_force_of_a_stress_has_the_norm_of_that_stress() {
+        let (lambda, mu) = (1.3, 0.7);
+        let c = [0.3, -0.7, 0.2, 0.9, -0.4, 0.5, -0.6, 0.8, 0.1];
+        let slopes = T.barycentric_gradients();
+        // B and div B, term by term.
+        let of = |l: [f64; 3]| {
+            let mut sum = (Matrix2::zeros(), Vector2::zeros());
+            for (i, a) in (0..9).map(|n| (n / 3, n % 3)) {
+                let (j, k, edge) = ((i + 1) % 3, (i + 2) % 3, T.edge(i));
+                sum.0 += edge * edge.transpose() * (c[3 * i + a] * l[j] * l[k] * l[a]);
+                let slope = slopes[j] * (l[k] * l[a]) + slopes[k] * (l[j] * l[a]);
+                let slope = slope + slopes[a] * (l[j] * l[k]);
+                sum.1 += edge * (c[3 * i + a] * slope.dot(&edge));
+            }
+            sum
+        };
+        let (mut force, mut square) = (Vec::new(), 0.0);
+        for (l, weight) in quadrature::triangle(8) {
+            let (weight, (b, divergence)) = (weight * T.double_area() / 2.0, of(l));
+            force.push((l, weight, -divergence));
+            let trace = b.trace();
+            let density = b.dot(&b) - lambda / (2.0 * (lambda + mu)) * trace * trace;
+            square += weight * density / (2.0 * mu);
+        }
+        let found = take_off(&T, &Material::lame(lambda, mu, Plane::Strain), &mut force);
+        // A system of nine equations.
+        assert_relative_eq!(found, square.sqrt(), max_relative = 1e-10);
     }
 
     /// int f' . w <= |B| |w|_a for fields w, of which those with eps(w) near C^-1 B come near.

@@ -48,7 +48,8 @@ pub(super) fn cut(
             let inside = gap[0] + at * (gap[1] - gap[0]) + 4.0 * at * (1.0 - at) * gap_bulge;
             let gap = if half == 0 { [gap[0], inside] } else { [inside, gap[1]] };
             let along = along.map(|[d, e]| {
-                let inside = [0, 1].map(|c| (1.0 - at) * d[c] + at * e[c]);
+                // One direction stays one: rounding must not make it turn.
+                let inside = if d == e { d } else { [0, 1].map(|c| (1.0 - at) * d[c] + at * e[c]) };
                 if half == 0 { [d, inside] } else { [inside, e] }
             });
             Role::Contact { pressure: pressures[half], gap, along }

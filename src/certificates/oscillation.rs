@@ -197,8 +197,25 @@ impl Function for DistanceToPlane {
     }
 }
 
-/// K and h_T of a triangle: |grad (w - r)| <= K |eps(w)|, |w - r| <= K (h_T / pi) |eps(w)|.
-fn korn(triangle: &Triangle<f64>) -> (f64, f64) {
+/// The constants of a triangle T for a displacement w less a rigid motion r.
+struct Constants {
+    /// |grad (w - r)| <= K |eps(w)|
+    korn: f64,
+    /// |w - r| <= K (h_T / pi) |eps(w)|
+    poincare: f64,
+    diameter: f64,
+    area: f64,
+}
+
+impl Constants {
+    /// |w - r| on an edge of this length is at most this times |eps(w)|: |E| / |T| (|w - r|^2 + h_T |w - r| |grad (w - r)|).
+    fn trace(&self, length: f64) -> f64 {
+        let Constants { korn, poincare, diameter, area } = self;
+        (length / area * (poincare * poincare + diameter * poincare * korn)).sqrt()
+    }
+}
+
+fn constants(triangle: &Triangle<f64>) -> Constants {
     let lengths = [0, 1, 2].map(|i| length(triangle.edge(i)));
     let perimeter: f64 = lengths.iter().sum();
     let centre = triangle.point(lengths.map(|l| l / perimeter));
@@ -206,7 +223,10 @@ fn korn(triangle: &Triangle<f64>) -> (f64, f64) {
     let outer = triangle.vertices.iter().map(|x| length(x - centre)).fold(0.0, f64::max);
     let ratio = inner / outer;
     let beta = ratio / (2.0 * (1.0 + (1.0 - ratio * ratio).sqrt())).sqrt();
-    ((1.0 + 2.0 / (beta * beta)).sqrt(), lengths.into_iter().fold(0.0, f64::max))
+    let korn = (1.0 + 2.0 / (beta * beta)).sqrt();
+    let diameter = lengths.into_iter().fold(0.0, f64::max);
+    let poincare = korn * diameter / std::f64::consts::PI;
+    Constants { korn, poincare, diameter, area: triangle.double_area() / 2.0 }
 }
 
 /// The cost of f and t on one piece of triangle `t`: positive if that is measured. `whole` tells which edge of the mesh an
@@ -219,8 +239,7 @@ pub(super) fn loads(
     t: usize,
 ) -> f64 {
     let triangle = Triangle { vertices: piece.vertices.map(|p| place(certificate, p)) };
-    let (k, h) = korn(&triangle);
-    let poincare = k * h / std::f64::consts::PI;
+    let constants = constants(&triangle);
     // All by the rule of the force that asks for most.
     let curved = data.acting(t).filter(|(_, f, _)| !is_within(f, 1));
     let demand = |f: &SharedFunction| (f.kink().is_some(), f.degree().unwrap_or(u32::MAX));
@@ -242,7 +261,7 @@ pub(super) fn loads(
         0.0
     };
     let square: f64 = lacking.iter().map(|(_, weight, f)| weight * f.dot(f)).sum();
-    let mut sum = poincare * square.sqrt();
+    let mut sum = constants.poincare * square.sqrt();
     for (local, e) in piece.edges.into_iter().enumerate() {
         let edge = certificate.edges[e];
         let (Boundary::Loaded(traction) | Boundary::Supported(_, _, Some(traction))) =
@@ -278,10 +297,7 @@ pub(super) fn loads(
             // int P_2^2 = 1/5
             square = (square - length / 5.0 * legendre.dot(&legendre)).max(0.0);
         }
-        let trace = (length / (triangle.double_area() / 2.0)
-            * (poincare * poincare + h * poincare * k))
-            .sqrt();
-        sum += trace * square.sqrt();
+        sum += constants.trace(length) * square.sqrt();
     }
     (of_bubbles + sum / least_eigenvalue(&piece.material).sqrt()).max(least)
 }
@@ -381,4 +397,55 @@ fn shifted_legendre(k: usize, s: f64) -> [f64; 2] {
         (before, p) = (p, [value, slope]);
     }
     [p[0], 2.0 * p[1]]
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+    use crate::kernel::Plane;
+
+    #[test]
+    fn constants_of_the_equilateral_triangle_are_those_of_an_angle_of_fifteen_degrees() {
+        let vertices = [[0.0, 0.0], [2.0, 0.0], [1.0, 3.0_f64.sqrt()]].map(Vector2::from);
+        let found = constants(&Triangle { vertices });
+        // The inner circle is half as large as the outer one, the sine of 30 degrees: beta = sin 15 degrees.
+        let beta = (6.0_f64.sqrt() - 2.0_f64.sqrt()) / 4.0;
+        let korn = (2.0 / (beta * beta) + 1.0).sqrt();
+        assert_relative_eq!(found.korn, korn, max_relative = 1e-14);
+        assert_relative_eq!(
+            found.poincare,
+            2.0 * korn / std::f64::consts::PI,
+            max_relative = 1e-14
+        );
+        assert_relative_eq!(found.diameter, 2.0, max_relative = 1e-14);
+        // |E| / |T| = 2 / 3^(1/2), and both terms.
+        let square = korn * korn * 4.0 * (1.0 / std::f64::consts::PI + 1.0) / std::f64::consts::PI;
+        let trace = (2.0 / 3.0_f64.sqrt() * square).sqrt();
+        assert_relative_eq!(found.trace(2.0), trace, max_relative = 1e-14);
+    }
+
+    #[test]
+    fn a_lift_has_the_energy_of_its_displacement() {
+        let vertices = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(Vector2::from);
+        let (triangle, material) = (Triangle { vertices }, Material::lame(0.0, 1.0, Plane::Strain));
+        // d = (s (1 - s), 0) on the edge from (1, 0) to (0, 1), s = y there: lifted along (1 - s) and s.
+        let found = lift(&triangle, 0, |s| [s * (1.0 - s), 0.0], &material);
+        let n = 400;
+        let mut square = 0.0;
+        // By differences of z(x, y) = (x + y) d(y / (x + y)), the function of degree 1 with these values on the edge.
+        let z = |x: f64, y: f64| if x + y > 0.0 { x * y / (x + y) } else { 0.0 };
+        for (i, j) in (0..n).flat_map(|i| (0..n - i).map(move |j| (i, j))) {
+            let [x, y] = [i, j].map(|k| (f64::from(k) + 1.0 / 3.0) / f64::from(n));
+            let step = 1e-6;
+            let zx = (z(x + step, y) - z(x - step, y)) / (2.0 * step);
+            let zy = (z(x, y + step) - z(x, y - step)) / (2.0 * step);
+            let weight = if i + j == n - 1 { 0.5 } else { 1.0 } / f64::from(n * n);
+            // sigma : eps = 2 eps : eps = 2 zx^2 + zy^2 for lambda = 0, mu = 1.
+            square += weight * (2.0 * zx * zx + zy * zy);
+        }
+        // The rule has an error of some h.
+        assert_relative_eq!(found, square.sqrt(), max_relative = 1e-2);
+    }
 }

@@ -607,3 +607,22 @@ fn list(
     }
     (found, evidence, limits)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_contact_force_is_never_negative_and_other_forces_are_minus_the_functional() {
+        for (name, expected) in [
+            (Name::ContactForce, [0.0, 2.0]),
+            (Name::PeakPressure, [0.0, 2.0]),
+            (Name::ContactComponent(1), [-2.0, 1.0]),
+            (Name::ContactMoment, [-2.0, 1.0]),
+            (Name::Reaction(0), [-2.0, 1.0]),
+        ] {
+            assert_eq!(name.of_functional([-1.0, 2.0]), expected, "{name:?}");
+        }
+        assert_eq!(Name::ContactForce.of_functional([1.0, 2.0]), [1.0, 2.0]);
+    }
+}

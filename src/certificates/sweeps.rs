@@ -412,3 +412,39 @@ pub(super) fn substitute(factor: &[f64], x: &mut [f64]) {
         x[..i].iter_mut().zip(row).for_each(|(x, a)| *x -= known * a);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+    use crate::kernel::Plane;
+
+    #[test]
+    fn squares_of_the_features_of_a_stress_add_up_to_its_energy() {
+        let vertices = [[0.3, -0.2], [2.0, 0.1], [0.7, 1.9]].map(Vector2::from);
+        let triangle = Triangle { vertices };
+        let material = Material::lame(1.3, 0.7, Plane::Strain);
+        let squares = |tau: &Composite<f64>| {
+            features(tau, &triangle, &material).iter().map(|x| x * x).sum::<f64>()
+        };
+        let body = [Vector2::zeros(); 3];
+        let mut sizes = [0.0; 7];
+        for (side, k, c) in (0..12).map(|n| (n / 4, n / 2 % 2, n % 2)) {
+            let mut forces = [[Vector2::zeros(); 2]; 3];
+            forces[side][k][c] = 1.0;
+            forces[(side + 1) % 3][1 - k][1 - c] = -0.3;
+            let tau = Composite::new(&Frame::new(&triangle), &Loads { forces, body });
+            let energy = tau.energy(&material, triangle.double_area());
+            // Some fifty roundings of positive terms.
+            assert_relative_eq!(squares(&tau), energy, max_relative = 1e-13);
+            for (size, part) in
+                sizes.iter_mut().zip(tau.corners.as_flattened().iter().chain([&tau.centre]))
+            {
+                *size += part.components().iter().map(|c| c.abs()).sum::<f64>();
+            }
+        }
+        // Control: each part of a stress was there.
+        assert!(sizes.iter().all(|size| *size > 0.1), "{sizes:?}");
+    }
+}

@@ -508,6 +508,16 @@ mod tests {
     }
 
     #[test]
+    fn a_point_that_one_component_holds_leaves_two_motions_in_which_it_stays() {
+        let mesh = sheet([3, 2], |x| x, solid);
+        for held in [[true, false], [false, true]] {
+            let at_corner = move |[x, y]: [f64; 2]| held.map(|held| held && [x, y] == [3.0, 2.0]);
+            // That the corner stays is looked at in `free`, for each motion.
+            assert_eq!(said(&mesh, &at_corner).len(), 2);
+        }
+    }
+
+    #[test]
     fn place_and_size_of_the_body_do_not_matter() {
         let held: [(&Prescribed, usize); 3] =
             [(&|_| [false; 2], 3), (&|_| [false, true], 1), (&|_| [true; 2], 0)];

@@ -166,6 +166,7 @@ impl From<f64> for Expression {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernel::{Ball, Enclosing};
     use crate::model::Distance;
 
     fn parse(text: &str) -> Expression {
@@ -224,6 +225,38 @@ mod tests {
     fn square_is_the_product_to_the_bit() {
         for x in [0.1, -1.0 / 3.0, 1e200, 5e-324, -0.0] {
             assert_eq!(parse("x^2").at([x, 0.0]).to_bits(), (x * x).to_bits());
+        }
+    }
+
+    #[test]
+    fn functions_of_a_ball_contain_those_of_its_numbers_and_of_a_smaller_one_do_not() {
+        for text in [
+            "-x",
+            "x^3",
+            "x^-2",
+            "sqrt(x)",
+            "sin(x)",
+            "cos(x)",
+            "exp(x)",
+            "exp(-3*x)",
+            "abs(x - 1)",
+            "x/(1 + x)",
+            "min(x, 2 - x)",
+            "max(x, 2 - x)",
+            "2 - x*x",
+        ] {
+            let function = parse(text);
+            for (centre, radius) in [(1.0, 0.25), (1.5, 1e-3), (0.75, 0.25)] {
+                let contains_all = |of: f64| {
+                    let ball = function.evaluate([Ball::around(centre, of), Ball::from(0)]);
+                    (-4..=4).all(|k| {
+                        let value = function.at([centre + radius * f64::from(k) / 4.0, 0.0]);
+                        ball.lower() <= value && value <= ball.upper()
+                    })
+                };
+                assert!(contains_all(radius), "{text} at {centre} within {radius}");
+                assert!(!contains_all(radius / 1000.0), "control: {text} at {centre}");
+            }
         }
     }
 

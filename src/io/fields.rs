@@ -163,3 +163,96 @@ fn contact_csv(s: &Solution) -> Result<String, NotFinite> {
     let names: Vec<&str> = named.iter().map(|(name, _)| *name).collect();
     csv::table(&[&["arc", "x", "y"], &names[..], &["boundary"]].concat(), &rows)
 }
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+    use crate::io::vtu::reader::Reader;
+    use crate::kernel::{Material, Plane};
+    use crate::model::{Condition, Degree, Diagonal, Rectangle};
+    use crate::solve::{Method, Settings, solve};
+
+    /// A block with two surfaces, pressed on a floor at one end.
+    fn solved() -> (Problem, Solution) {
+        let cells = Rectangle { width: 2.0, height: 1.0, nx: 4, ny: 2, diagonal: Diagonal::Left };
+        let surfaces = [("hard".to_owned(), vec![0, 3]), ("soft".to_owned(), vec![5])];
+        let mesh = cells.mesh().unwrap().with_names(surfaces.into(), [].into()).unwrap();
+        let problem = Problem::of(mesh, Material::lame(1.5, 1.0, Plane::Strain))
+            .with("top", Condition::displacement(|_| 0.01, |[x, _]| 0.02 * x - 0.03))
+            .with("bottom", Condition::contact(|[x, _]| 0.001 * x));
+        let method = Method { degree: Degree::Two, ..Method::default() };
+        let (solution, _) = solve(&problem, &method, &Settings::default()).unwrap();
+        (problem, solution)
+    }
+
+    #[test]
+    fn each_array_of_the_solution_has_the_numbers_of_its_name() {
+        let (problem, s) = solved();
+        let indicators: Vec<f64> = (0..16).map(|t| f64::from(t) + 0.5).collect();
+        let file = solution_vtu(&s, &problem, Some(&indicators)).unwrap();
+        let reader = Reader::new(std::str::from_utf8(&file).unwrap()).unwrap();
+        let array = |section: &str, name: &str| -> Vec<f64> {
+            let arrays = reader.arrays(section);
+            let array = arrays.iter().find(|array| array.name() == Some(name)).unwrap();
+            reader.numbers(array, 1 << 10).unwrap()
+        };
+        let of_cell = |name: &str| array("CellData", name);
+        let (stress, von_mises) = (of_cell("stress"), of_cell("von_mises"));
+        for (t, (own, zz)) in s.stress.iter().enumerate() {
+            let [xx, yy, xy] = own.components();
+            assert_eq!(stress[6 * t..6 * t + 6], [xx, yy, *zz, xy, 0.0, 0.0]);
+            let squares = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
+            // Some ten roundings.
+            let expected = (squares / 2.0 + 3.0 * xy * xy).sqrt();
+            assert_relative_eq!(von_mises[t], expected, max_relative = 1e-13);
+        }
+        let surface = of_cell("surface");
+        let expected = |t: usize| {
+            [(0, 1.0), (3, 1.0), (5, 2.0)].iter().find(|(of, _)| *of == t).map_or(0.0, |of| of.1)
+        };
+        assert!((0..16).all(|t| surface[t] == expected(t)), "{surface:?}");
+        assert_eq!(of_cell("error_bound"), indicators);
+        let of_point = |name: &str| array("PointData", name);
+        let displacement = of_point("displacement");
+        let (nodal, first, second) =
+            (of_point("nodal_stress"), of_point("principal_1"), of_point("principal_2"));
+        for (node, u) in s.displacement.iter().enumerate() {
+            assert_eq!(displacement[3 * node..3 * node + 3], [u[0], u[1], 0.0]);
+            let [xx, yy, _, xy] = [0, 1, 2, 3].map(|c| nodal[6 * node + c]);
+            let size = xx.abs() + yy.abs() + xy.abs();
+            assert!(first[node] >= second[node]);
+            assert!((first[node] + second[node] - xx - yy).abs() <= 1e-13 * size);
+            assert!(
+                (first[node] * second[node] - (xx * yy - xy * xy)).abs() <= 1e-13 * size * size
+            );
+        }
+        // Control: the principal stresses are two.
+        assert!(first.iter().zip(&second).any(|(a, b)| a > b));
+    }
+
+    #[test]
+    fn each_column_of_the_contact_has_the_numbers_of_its_name() {
+        let (_, s) = solved();
+        let text = contact_csv(&s).unwrap();
+        let mut rows = text.lines().map(|line| line.split(',').collect::<Vec<&str>>());
+        let names = rows.next().unwrap();
+        let mut apart = 0;
+        for (row, point) in rows.zip(s.contact_points().into_iter().flatten()) {
+            let number = |name: &str| -> f64 {
+                row[names.iter().position(|of| *of == name).unwrap()].parse().unwrap()
+            };
+            let found =
+                ["arc", "x", "y", "u_n", "gap", "sigma_n", "lambda", "pressure"].map(number);
+            let [x, y] = s.nodes[point.node.unwrap()];
+            let [_, uy] = s.displacement[point.node.unwrap()];
+            let expected = [x, x, y, -uy, point.gap, point.sigma_n, point.lambda, point.pressure];
+            for (found, expected) in found.into_iter().zip(expected) {
+                assert!((found - expected).abs() <= 1e-15, "{found} {expected}");
+            }
+            apart += i32::from(point.lambda != -point.pressure && point.gap != 0.0);
+        }
+        assert!(apart > 2, "control: columns are not the same");
+    }
+}

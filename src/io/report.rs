@@ -84,3 +84,19 @@ fn stretches(results: &Results) -> String {
 fn escaped(text: &str) -> String {
     quote::on_page(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::result::tests::everything;
+
+    #[test]
+    fn a_stretch_goes_from_its_start_to_its_end() {
+        let found = stretches(&everything());
+        let row = "<tr><th>floor</th><td>(2.41, 2.51)</td><td>(2.57, 2.63)</td></tr>";
+        assert!(found.contains(row), "{found}");
+        let mut open = everything();
+        open.contact[0].force = 0.0;
+        assert_eq!(stretches(&open), "");
+    }
+}

@@ -197,6 +197,9 @@ impl Results {
         for part in &mut self.contact {
             let [x, y] = &mut part.resultant;
             [&mut part.force, &mut part.moment, x, y].into_iter().for_each(times);
+            if let Some(friction) = &mut part.friction {
+                [&mut friction.shear, &mut friction.dissipated].into_iter().for_each(times);
+            }
         }
         if let Some(b) = &mut self.balance {
             let all = [&mut b.strain, &mut b.loads, &mut b.supports, &mut b.contact];
@@ -496,8 +499,144 @@ impl From<&Result<Continuous, CertifyError>> for ContinuousCertificate {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
+    use approx::assert_relative_eq;
+
     use super::*;
+
+    /// All that a result may have, each number another one.
+    const EVERYTHING: &str = r#"{
+        "version": "0.1.0", "schema": 3, "title": "everything", "verdict": "proved",
+        "units": { "length": "cm", "force": "kN" }, "thickness": 1.5,
+        "materials": [{ "surfaces": [], "young": 210.5, "poisson": 0.31, "plane": "strain" }],
+        "mesh": { "vertices": 101, "triangles": 103, "dofs": 202, "contact_edges": 107, "h_max": 0.109 },
+        "gamma": { "gamma0": 0.0111, "limit": 0.113, "kappa": 0.127, "limiting_edge": [[1.31, 1.37], [1.39, 1.49]] },
+        "newton": {
+            "iterations": 11, "residuals": [0.3, 2e-12], "residual": 2e-12, "factorizations": 13, "status": "converged"
+        },
+        "method": {
+            "route": "condensed", "predicted_operations": 17.0, "condition": 1900.0, "forward_error": 3e-13, "threads": 2, "slides": 1
+        },
+        "play": [{ "along": [0.6, 0.8], "least": -0.151, "most": 0.157 }],
+        "quantities": {
+            "a_uu": 16.3, "elastic_energy": 8.15, "work": 16.7, "max_displacement": 0.173, "contact_force": 179.0,
+            "contact_resultant": [18.1, 191.0], "contact_length": 19.3, "peak_pressure": 19.7, "reactions": { "top": [19.9, -211.0] }
+        },
+        "contact": [{
+            "boundary": "floor", "force": 22.3, "resultant": [22.7, 22.9], "moment": 23.3, "length": 2.39,
+            "stretches": [[[2.41, 2.51], [2.57, 2.63]]], "peak_pressure": 26.9, "peak_at": [2.71, 2.77],
+            "penetration": 0.0281, "penetration_at": [2.83, 2.93], "opening": 0.0307,
+            "friction": {
+                "shear": 31.1, "sticks": 3.13, "slides": 3.17, "slip": 0.0331, "slip_at": [3.37, 3.47], "dissipated": 34.9, "across_gaps": 0.0353
+            }
+        }],
+        "stress": {
+            "von_mises": { "value": 359.0, "at": [3.67, 3.73] }, "principal_max": { "value": 37.9, "at": [3.83, 3.89] },
+            "principal_min": { "value": -39.7, "at": [4.01, 4.09] }, "hoop_max": { "value": 41.9, "at": [4.21, 4.31] },
+            "hoop_min": { "value": -43.3, "at": [4.39, 4.43] }
+        },
+        "reaction_moments": { "top": 449.0 },
+        "balance": { "strain": 45.7, "loads": 46.1, "supports": 46.3, "contact": 46.7, "imbalance": 4.7e-6 },
+        "probes": [[4.79, 4.87, 0.0491, 0.0499]],
+        "certificate": {
+            "discrete": {
+                "radius": 5.03e-9, "relative": 5.09e-11, "pressure": 5.21e-9, "unique": true, "rigorous": true,
+                "intervals": {
+                    "a_uu": [16.2, 16.4], "max_displacement": [0.172, 0.174],
+                    "contact": [{ "boundary": "floor", "force": [22.2, 22.4], "resultant": [[22.6, 22.8], [22.85, 22.95]] }],
+                    "reactions": { "top": [[19.8, 20.1], [-212.0, -210.0]] }
+                }
+            },
+            "continuous": {
+                "bound": 0.523, "relative": 0.0541, "of_solution": 0.2615, "potential_energy": [-54.7, -55.7],
+                "compliance": [56.3, 56.9], "rigorous": true, "mean_stress": 5.71,
+                "quantities": [
+                    { "name": "contact force", "boundary": "floor", "interval": [21.01, 23.99], "value": 22.3, "rigorous": true },
+                    { "name": "peak pressure", "boundary": "floor", "interval": [25.1, null], "value": 26.9, "rigorous": true }
+                ],
+                "zones": [
+                    { "boundary": "floor", "from": 0.577, "to": 0.587, "ends": [[5.93, 5.99], [6.01, 6.07]], "force_at_most": 0.613 },
+                    { "boundary": "floor", "from": 0.617, "to": 0.619, "ends": [[6.31, 6.41], [6.43, 6.47]], "opening_at_most": 0.0653 }
+                ]
+            }
+        },
+        "adapt": {
+            "target": 0.0659, "met": true, "level": 1, "levels": [
+                { "unknowns": 661, "triangles": 673, "newton_steps": 12, "bound": 0.677, "relative": 0.0683 },
+                { "unknowns": 691, "triangles": 701, "newton_steps": 14, "bound": 0.709, "relative": 0.0541 }
+            ]
+        },
+        "errors": { "energy": 7.19, "h1": 7.27, "l2": 7.33, "contact_residual": 7.39, "normal_stress": 7.43 },
+        "seconds": { "read": 0.0751, "assemble": 0.0757, "solve": 7.61, "certify": 0.0769, "write": 0.0 }
+    }"#;
+
+    pub fn everything() -> Results {
+        serde_json::from_str(EVERYTHING).unwrap()
+    }
+
+    /// The numbers of a value by their paths.
+    fn numbers(value: &Value, path: &str, found: &mut BTreeMap<String, f64>) {
+        match value {
+            Value::Number(number) => {
+                found.insert(path.to_owned(), number.as_f64().unwrap());
+            }
+            Value::Array(items) => {
+                (0..).zip(items).for_each(|(i, item)| numbers(item, &format!("{path}.{i}"), found));
+            }
+            Value::Object(members) => {
+                members
+                    .iter()
+                    .for_each(|(key, member)| numbers(member, &format!("{path}.{key}"), found));
+            }
+            _ => {}
+        }
+    }
+
+    #[test]
+    fn a_thickness_multiplies_forces_moments_and_energies_and_nothing_else() {
+        let all = |results: &Results| {
+            let mut found = BTreeMap::new();
+            numbers(&serde_json::to_value(results).unwrap(), "", &mut found);
+            found
+        };
+        let mut results = everything();
+        let before = all(&results);
+        results.of_thickness(4.0);
+        let after = all(&results);
+        let is_of_the_body = |path: &str| {
+            let starts = |starts: &[&str]| starts.iter().any(|start| path.starts_with(start));
+            let of_contact =
+                ["force", "resultant", "moment", "friction.shear", "friction.dissipated"];
+            let of_quantities = [
+                ".quantities.a_uu",
+                ".quantities.elastic_energy",
+                ".quantities.work",
+                ".quantities.contact_force",
+                ".quantities.contact_resultant",
+                ".quantities.reactions",
+            ];
+            let of_certificate = [
+                ".certificate.discrete.intervals.a_uu",
+                ".certificate.discrete.intervals.contact",
+                ".certificate.discrete.intervals.reactions",
+                ".certificate.continuous.potential_energy",
+                ".certificate.continuous.compliance",
+                ".certificate.continuous.quantities.0",
+            ];
+            of_contact.iter().any(|what| path.starts_with(&format!(".contact.0.{what}")))
+                || starts(&of_quantities)
+                || starts(&of_certificate)
+                || starts(&[".reaction_moments", ".balance"]) && !path.ends_with("imbalance")
+                || path.ends_with("force_at_most")
+        };
+        assert_eq!(before.keys().collect::<Vec<_>>(), after.keys().collect::<Vec<_>>());
+        for (path, number) in &before {
+            let expected = if is_of_the_body(path) { 4.0 * number } else { *number };
+            // Ends of intervals are rounded outwards.
+            assert_relative_eq!(after[path], expected, max_relative = f64::EPSILON);
+        }
+        assert!(before.keys().filter(|path| is_of_the_body(path)).count() > 30);
+    }
 
     /// A file that has what every one has.
     const SAMPLE: &str = r#"{
@@ -517,6 +656,15 @@ mod tests {
 
     fn sample() -> Results {
         serde_json::from_str(SAMPLE).unwrap()
+    }
+
+    #[test]
+    fn the_size_of_a_mesh_is_its_largest_diameter() {
+        let vertices = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [3.0, 4.0]];
+        let mesh = Mesh::new(vertices, vec![[0, 1, 2], [1, 3, 2]], []).unwrap();
+        let sizes = MeshSizes::new(&mesh, 9, 2);
+        assert_relative_eq!(sizes.h_max, 20.0_f64.sqrt());
+        assert_eq!((sizes.vertices, sizes.triangles, sizes.dofs), (4, 2, 18));
     }
 
     #[test]

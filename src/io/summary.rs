@@ -678,6 +678,49 @@ fn written(files: &[PathBuf]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::io::result::tests::everything;
+
+    #[test]
+    fn each_number_of_the_summary_is_that_of_its_words() {
+        let lines = lines_of(&everything(), true);
+        let lines: Vec<String> =
+            lines.into_iter().map(|(name, text)| format!("{name}: {text}")).collect();
+        assert_eq!(lines, SUMMARY);
+        // A stress that rounding makes of the displacement is none.
+        let mut results = everything();
+        results.stress.as_mut().unwrap().von_mises.value = 1e-12;
+        let lines = lines_of(&results, false);
+        let of_rounding = "von Mises up to 0 kN/cm^2 at (3.67, 3.73)";
+        assert!(lines.iter().any(|(_, text)| text == of_rounding), "{lines:?}");
+    }
+
+    /// With the numbers of the result, to four digits.
+    const SUMMARY: [&str; 24] = [
+        "contact: floor: force 22.3 kN, proved between 21 and 24; components (22.7, 22.9), length 2.39 cm",
+        ": peak pressure 26.9 kN/cm^2 at (2.71, 2.77)",
+        ": friction 31.1 kN, sticks on 3.13 cm, slides on 3.17 cm, by up to 0.0331 cm at (3.37, 3.47)",
+        ": floor: moment 23.3 kN cm, penetration 0.0281 cm at (2.83, 2.93), largest opening 0.0307 cm",
+        "stress: von Mises up to 359 kN/cm^2 at (3.67, 3.73)",
+        ": principal from -39.7 kN/cm^2 at (4.01, 4.09) to 37.9 kN/cm^2 at (3.83, 3.89)",
+        ": hoop from -43.3 kN/cm^2 at (4.39, 4.43) to 41.9 kN/cm^2 at (4.21, 4.31)",
+        "reactions: top: (19.9, -211) kN, moment 449 kN cm",
+        "displacement: up to 0.173 cm",
+        "remark: the body can still move along (0.6, 0.8), from -0.151 cm to 0.157 cm: no support and no obstacle that it presses on stops it. One displacement of many is shown, the smallest; in reality friction would decide",
+        "error: energy error at most 2.7 % of the energy norm: proved",
+        ": at most 5.4 % of the energy norm for the displacement pushed out of the obstacle, as in certificate.json",
+        "adapted: target 6.6 % met; 2 levels: 6.8 % 5.4 %",
+        "errors: energy 7.19, H1 7.27, L2 7.33, contact pressure 7.39, normal stress 7.43",
+        "mesh: 103 P1 triangles, 202 unknowns, 107 contact edges, h = 0.109",
+        "material: the whole body: E = 210.5, nu = 0.31, plane strain",
+        "coercivity: gamma0 = 0.0111 (limit 0.113 at the edge (1.31, 1.37)-(1.39, 1.49)), kappa = 0.127 < 1: coercive",
+        "newton: converged in 11 steps, 13 factorisations, relative residual from 3e-1 to 2.0e-12",
+        "accuracy: condensed route, condition number at least 2e3, relative error of iteration and rounding 3e-13 (energy norm)",
+        "energy: elastic energy 8.15 kN cm, a(u,u) = 16.3 kN cm, L(u) = 16.7 kN cm",
+        "balance: a(u,u) = loads 46.1 kN cm + supports 46.3 kN cm + contact 46.7 kN cm, relative imbalance 5e-6",
+        "time: read 75.1 ms, assemble 75.7 ms, solve 7.61 s, certify 76.9 ms",
+        "proved: the discrete equations have exactly one solution; this is within 1e-10 of it (relative, in the energy norm), rounding included",
+        "solved: exactly for this mesh, to 10 digits, rounding included",
+    ];
 
     #[test]
     fn an_interval_is_printed_around_itself_with_two_digits_of_its_width() {

@@ -520,6 +520,72 @@ impl Sweep {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::io::result::tests::everything;
+    use crate::results::ContactBoundary;
+
+    #[test]
+    fn each_cell_has_the_number_of_its_column() {
+        let mut results = everything();
+        let second = ContactBoundary {
+            boundary: "wall".to_owned(),
+            peak_pressure: 1.5,
+            ..results.contact[0].clone()
+        };
+        results.contact.push(second);
+        let found: Vec<String> = cells(&results, &csv::number)
+            .into_iter()
+            .map(|(name, value)| format!("{name} {value}"))
+            .collect();
+        assert_eq!(found, CELLS);
+    }
+
+    const CELLS: [&str; 26] = [
+        "verdict proved",
+        "gamma0 0.0111",
+        "kappa 0.127",
+        "newton_steps 11",
+        "contact_force 179.0",
+        "contact_length 19.3",
+        "peak_pressure 26.9",
+        "max_von_mises 359.0",
+        "max_displacement 0.173",
+        "elastic_energy 8.15",
+        "energy_error 7.19",
+        "remarks 1",
+        "floor.force 22.3",
+        "floor.length 2.39",
+        "floor.peak_pressure 26.9",
+        "wall.force 22.3",
+        "wall.length 2.39",
+        "wall.peak_pressure 1.5",
+        "floor.force_low 22.2",
+        "floor.force_high 22.4",
+        "floor.true_force_low 21.01",
+        "floor.true_force_high 23.99",
+        "top.reaction_x 19.9",
+        "top.reaction_y -211.0",
+        "probe_1.u_x 0.0491",
+        "probe_1.u_y 0.0499",
+    ];
+
+    #[test]
+    fn curves_are_drawn_over_the_key_that_takes_most_values() {
+        let values = |rows: &[[&str; 2]]| -> Vec<Vec<String>> {
+            rows.iter().map(|row| row.map(str::to_owned).to_vec()).collect()
+        };
+        let sweep = |rows: &[[&str; 2]]| Sweep {
+            title: String::new(),
+            keys: vec!["load".to_owned(), "gap".to_owned()],
+            values: values(rows),
+            results: Vec::new(),
+            with_files: false,
+        };
+        let rows = [["[0, -1]", "1"], ["[0, -1]", "2"], ["[0, -1]", "3"], ["[0, -2]", "1"]];
+        assert_eq!(sweep(&rows).abscissa(), Some((1, vec![1.0, 2.0, 3.0, 1.0])));
+        let rows = [["[0, -1]", "1"], ["[0, -2]", "1"], ["[0, -4]", "2"]];
+        assert_eq!(sweep(&rows).abscissa(), Some((0, vec![-1.0, -2.0, -4.0])));
+        assert_eq!(sweep(&[["a", "1"], ["b", "1"]]).abscissa(), None);
+    }
 
     fn axis(text: &str) -> ParameterAxis {
         text.parse().unwrap()

@@ -404,6 +404,27 @@ mod tests {
     }
 
     #[test]
+    fn a_traction_of_both_components_counts_by_the_factor_at_most_whatever_the_angle() {
+        for [a, b] in [[1.0, 1.0], [1.0, 2.0], [0.0, 1.0], [3.0, 0.5]] {
+            let factor = turning_factor_of_both::<P2, f64, 6, 3>([a, b], f64::sqrt);
+            let n = edge_mass([a, b]);
+            let square =
+                |[p, q]: [f64; 2]| p * p * n[0][0] + q * q * n[1][1] + 2.0 * p * q * n[0][1];
+            let mut most = 0.0_f64;
+            for (angle, k) in (0..=24).flat_map(|i| (1..40).map(move |k| (i, k))) {
+                let (sine, cosine) = (f64::from(angle) * std::f64::consts::PI / 24.0).sin_cos();
+                // tau is (1, 0) at the start and q (1, 0) at the end, and turned there.
+                let q = -f64::from(k) / 10.0;
+                let turned = square([1.0, cosine * q]) + n[1][1] * (sine * q) * (sine * q);
+                most = most.max(turned / square([1.0, q]));
+            }
+            assert!(most <= factor * (1.0 + 1e-14), "{most} {factor}");
+            // It is attained, by opposite directions and the right q, to what the steps of q leave.
+            assert!(most >= 0.97 * factor, "{most} {factor}");
+        }
+    }
+
+    #[test]
     fn a_uniform_stretch_has_its_own_hoop_strain_also_on_the_axis() {
         a_stretch_is_a_stretch::<P1, 3, 2>();
         a_stretch_is_a_stretch::<P2, 6, 3>();

@@ -284,3 +284,41 @@ const MOST_REACTIONS: usize = 64;
 fn range(ball: PreciseBall) -> Range {
     [ball.lower(), ball.upper()]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::balls::pieces;
+    use super::*;
+    use crate::contact::EdgeRule;
+    use crate::kernel::{Material, Plane};
+    use crate::model::{Condition, Degree, Diagonal, Problem, Rectangle};
+
+    #[test]
+    fn the_energy_in_doubles_is_within_what_is_said_of_its_rounding_and_not_without_that() {
+        let mesh = Rectangle { width: 1.0, height: 1.0, nx: 4, ny: 4, diagonal: Diagonal::Crossed };
+        let problem = Problem::of(mesh.mesh().unwrap(), Material::lame(1.3, 0.7, Plane::Strain))
+            .with("top", Condition::clamped())
+            .with("bottom", Condition::contact(|_| 0.0));
+        let rule = EdgeRule::Exact;
+        let d = Discretization::new(&problem, Degree::Two, |c| c.limit() / 2.0, rule).unwrap();
+        let (system, lines) = (System::new(&d).unwrap(), pieces(&d));
+        let load = vec![[PreciseBall::from(0); 2]; d.space.nodes().len()];
+        for k in 0..20 {
+            let wave = |[x, y]: [f64; 2]| {
+                let (x, y) = (x - 0.3 * f64::from(k), y + 0.1 * f64::from(k));
+                [(1.0 - y) * (3.0 * x + y).sin(), 1e-3 * (x - 2.0 * y).cos()]
+            };
+            let u: Vec<[f64; 2]> = d.space.nodes().iter().map(|x| wave(*x)).collect();
+            let [found, exact] = [Arithmetic::Doubles, Arithmetic::Balls].map(|arithmetic| {
+                let load = (&load[..], arithmetic);
+                let at = EnclosedResidual::new(&system, &lines, (&u, &u), None, load).unwrap();
+                (at.energy, at.off)
+            });
+            let far = |of: PreciseBall| (of - exact.0).magnitude();
+            assert!(exact.1 == 0.0 && exact.0.radius() < 1e-25);
+            assert!(far(PreciseBall::point(found.0.centre())) <= found.0.radius());
+            // Control: it is off by more than the balls of the products are wide.
+            assert!(far(PreciseBall::point(found.0.centre())) > 1e-20);
+        }
+    }
+}

@@ -3,6 +3,8 @@
 
 use std::path::Path;
 
+use approx::assert_relative_eq;
+
 use crate::certify::accepts;
 use crate::common::{case_of, encoded};
 use signorini::certificates::proof::{Certificate, Role};
@@ -101,6 +103,27 @@ fn control_pressures_that_balance_nothing_are_rejected() {
     assert!(found(0.01).unwrap().bound > 10.0 * found(1.0).unwrap().bound);
     // Where there is too much pressure, what is taken back is a tension.
     assert!(matches!(found(100.0), Err(Rejection::Tension { .. })), "{:?}", found(100.0));
+}
+
+#[test]
+fn pressures_out_of_balance_have_the_bound_of_those_that_balance() {
+    let text = format!("{SQUARE}{HALF}");
+    let mut raised = certified(&text, &[]).certificate;
+    // Off the floor, where the pressures count.
+    raised.displacement.iter_mut().for_each(|v| v[1] += 0.2);
+    let bound = |of: &Certificate| of.evaluate::<Ball>().unwrap().bound;
+    let bounds = [0.7, 0.6].map(|factor| {
+        let mut scaled = raised.clone();
+        every_pressure(&mut scaled, factor);
+        let mut balanced = scaled.clone();
+        let state = scaled.balanced::<f64>(scaled.topology().unwrap()).unwrap();
+        state.give(&mut balanced);
+        // The pressures are put in balance in doubles.
+        assert_relative_eq!(bound(&scaled), bound(&balanced), max_relative = 1e-9);
+        bound(&scaled)
+    });
+    // Control: of other pressures it is another.
+    assert!((bounds[0] - bounds[1]).abs() > 1e-3 * bounds[0], "{bounds:?}");
 }
 
 #[test]

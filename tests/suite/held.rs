@@ -2,7 +2,7 @@
 //! equilibrium, and from the same bodies on supports that happen to carry nothing.
 
 use approx::assert_abs_diff_eq;
-use signorini::contact::contact_line;
+use signorini::contact::{Discretization, EdgeRule, contact_line};
 use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
 use signorini::model::{Condition, DataError, Mesh, Obstacle, PointSupport, Problem, Side, Space};
@@ -163,6 +163,24 @@ fn a_block_between_walls_that_it_does_not_touch_is_where_its_displacement_is_lea
                 assert_abs_diff_eq!(play.most.unwrap(), gap - most, epsilon = 1e-3);
             }
             assert!(s.enclosure.is_ok(), "{:?}", s.enclosure.err());
+        }
+    }
+}
+
+#[test]
+fn a_wall_that_no_load_presses_is_left_out_of_the_energy_and_two_walls_may_squeeze() {
+    for degree in DEGREES {
+        for (gaps, is_left_out) in [([None, Some(0.0)], true), ([Some(0.1), Some(0.0)], false)] {
+            let problem = beside_walls(gaps);
+            let rule = EdgeRule::Exact;
+            let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, rule).unwrap();
+            let idle = &d.slides.as_ref().unwrap().idle;
+            let found = d.contact.iter().map(|piece| piece.boundary().to_string()).zip(idle);
+            let found: Vec<(String, bool)> = found.map(|(name, idle)| (name, *idle)).collect();
+            // Control: the floor carries the load.
+            let is_right =
+                |(name, idle): &(String, bool)| *idle == (is_left_out && name != "bottom");
+            assert!(found.len() > 6 && found.iter().all(is_right), "{gaps:?}: {found:?}");
         }
     }
 }

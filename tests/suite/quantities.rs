@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use approx::assert_relative_eq;
 use signorini::certificates::dual::WrongPair;
 use signorini::certificates::forces::{Evidence, Motion, WrongLifting};
 use signorini::certificates::proof::{Certificate, Role};
@@ -298,6 +299,44 @@ fn adapted_to_the_force_it_is_known_to_a_fiftieth_of_a_per_cent_with_ten_thousan
     let whole = |(target, _): &(forces::ForceTarget, _)| target.motion == Motion::Along(None);
     let k = evidence.liftings.iter().position(whole).unwrap();
     assert!(half_width(first[k].clone().unwrap()) > 0.05);
+}
+
+#[test]
+fn a_level_says_half_the_width_of_its_force_over_the_middle() {
+    let target = Target { relative: 1e-4, max_unknowns: 200 };
+    let how = (&Method::default(), &Settings::default());
+    let goal = (target, Some("bottom"));
+    let (_, adapted) = adapt_to(tilted_punch(4), how, goal, &Asked::default(), &|_| {}).unwrap();
+    let [low, high] = interval(&adapted.certified.unwrap(), Name::ContactForce, "bottom");
+    let middle = low / 2.0 + high / 2.0;
+    let said = adapted.levels[adapted.level].force.unwrap();
+    // Three roundings.
+    assert_relative_eq!(said, (high - middle) / middle, max_relative = 1e-12);
+}
+
+#[test]
+fn components_of_a_force_along_an_axis_have_the_sign_that_the_obstacle_pushes_with() {
+    // The obstacle is below, then above: its force on the body points away from it.
+    for (side, other, sign) in [("bottom", "top", 1.0), ("top", "bottom", -1.0)] {
+        let pushed = ["0".to_owned(), format!("{sign} * (0.15*x - 0.2)")];
+        let pushed = pushed.map(|u| Some(expression(&u)));
+        let problem = Problem::of(unit_square(8).mesh().unwrap(), unit_material());
+        let problem = Problem { body_force: [expression("0"), expression("0")], ..problem }
+            .with(other, Condition::Displacement(pushed))
+            .with(side, Condition::Contact { gap: expression("0") });
+        let c = certified(&problem, Degree::One);
+        let force = interval(&c, Name::ContactForce, side);
+        let along = interval(&c, Name::ContactComponent(1), side);
+        assert_eq!(interval(&c, Name::ContactComponent(0), side), [0.0; 2]);
+        let expected = if sign > 0.0 { force } else { [-force[1], -force[0]] };
+        assert_eq!(along, expected);
+        // Control: there is a force, on the side of its interval.
+        let of = |q: &&signorini::certificates::quantities::Quantity| {
+            q.name == Name::ContactComponent(1)
+        };
+        let value = c.quantities.list.iter().find(of).unwrap().value;
+        assert!(force[0] > 0.0 && along[0] <= value && value <= along[1], "{along:?} {value}");
+    }
 }
 
 #[test]

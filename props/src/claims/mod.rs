@@ -28,6 +28,8 @@ pub mod prop_2_1;
 #[cfg(not(kani))]
 pub mod rates;
 #[cfg(not(kani))]
+pub mod revolution;
+#[cfg(not(kani))]
 pub mod tensor;
 pub mod theorem_3_3;
 pub mod theorem_3_4;
@@ -61,6 +63,7 @@ pub fn all() -> Vec<Claim> {
         rates::claim(),
         floating_point::claim(),
         constants::claim(),
+        revolution::claim(),
         variational_inequality::claim(),
         pairs::claim(),
         friction::claim(),
@@ -141,6 +144,7 @@ mod tests {
         every_check_of_row_15_passes "15",
         every_check_of_row_16_passes "16",
         every_check_of_row_17_passes "17",
+        every_check_of_row_18_passes "18",
         every_check_of_row_27_passes "27",
     }
 }

@@ -386,6 +386,53 @@ fn the_reach_is_bounded_by_the_curvature_and_by_the_bodies() {
 }
 
 #[test]
+fn the_scale_of_a_pair_is_the_narrower_side_or_the_least_radius() {
+    let (lower, upper) = (block([0.0, 0.0], [3.0, 0.5]), block([0.0, 0.5], [2.0, 2.0]));
+    let body = |name, map| Body { name, cells: [4, 2], closed: false, map };
+    let blocks = mesh(&[body("lower", &lower), body("upper", &upper)]);
+    let scale = |mesh: &Mesh, pair: &Pair| pair.scale(mesh, &SmoothBoundary::new(mesh)).unwrap();
+    let pair = Pair::new("lower.top", "upper.bottom");
+    assert_abs_diff_eq!(scale(&blocks, &pair), 0.5, epsilon = ROUNDING);
+    let inner = ring([0.1, 0.3], [0.0, PI], 0.0, 0.0);
+    let outer = ring([0.35, 5.0], [0.0, PI], 0.0, 0.0);
+    let body = |name, nx, map| Body { name, cells: [nx, 1], closed: false, map };
+    let rings = mesh(&[body("inner", 20, &inner), body("outer", 24, &outer)]);
+    let pair = Pair::new("inner.bottom", "outer.bottom");
+    assert_abs_diff_eq!(scale(&rings, &pair), 0.1, epsilon = ROUNDING);
+}
+
+#[test]
+fn boundaries_at_an_angle_face_each_other_below_sixty_degrees_only() {
+    // The lower side of the upper body leans by the angle.
+    let faces = |degrees: f64| {
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        let lower = block([0.0, 0.0], [1.0, 1.0]);
+        let upper =
+            move |[s, t]: [f64; 2]| [0.1 + cosine * s - sine * t, 1.02 + sine * s + cosine * t];
+        let body = |name, map| Body { name, cells: [3, 3], closed: false, map };
+        let mesh = mesh(&[body("lower", &lower), body("upper", &upper)]);
+        let pair = Pair::new("lower.top", "upper.bottom").with_reach(1.0);
+        found(&mesh, &pair, Degree::One).is_ok_and(|pieces| !pieces.is_empty())
+    };
+    assert!(faces(0.0) && faces(30.0) && faces(55.0));
+    assert!(!faces(65.0) && !faces(80.0));
+}
+
+#[test]
+fn bodies_touch_where_they_are_no_further_apart_nor_overlap_further_than_edges_are_long() {
+    let touches = |low: f64| {
+        let lower = block([0.0, 0.0], [4.0, 4.0]);
+        let upper = block([0.0, low], [4.0, low + 4.0]);
+        let body = |name, map| Body { name, cells: [8, 8], closed: false, map };
+        let mesh = mesh(&[body("lower", &lower), body("upper", &upper)]);
+        !touching(&mesh, &[Pair::new("lower.top", "upper.bottom")]).is_empty()
+    };
+    // Edges are 1/2 long, the reach is 1.
+    assert!(touches(4.0) && touches(4.4) && touches(3.6));
+    assert!(!touches(4.6) && !touches(3.4) && !touches(3.1));
+}
+
+#[test]
 fn quarters_of_rings_face_each_other_up_to_their_ends() {
     let inner = ring([1.0, 2.002], [0.0, FRAC_PI_2], 0.0, 0.0);
     let outer = ring([1.998, 3.0], [0.0, FRAC_PI_2], 0.0, 0.0);

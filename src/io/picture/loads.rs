@@ -203,3 +203,41 @@ pub(super) fn scale_bar(frame: &PageMap, unit: Option<&str>, [right, y]: Point) 
     let label = anchored("end", words.trim_end(), [left - 6.0, y + 4.0]);
     Group::new().add(stroke(path, GREY, 1.2)).add(label.set("fill", GREY).set("font-size", 12))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::solve::solve;
+
+    #[test]
+    fn arrows_point_as_loads_and_displacements_do_beside_the_largest_of_their_kind() {
+        let text = r#"
+mesh.rectangle = { width = 2, height = 1, nx = 2, ny = 1 }
+material = { lambda = 1, mu = 1 }
+boundary.right.pressure = "0.2"
+boundary.top.traction = ["0.1", "-0.4"]
+boundary.left.displacement = ["0.03", "0.01 - 0.01*y"]
+boundary.bottom.contact = { gap = "0" }
+"#;
+        let case = Case::parse(Path::new("in_a_test.toml"), text, &[]).unwrap();
+        let (s, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
+        let loads = loads(&case, &s);
+        // Of the traction, the longest force, and of (0.03, 0.01), the longest displacement.
+        let (force, motion) = (0.17_f64.sqrt(), 0.001_f64.sqrt());
+        let mut seen = [0; 3];
+        for load in &loads {
+            let [x, y] = s.nodes[load.at];
+            let (kind, expected) = match load.is_motion {
+                true => (0, [0.03 / motion, (0.01 - 0.01 * y) / motion]),
+                false if x == 2.0 && load.arrow[0] < 0.0 => (1, [-0.2 / force, 0.0]),
+                false => (2, [0.1 / force, -0.4 / force]),
+            };
+            assert!(distance(load.arrow, expected) < 1e-14, "{load:?}, expected {expected:?}");
+            assert!(x == [0.0, 2.0, x][kind] && (kind < 2 || y == 1.0), "{load:?}");
+            seen[kind] += 1;
+        }
+        assert!(seen.iter().all(|&count| count > 1), "{seen:?}");
+    }
+}

@@ -31,14 +31,14 @@ pub(in crate::io) fn from_vtu(text: &str) -> Result<(Points, Option<Triangles>),
 }
 
 /// The text of a file, and the tags of two of its elements.
-pub(super) struct Reader<'a> {
+pub(in crate::io) struct Reader<'a> {
     text: &'a str,
     head: &'a str,
     piece: &'a str,
 }
 
 impl<'a> Reader<'a> {
-    pub(super) fn new(text: &'a str) -> Result<Self, String> {
+    pub(in crate::io) fn new(text: &'a str) -> Result<Self, String> {
         let head =
             tag(text, "VTKFile").ok_or("it has no element <VTKFile>; expected a VTU file")?;
         if text.matches("<Piece").count() > 1 {
@@ -53,7 +53,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The arrays of the element `name`.
-    pub(super) fn arrays(&self, name: &str) -> Vec<ArrayText<'a>> {
+    pub(in crate::io) fn arrays(&self, name: &str) -> Vec<ArrayText<'a>> {
         let Some(from) = self.text.find(&format!("<{name}")) else { return Vec::new() };
         let Some((section, _)) = self.text[from..].split_once(&format!("</{name}>")) else {
             return Vec::new();
@@ -147,7 +147,11 @@ impl<'a> Reader<'a> {
     }
 
     /// The numbers of an array, the components of `count` points or cells.
-    pub(super) fn numbers(&self, array: &ArrayText, count: usize) -> Result<Vec<f64>, String> {
+    pub(in crate::io) fn numbers(
+        &self,
+        array: &ArrayText,
+        count: usize,
+    ) -> Result<Vec<f64>, String> {
         let name = quote::cut(array.name().unwrap_or("Points"));
         match attribute(array.attributes, "format") {
             Some("ascii") | None => {
@@ -247,13 +251,13 @@ fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
 }
 
 /// One array of a file: its attributes and its text.
-pub(super) struct ArrayText<'a> {
+pub(in crate::io) struct ArrayText<'a> {
     attributes: &'a str,
     text: &'a str,
 }
 
 impl<'a> ArrayText<'a> {
-    fn name(&self) -> Option<&'a str> {
+    pub(in crate::io) fn name(&self) -> Option<&'a str> {
         attribute(self.attributes, "Name")
     }
 

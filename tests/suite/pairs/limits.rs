@@ -1,6 +1,8 @@
 //! A stiff body is a rigid obstacle, steps of Newton's method are few for all ratios of moduli, and the names of the bodies do not
 //! matter.
 
+use approx::assert_abs_diff_eq;
+
 use super::*;
 use crate::common::DEGREES;
 
@@ -41,6 +43,46 @@ fn a_stiff_body_acts_as_a_rigid_obstacle() {
         assert!(off <= 1e-8, "{degree:?}: {off:e}");
         // The control: a body that is not so stiff gives way.
         assert!((force(1e3) - obstacle).abs() / obstacle > 1e-5);
+    }
+}
+
+#[test]
+fn both_sides_of_a_pair_have_the_same_numbers_and_opposite_directions() {
+    for degree in DEGREES {
+        let s = proved(&tilted([4, 3], 2.0, false), &method(degree));
+        let points = s.contact_points();
+        let (first, second) = points.split_at(s.pieces.len());
+        assert_eq!(first.len(), second.len());
+        let (mut opening, mut varies) = (f64::NEG_INFINITY, 0.0_f64);
+        for ((a, b), piece) in first.iter().zip(second).zip(&s.pieces) {
+            let stress = piece.sigma_n(&s.displacement);
+            // The points go along the piece: its stress at the ends is that of the first and of the last.
+            let ends = [a[0].sigma_n, a[a.len() - 1].sigma_n];
+            assert_abs_diff_eq!(ends[..], stress[..], epsilon = 1e-14);
+            varies = varies.max((stress[1] - stress[0]).abs());
+            for (a, b) in a.iter().zip(b) {
+                assert_eq!((a.boundary, b.boundary), ("lower.top", "upper.bottom"));
+                let [d, e] = [a.direction, b.direction];
+                assert_eq!(d, e.map(|c| -c));
+                let [u, v] = [a.displacement, b.displacement];
+                // A dozen roundings of numbers below 1.
+                assert_abs_diff_eq!(
+                    a.u_n,
+                    (u[0] - v[0]) * d[0] + (u[1] - v[1]) * d[1],
+                    epsilon = 1e-14
+                );
+                assert_eq!(
+                    (a.u_n, a.gap, a.sigma_n, a.lambda),
+                    (b.u_n, b.gap, b.sigma_n, b.lambda)
+                );
+                opening = opening.max(a.gap - a.u_n);
+            }
+        }
+        let told = s.boundaries[0].opening.unwrap();
+        // Between the nodes P2 may open further.
+        assert!(told >= opening && (degree == Degree::Two || told <= opening + 1e-15));
+        // Control: the bodies are apart somewhere, and the stress of P2 is not the same at both ends.
+        assert!(opening > 1e-3 && (degree == Degree::One || varies > 1e-3));
     }
 }
 

@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 
+use approx::abs_diff_eq;
 use signorini::contact::Piece;
 use signorini::kernel::triangle::on_edge;
 use signorini::kernel::{Material, Plane};
@@ -14,8 +15,8 @@ use signorini::model::{Condition, Diagonal, Problem, Rectangle};
 use signorini::nalgebra::Vector2;
 use signorini::solve::{Method, discretize};
 
-use super::{Outcome, properties, text};
-use crate::common::{Random, moved_to};
+use super::{Outcome, field, for_all, properties, text};
+use crate::common::moved_to;
 
 /// A block of 2 x 1 whose lower side is bent upwards: 4 edges with a bend of some 10 degrees at each vertex.
 fn bent(plane: Plane) -> Result<Problem, String> {
@@ -36,10 +37,8 @@ fn functionals_on(degree: Degree, plane: Plane, directions: Directions) -> Outco
     if d.contact.iter().all(|edge| edge.geometry.along_normal) {
         return Err("the direction of contact turns nowhere".to_owned());
     }
-    let mut random = Random(2013);
-    for edge in &d.contact {
-        let v = random.field(d.space.nodes().len());
-        let vectors = d.space.on_triangle(edge.edge().triangle, &v);
+    let of_edge = |edge: &Piece, v: &[[f64; 2]]| {
+        let vectors = d.space.on_triangle(edge.edge().triangle, v);
         let triangle = problem.mesh.triangle(edge.edge().triangle);
         let material = problem.material.of(edge.edge().triangle);
         let n = directions(edge);
@@ -51,12 +50,13 @@ fn functionals_on(degree: Degree, plane: Plane, directions: Directions) -> Outco
                 material.stress(degree.displacement_gradient(l, barycentric, |j| vectors[j]));
             n[a].dot(&sigma.traction(edge.normal()))
         });
-        let near = |found: f64, expected: f64| (found - expected).abs() <= 1e-11;
-        let found = edge.sigma_n(&v);
+        // Some hundred roundings of numbers up to 100.
+        let near = |found: f64, expected: f64| abs_diff_eq!(found, expected, epsilon = 1e-11);
+        let found = edge.sigma_n(v);
         if !(near(found[0], stress[0]) && near(found[1], stress[1])) {
             return Err(format!("s(v) = {found:?}, by definition {stress:?}"));
         }
-        let p = edge.p(&v);
+        let p = edge.p(v);
         let nodes = degree.edge_nodes(edge.edge().local);
         for (a, s) in degree.edge_positions().into_iter().enumerate() {
             let along = (1.0 - s) * stress[0] + s * stress[1];
@@ -66,8 +66,10 @@ fn functionals_on(degree: Degree, plane: Plane, directions: Directions) -> Outco
                 return Err(format!("P(v) = {}, by definition {expected}", p[a]));
             }
         }
-    }
-    Ok(())
+        Ok(())
+    };
+    let nodes = d.space.nodes().len();
+    for_all(4, field(nodes), |v| d.contact.iter().try_for_each(|edge| of_edge(edge, &v)))
 }
 
 fn facets(edge: &Piece) -> Vec<Vector2<f64>> {
@@ -100,9 +102,7 @@ fn kappa_on(degree: Degree, factor: fn(f64) -> f64) -> Outcome {
     if !((d.coercivity.constant - most).abs() <= 1e-13 * most) {
         return Err(format!("C_h = {}, by definition {most}", d.coercivity.constant));
     }
-    let mut random = Random(2013);
-    for _ in 0..200 {
-        let v = random.field(d.space.nodes().len());
+    for_all(200, field(d.space.nodes().len()), |v| {
         let mut sum = 0.0;
         for edge in &d.contact {
             let [start, end] = edge.sigma_n(&v);
@@ -113,8 +113,8 @@ fn kappa_on(degree: Degree, factor: fn(f64) -> f64) -> Outcome {
         if !(sum <= allowed) {
             return Err(format!("(11) fails: {sum:e}, {allowed:e} is allowed"));
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 properties! {

@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use proptest::array::uniform2;
 use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
 use signorini::model::graded_quadrature::{Features, Rule};
@@ -20,8 +21,8 @@ use signorini::study::Ladder;
 use signorini::study::exact::{Corner, Kind, Singular, Smooth};
 use signorini::study::ladder::{fitted_slope, rates};
 
-use super::{Outcome, properties, text};
-use crate::common::{Random, constant, unit_material};
+use super::{Outcome, for_all, properties, text};
+use crate::common::{constant, unit_material};
 
 /// A place of the unit square on its way to a mesh: the rectangle's, or the trapezoid's of an angle.
 type Map = Box<dyn Fn([f64; 2]) -> [f64; 2]>;
@@ -80,14 +81,15 @@ fn laid_out(
 /// Rectangles and trapezoids, refined and moved at random, are laid out as they are said to be, where a trapezoid has
 /// `turned` times its angle.
 fn structured(turned: f64) -> Outcome {
-    let mut random = Random(2013);
-    for diagonal in [Diagonal::Left, Diagonal::Right, Diagonal::Crossed] {
-        for factor in [1, 2, 3] {
-            let [nx, ny] = [1, 1].map(|least: usize| least + random.below(4));
-            let [width, height] = [1.0, 0.1].map(|unit| unit * (1 + random.below(40)) as f64);
+    let diagonals = [Diagonal::Left, Diagonal::Right, Diagonal::Crossed];
+    // Cells, sides in units and tenths, the angle in hundredths.
+    let data = || (uniform2(1_usize..=4), uniform2(1..=40), 160..280, uniform2(0_u64..1000));
+    for (diagonal, factor) in diagonals.into_iter().flat_map(|d| [1, 2, 3].map(|n| (d, n))) {
+        for_all(1, data(), |([nx, ny], [width, height], angle, seeds)| {
+            let (width, height) = (f64::from(width), 0.1 * f64::from(height));
             let rectangle = Rectangle { width, height, nx, ny, diagonal };
             let n = nx;
-            let omega = (1.6 + 0.01 * random.below(120) as f64) * turned;
+            let omega = 0.01 * f64::from(angle) * turned;
             let lean = 1.0 / (omega / turned).tan();
             let bodies: [(Structured, [usize; 2], bool, Map, Map); 2] = [
                 (
@@ -107,15 +109,15 @@ fn structured(turned: f64) -> Outcome {
             ];
             for (body, cells, crossed, map, back) in &bodies {
                 let cells = cells.map(|n| factor * n);
-                for amount in [0.0, 0.2] {
-                    let seed = random.below(1000) as u64;
+                for (amount, seed) in [0.0, 0.2].into_iter().zip(seeds) {
                     let moved = (amount > 0.0).then_some(Perturbation { amount, seed });
                     let mesh = body.refined(factor).mesh(moved).map_err(text)?;
                     laid_out(&mesh, cells, *crossed, map, back, amount)
                         .map_err(|why| format!("{body:?} refined by {factor}, {moved:?}: {why}"))?;
                 }
             }
-        }
+            Ok(())
+        })?;
     }
     Ok(())
 }
@@ -309,10 +311,8 @@ fn same_loads(one: [f64; 2], other: [f64; 2]) -> Outcome {
 
 /// int_0^1 \[s - c\]+ ds = (1 - c)^2/2 by a rule on an edge, near its ends too, that is told to cut at c, or not.
 fn kinks(told: bool) -> Outcome {
-    let mut random = Random(2013);
-    for k in 0..500 {
-        let c = 0.5 + random.next() / 2.0;
-        let c = [c, 1e-7 + 1e-2 * c, 1.0 - 1e-7 - 1e-2 * c][k % 3];
+    for_all(500, (0.0..1.0, 0_usize..3), |(c, side)| {
+        let c = [c, 1e-7 + 1e-2 * c, 1.0 - 1e-7 - 1e-2 * c][side];
         let (mut sum, mut total) = (0.0, 0.0);
         Rule::new(Features::default(), 4).on_edge(
             [[0.5, 1.0], [0.5, 3.0]],
@@ -326,8 +326,8 @@ fn kinks(told: bool) -> Outcome {
         if !(near(sum, (1.0 - c) * (1.0 - c) / 2.0) && near(total, 1.0)) {
             return Err(format!("a kink at {c}: {sum:e}"));
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 properties! {

@@ -3,8 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use signorini::contact::EdgeRule;
+use proptest::array::{uniform2, uniform3, uniform6};
 use signorini::contact::contact_line::Coercivity;
+use signorini::contact::{Discretization, EdgeRule};
 use signorini::kernel::DoubleDouble;
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::element::displacement_gradient;
@@ -16,8 +17,8 @@ use signorini::solve::{ContactQuadrature, Gamma0, Method, SolveError, discretize
 use signorini::study::{Errors, ExactSolution};
 
 use super::bodies::small_bodies;
-use super::{Outcome, properties, text};
-use crate::common::{Random, conditions, constant, unit_square};
+use super::{Outcome, field, for_all, properties, text};
+use crate::common::{conditions, constant, unit_square};
 
 /// kappa of a problem, where it is not refused.
 fn kappa(degree: Degree, problem: &Problem, gamma0: Gamma0) -> Result<Option<f64>, String> {
@@ -175,14 +176,10 @@ where
 
 /// `degree` is that of the energy (2).
 fn integrals_scale(degree: i32) -> Outcome {
-    let mut random = Random(7);
-    for _ in 0..2000 {
-        let p = [0; 3].map(|_| random.next());
-        let k = random.below(121) as i32 - 60;
+    for_all(2000, (uniform3(-1.0..1.0), -60..=60), |(p, k)| {
         scales::<P1, 3, 2>([p[0], p[1]], k, degree)?;
-        scales::<P2, 6, 3>(p, k, degree)?;
-    }
-    Ok(())
+        scales::<P2, 6, 3>(p, k, degree)
+    })
 }
 
 /// A displacement of degree 2: coefficients of 1, x, y, x^2, xy, y^2 for each component. P2 has it exactly.
@@ -224,19 +221,26 @@ impl ExactSolution for Quadratic {
 fn errors_on(problem: &Problem, sign: f64, inverted: bool) -> Outcome {
     let method = Method { degree: Degree::Two, ..Method::default() };
     let d = discretize(problem, &method).map_err(text)?;
-    let mut random = Random(2013);
-    let exact = Quadratic {
-        material: *problem.material.of(0),
-        coefficients: [0, 1].map(|_| std::array::from_fn(|_| random.next())),
-        gap: 100.0 * random.next(),
-    };
+    let data = (uniform2(uniform6(-1.0..1.0)), -100.0..100.0, field(d.space.nodes().len()));
+    for_all(1, data, |(coefficients, gap, v)| {
+        let exact = Quadratic { material: *problem.material.of(0), coefficients, gap };
+        errors_from(&d, &exact, v, sign, inverted)
+    })
+}
+
+fn errors_from(
+    d: &Discretization,
+    exact: &Quadratic,
+    v: Vec<[f64; 2]>,
+    sign: f64,
+    inverted: bool,
+) -> Outcome {
     let nodes = d.space.nodes();
     let u: Vec<[f64; 2]> = nodes.iter().map(|&x| exact.displacement(x)).collect();
     // Far from the obstacle, or far behind it: P has one sign.
-    let v = random.field(nodes.len()).into_iter().map(|[x, y]| [x, y + sign * 1000.0]);
-    let v: Vec<[f64; 2]> = v.collect();
+    let v: Vec<[f64; 2]> = v.into_iter().map(|[x, y]| [x, y + sign * 1000.0]).collect();
     let e: Vec<[f64; 2]> = u.iter().zip(&v).map(|(u, v)| [u[0] - v[0], u[1] - v[1]]).collect();
-    let found = Errors::new(&d.space, &d.contact, &v, &exact);
+    let found = Errors::new(&d.space, &d.contact, &v, exact);
     let mut expected = Errors { energy: d.strain_energy(&e), ..Errors::default() };
     for (triangle, nodes) in d.space.triangles::<6>() {
         let local = nodes.map(|node| Vector2::from(e[node]));

@@ -3,15 +3,19 @@
 
 use std::collections::BTreeMap;
 
+use proptest::array::uniform2;
+use proptest::collection::vec;
+use proptest::option::weighted;
+use proptest::strategy::{Just, Strategy};
 use signorini::contact::{Discretization, EdgeRule};
 use signorini::linear::matrix;
 use signorini::linear::matrix::{LowerTriangle, Neighbours, Numbering};
 
 use super::bodies::on_bodies;
-use super::{Outcome, properties, text};
-use crate::common::Random;
+use super::{Outcome, any_order, field, for_all, properties, text};
 
 /// An order of the nodes, with a quarter of all components prescribed and a third of the nodes turned.
+#[derive(Debug)]
 struct Unknowns {
     order: Vec<usize>,
     prescribed: Vec<[Option<f64>; 2]>,
@@ -19,19 +23,18 @@ struct Unknowns {
 }
 
 impl Unknowns {
-    fn any(nodes: usize, random: &mut Random) -> Unknowns {
-        let mut order: Vec<usize> = (0..nodes).collect();
-        for k in (1..nodes).rev() {
-            order.swap(k, random.below(k + 1));
-        }
-        let mut component = || (random.below(4) == 0).then_some(0.0);
-        let prescribed = (0..nodes).map(|_| [component(), component()]).collect();
-        let mut frames = BTreeMap::new();
-        for node in (0..nodes).filter(|_| random.below(3) == 0).collect::<Vec<_>>() {
-            let (sin, cos) = (3.0 * random.next()).sin_cos();
-            frames.insert(node, [cos, sin]);
-        }
-        Unknowns { order, prescribed, frames }
+    fn any(nodes: usize) -> impl Strategy<Value = Unknowns> {
+        let component = || weighted(0.25, Just(0.0));
+        let prescribed = vec(uniform2(component()), nodes);
+        let angles = vec(weighted(1.0 / 3.0, -3.0..3.0), nodes);
+        (any_order(nodes), prescribed, angles).prop_map(|(order, prescribed, angles)| {
+            let turned = |(node, angle): (usize, Option<f64>)| {
+                let (sin, cos) = angle?.sin_cos();
+                Some((node, [cos, sin]))
+            };
+            let frames = angles.into_iter().enumerate().filter_map(turned).collect();
+            Unknowns { order, prescribed, frames }
+        })
     }
 
     fn numbering(&self) -> Numbering {
@@ -89,28 +92,25 @@ fn frames_forgotten(d: &Discretization, unknowns: &Unknowns) -> [LowerTriangle; 
 }
 
 fn matrices_are_forms(assemble: Assemble) -> Outcome {
-    let mut random = Random(14);
     on_bodies(|problem, degree| {
         let d = Discretization::new(problem, degree, |c| c.limit() / 2.0, EdgeRule::Exact)
             .map_err(text)?;
         let nodes = d.space.nodes().len();
         let without_field = d.linear_residual(&vec![[0.0; 2]; nodes]).values;
-        for _ in 0..5 {
-            let unknowns = Unknowns::any(nodes, &mut random);
+        for_all(5, (Unknowns::any(nodes), vec(-1.0..1.0, 2 * nodes)), |(unknowns, x)| {
             let numbering = unknowns.numbering();
-            let x: Vec<f64> = (0..numbering.count).map(|_| random.next()).collect();
+            let x = &x[..numbering.count];
             let mut field = vec![[0.0; 2]; nodes];
-            numbering.scatter(&x, &mut field);
+            numbering.scatter(x, &mut field);
 
             let [stiffness, whole] = assemble(&d, &unknowns);
             let of_a = d.internal_forces(&field).values;
-            near("a", &product(&stiffness, &x), &numbering.gather(&of_a))?;
+            near("a", &product(&stiffness, x), &numbering.gather(&of_a))?;
             let linear = d.linear_residual(&field).values;
             let pairs = linear.iter().zip(&without_field);
             let of_whole: Vec<_> = pairs.map(|(r, l)| [r[0] - l[0], r[1] - l[1]]).collect();
-            near("A", &product(&whole, &x), &numbering.gather(&of_whole))?;
-        }
-        Ok(())
+            near("A", &product(&whole, x), &numbering.gather(&of_whole))
+        })
     })
 }
 
@@ -119,14 +119,14 @@ type Scatter = fn(&Numbering, &[f64], &mut [[f64; 2]]);
 
 /// A field has the vector at its free components, and what it had at the prescribed ones.
 fn only_free_components_change(scatter: Scatter) -> Outcome {
-    let mut random = Random(15);
-    for nodes in 1..20 {
-        let numbering = Unknowns::any(nodes, &mut random).numbering();
-        let before = random.field(nodes);
-        let x: Vec<f64> = (0..numbering.count).map(|_| random.next()).collect();
+    let data = (1_usize..20)
+        .prop_flat_map(|nodes| (Unknowns::any(nodes), field(nodes), vec(-1.0..1.0, 2 * nodes)));
+    for_all(20, data, |(unknowns, before, x)| {
+        let numbering = unknowns.numbering();
+        let x = &x[..numbering.count];
         let mut after = before.clone();
-        scatter(&numbering, &x, &mut after);
-        near("free components", &numbering.gather(&after), &x)?;
+        scatter(&numbering, x, &mut after);
+        near("free components", &numbering.gather(&after), x)?;
         for (node, numbers) in numbering.of.iter().enumerate() {
             let [before, after] =
                 [&before, &after].map(|field| numbering.in_frame(node, field[node]));
@@ -134,8 +134,8 @@ fn only_free_components_change(scatter: Scatter) -> Outcome {
                 near("a prescribed component", &[after[c]], &[before[c]])?;
             }
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 /// Planted: the whole field is overwritten.

@@ -1,8 +1,11 @@
 //! Meshes on the way to a problem: what is none is refused, vertices that are meant to be one are merged and no others, and a
 //! refined problem has the materials and loads of the coarse one; triangles are marked and refined until the target is met.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
+use proptest::array::uniform4;
+use proptest::collection::vec;
 use signorini::certificates::adapt::{THETA, Target, adapt, marked};
 use signorini::kernel::{Material, Plane};
 use signorini::model::merge::merge;
@@ -11,8 +14,8 @@ use signorini::model::{
 };
 use signorini::solve::{Method, Settings, SolveError, discretize};
 
-use super::{Outcome, properties, text};
-use crate::common::{Random, constant};
+use super::{Outcome, for_all, properties, text};
+use crate::common::constant;
 
 /// Two squares in one mesh with nothing joined: of side 1 in the origin, and of side `side` with its lower left corner at `at`.
 fn squares(at: [f64; 2], side: f64) -> Result<Mesh, MeshError> {
@@ -56,15 +59,15 @@ fn refused(seam: f64) -> Outcome {
 
 /// Vertices are one if and only if a chain of steps within `share` of the body's size joins them, where `told` is asked for.
 fn merged(share: f64, told: f64) -> Outcome {
-    let mut random = Random(2013);
-    let mut joined = 0;
-    for _ in 0..40 {
-        let mut number = || random.below(11) as f64 / 10.0;
+    let joined = Cell::new(0);
+    // Places, and others next to them: in tenths of the body, and of three of these steps.
+    let places = vec(uniform4(0..=10), 12);
+    for_all(40, places, |places: Vec<[i32; 4]>| {
         let mut vertices = vec![[0.0, 0.0], [1.0, 1.0]];
-        for _ in 0..12 {
-            let at = [number(), number()];
-            let by = [number(), number()].map(|c| (2.0 * c - 1.0) * 1.5 * share);
-            vertices.extend([at, [at[0] + by[0], at[1] + by[1]]]);
+        for place in places {
+            let [x, y, dx, dy] = place.map(|c| f64::from(c) / 10.0);
+            let by = [dx, dy].map(|c| (2.0 * c - 1.0) * 1.5 * share);
+            vertices.extend([[x, y], [x + by[0], y + by[1]]]);
         }
         let extent = |c: usize| {
             let coordinates = || vertices.iter().map(|v| v[c]);
@@ -88,14 +91,12 @@ fn merged(share: f64, told: f64) -> Outcome {
                 if (first[i] == first[j]) != (groups[i] == groups[j]) {
                     return Err(format!("{:?} and {:?}", vertices[i], vertices[j]));
                 }
-                joined += usize::from(first[i] == first[j]);
+                joined.set(joined.get() + usize::from(first[i] == first[j]));
             }
         }
-    }
-    if joined == 0 {
-        return Err("nothing was merged".to_owned());
-    }
-    Ok(())
+        Ok(())
+    })?;
+    if joined.get() == 0 { Err("nothing was merged".to_owned()) } else { Ok(()) }
 }
 
 fn block(load: f64) -> Result<Problem, String> {
@@ -145,9 +146,8 @@ fn refined(without: usize) -> Outcome {
 /// The marked triangles are the fewest whose shares make up `theta` of the whole; a target is met by the last level and by none
 /// before.
 fn adapted(theta: f64) -> Outcome {
-    let mut random = Random(2013);
-    for _ in 0..100 {
-        let indicators: Vec<f64> = (0..20).map(|_| random.below(1000) as f64 / 1000.0).collect();
+    for_all(100, vec(0..1000, 20), |thousandths: Vec<i32>| {
+        let indicators: Vec<f64> = thousandths.into_iter().map(|i| f64::from(i) / 1000.0).collect();
         let mut squares: Vec<f64> = indicators.iter().map(|i| i * i).collect();
         squares.sort_by(|a, b| b.total_cmp(a));
         let whole: f64 = squares.iter().sum();
@@ -156,9 +156,10 @@ fn adapted(theta: f64) -> Outcome {
         let found = marked(&indicators);
         let sum: f64 = found.iter().map(|&t| indicators[t] * indicators[t]).sum();
         if Some(found.len()) != fewest || !(sum >= theta * whole * (1.0 - 1e-12)) {
-            return Err(format!("{found:?} of {indicators:?}"));
+            return Err(format!("marked: {found:?}"));
         }
-    }
+        Ok(())
+    })?;
     let go = |relative: f64| {
         let target = Target { relative, max_unknowns: 4000 };
         adapt(block(-0.1)?, &Method::default(), &Settings::default(), target, &|_| {})

@@ -5,8 +5,11 @@
 //! x, with springs of stiffness 1000: J(x) = 1/2 x^T B x - f^T x + 500 sum \[x_i\]+^2, the example of 4.4.
 
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::ops::Range;
 
+use proptest::array::uniform3;
+use proptest::strategy::Strategy;
 use signorini::kernel::DoubleDouble;
 use signorini::nalgebra::DMatrix;
 use signorini::results::{Status, Verdict};
@@ -16,8 +19,7 @@ use signorini::solve::newton::{self, Until};
 use signorini::solve::{Method, Settings, SolveError, solve};
 
 use super::bodies::loaded_bodies;
-use super::{Outcome, properties, text};
-use crate::common::Random;
+use super::{Outcome, for_all, properties, text};
 
 type Vector = [f64; 3];
 type Matrix = [Vector; 3];
@@ -51,7 +53,7 @@ impl ContactEnergy for Springs {
 }
 
 /// B, f and x.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 struct Body {
     b: Matrix,
     f: Vector,
@@ -175,20 +177,19 @@ fn the_cycle(full: bool) -> Outcome {
 }
 
 /// A symmetric positive definite B = R R^T + 1/10, f, and start.
-fn drawn(random: &mut Random) -> Body {
-    let mut vector = || [0; 3].map(|_| 5.0 * random.next());
-    let r = [vector(), vector(), vector()];
-    let entry = |i: usize, j: usize| dot(&r[i], &r[j]) + if i == j { 0.1 } else { 0.0 };
-    let b = [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)));
-    Body { b, f: vector().map(|c| if c.abs() < 0.1 { 1.0 } else { c }), x: vector(), full: false }
+fn any_body() -> impl Strategy<Value = Body> {
+    let vector = || uniform3(-5.0..5.0);
+    (uniform3(vector()), vector(), vector()).prop_map(|(r, f, x)| {
+        let entry = |i: usize, j: usize| dot(&r[i], &r[j]) + if i == j { 0.1 } else { 0.0 };
+        let b = [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)));
+        Body { b, f: f.map(|c: f64| if c.abs() < 0.1 { 1.0 } else { c }), x, full: false }
+    })
 }
 
 /// From random starts, from soft springs on and from 1e-8 away it ends at a residual of at most `near` times its noise.
 fn from_any_start(near: f64) -> Outcome {
-    let mut random = Random(4);
-    let mut in_contact = 0;
-    for k in 0..1000 {
-        let mut body = drawn(&mut random);
+    let in_contact = Cell::new(0);
+    for_all(1000, any_body(), |mut body| {
         let (start, mut softened) = (body.energy(), body.clone());
         let plain = ends(&mut body, false)?;
         let soft = ends(&mut softened, true)?;
@@ -197,11 +198,16 @@ fn from_any_start(near: f64) -> Outcome {
         let ended = |(residual, steps): (f64, usize)| residual <= near && steps < MOST;
         let lower = body.energy() <= start + 1e-9 * (1.0 + start.abs());
         if !([plain, soft, again].into_iter().all(ended) && lower) {
-            return Err(format!("body {k}: {plain:?}, {soft:?}, {again:?}"));
+            return Err(format!("{plain:?}, {soft:?}, {again:?}"));
         }
-        in_contact += usize::from(body.x.iter().any(|&x| x > 0.0));
+        in_contact.set(in_contact.get() + usize::from(body.x.iter().any(|&x| x > 0.0)));
+        Ok(())
+    })?;
+    if (1..1000).contains(&in_contact.get()) {
+        Ok(())
+    } else {
+        Err("no body with, or without".into())
     }
-    if (1..1000).contains(&in_contact) { Ok(()) } else { Err("no body with, or without".into()) }
 }
 
 /// A body that looks at each line search: what the derivative of J with soft springs is where it ends, beside that at its start.
@@ -260,19 +266,19 @@ impl body::Body for Watched {
 /// Each line search from where a spring is pressed leaves a hundredth of the derivative, and what rounding
 /// adds; with `full` steps it is not so.
 fn line_searches(full: bool) -> Outcome {
-    let mut random = Random(5);
-    let mut soft = 0;
-    for k in 0..500 {
-        let body = Body { full, ..drawn(&mut random) };
+    let soft = Cell::new(0);
+    for_all(500, any_body(), |body| {
+        let body = Body { full, ..body };
         let mut watched = Watched { body, stiffness: None, left: 0.0, soft: 0 };
         let until = Until { steps: MOST, residual: 0.0 };
         newton::minimise(&Springs, &mut watched, true, &mut Vec::new(), until).map_err(text)?;
         if !(watched.left <= 0.0101) {
-            return Err(format!("body {k}: {} of the derivative is left", watched.left));
+            return Err(format!("{} of the derivative is left", watched.left));
         }
-        soft += watched.soft;
-    }
-    if soft > 0 { Ok(()) } else { Err("no search with soft springs".to_owned()) }
+        soft.set(soft.get() + watched.soft);
+        Ok(())
+    })?;
+    if soft.get() > 0 { Ok(()) } else { Err("no search with soft springs".to_owned()) }
 }
 
 /// The verdict: what is proved is a result, whatever else is said of it; without a proof a residual within the tolerance makes

@@ -3,6 +3,10 @@
 
 use std::sync::Arc;
 
+use approx::abs_diff_eq;
+use proptest::array::uniform3;
+use proptest::sample::select;
+use proptest::strategy::Strategy;
 use signorini::contact::{Piece, contact_line};
 use signorini::model::constraints::Constraints;
 use signorini::model::{
@@ -10,8 +14,8 @@ use signorini::model::{
     Space, loads,
 };
 
-use super::{Outcome, properties, text};
-use crate::common::{Random, constant, polygon, unit_material};
+use super::{Outcome, any_order, for_all, properties, text};
+use crate::common::{constant, polygon, unit_material};
 
 fn body(mesh: Mesh) -> Problem {
     Problem::of(mesh, unit_material())
@@ -27,25 +31,20 @@ fn moved([nx, ny]: [usize; 2], seed: u64) -> Result<Mesh, String> {
 /// Points of each triangle, corners and points of edges among them, are found in a triangle that has them, a shift of `off`
 /// along x counted; points beside the body are not found.
 fn located(off: f64) -> Outcome {
-    let mut random = Random(2013);
-    let mesh = moved([3, 2], random.below(1000) as u64)?;
-    for t in 0..mesh.triangles().len() {
-        for _ in 0..20 {
-            let mut weights = [0, 0, 0].map(|_: i32| random.below(4) as f64);
-            if weights == [0.0; 3] {
-                weights[random.below(3)] = 1.0;
-            }
-            let sum: f64 = weights.iter().sum();
-            let l = weights.map(|w| w / sum);
-            let x = mesh.triangle(t).point(l);
-            let (found, at) = mesh.locate([x.x + off, x.y]).ok_or(format!("{x:?} is nowhere"))?;
-            let there = mesh.triangle(found).point(at);
-            let inside = at.iter().all(|&l| l >= -1e-11);
-            if !(inside && (there.x - x.x).abs() <= 1e-11 && (there.y - x.y).abs() <= 1e-11) {
-                return Err(format!("{x:?} is found at {there:?}"));
-            }
+    let mesh = moved([3, 2], 7)?;
+    let weights = uniform3(0_u8..4).prop_filter("a point", |weights| *weights != [0; 3]);
+    for_all(480, (0..mesh.triangles().len(), weights), |(t, weights)| {
+        let weights = weights.map(f64::from);
+        let sum: f64 = weights.iter().sum();
+        let x = mesh.triangle(t).point(weights.map(|w| w / sum));
+        let (found, at) = mesh.locate([x.x + off, x.y]).ok_or(format!("{x:?} is nowhere"))?;
+        let there = mesh.triangle(found).point(at);
+        // Some ten roundings beside a determinant of a hundredth.
+        if !(at.iter().all(|&l| l >= -1e-11) && abs_diff_eq!(there, x, epsilon = 1e-11)) {
+            return Err(format!("{x:?} is found at {there:?}"));
         }
-    }
+        Ok(())
+    })?;
     for outside in [[-0.001, 1.0], [3.001, 1.0], [1.5, -0.001], [1.5, 2.001]] {
         if mesh.locate(outside).is_some() {
             return Err(format!("{outside:?} is in the body"));
@@ -172,9 +171,8 @@ fn curved(corners: usize, expected: bool) -> Outcome {
 /// The constant of a line is the largest of its triangles', the typical one that in the middle of their order, and a local
 /// gamma is reported as its kappa times the limit, all `times` that.
 fn ordered(times: f64) -> Outcome {
-    let mut random = Random(2013);
-    for nx in [1, 4, 9] {
-        let mesh = moved([nx, 1], random.below(1000) as u64)?;
+    for_all(6, (select(&[1, 4, 9][..]), 0_u64..1000), |(nx, seed)| {
+        let mesh = moved([nx, 1], seed)?;
         let mut problem = body(mesh);
         let contact = Condition::contact(|_| 0.0);
         problem.conditions.insert("bottom".to_owned(), contact);
@@ -195,27 +193,20 @@ fn ordered(times: f64) -> Outcome {
         ];
         for (found, expected) in expected {
             if !((found - times * expected).abs() <= 1e-12 * expected) {
-                return Err(format!("{nx} cells: {found} and not {expected}"));
+                return Err(format!("{found} and not {expected}"));
             }
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 /// The edges of a contact line on these sides of a body of twelve cells, whose vertices are numbered and whose edges are listed
 /// in any order, follow each other, but for as many `breaks`.
 fn chained(sides: &[&str], breaks: usize) -> Outcome {
-    let mut random = Random(2013);
-    for _ in 0..10 {
-        let straight = moved([12, 1], random.below(1000) as u64)?;
-        let mut shuffled = |count: usize| {
-            let mut order: Vec<usize> = (0..count).collect();
-            for k in 1..count {
-                order.swap(k, random.below(k + 1));
-            }
-            order
-        };
-        let number = shuffled(straight.vertices().len());
+    let vertices = moved([12, 1], 0)?.vertices().len();
+    let data = (0_u64..1000, any_order(vertices), any_order(12 * sides.len()));
+    for_all(10, data, |(seed, number, order)| {
+        let straight = moved([12, 1], seed)?;
         let mut vertices = vec![[0.0; 2]; number.len()];
         for (&x, &k) in straight.vertices().iter().zip(&number) {
             vertices[k] = x;
@@ -226,7 +217,7 @@ fn chained(sides: &[&str], breaks: usize) -> Outcome {
             let of_side = straight.edges_of(side).map_err(text)?;
             edges.extend(of_side.iter().map(|&edge| straight.ends(edge).map(|v| number[v])));
         }
-        let edges = shuffled(edges.len()).into_iter().map(|e| edges[e]).collect();
+        let edges = order.into_iter().map(|e| edges[e]).collect();
         let mesh = Mesh::new(vertices, triangles, [("contact".to_owned(), edges)]);
         let mut problem = body(mesh.map_err(text)?);
         let contact = Condition::contact(|_| 0.0);
@@ -238,8 +229,8 @@ fn chained(sides: &[&str], breaks: usize) -> Outcome {
         if (line.len(), found) != (12 * sides.len(), breaks) {
             return Err(format!("{} edges with {found} breaks, expected {breaks}", line.len()));
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 properties! {

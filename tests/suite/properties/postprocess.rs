@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use approx::{abs_diff_eq, relative_eq};
 use signorini::contact::{Discretization, Piece};
 use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
@@ -12,8 +13,8 @@ use signorini::solve::iterate::Evaluated;
 use signorini::solve::{Method, discretize};
 
 use super::bodies::{on_bodies, unsolved};
-use super::{Outcome, properties, text};
-use crate::common::{Random, unit_material};
+use super::{Outcome, field, for_all, properties, text};
+use crate::common::{moved_to, unit_material};
 
 /// The von Mises stress of a mean stress by its principal stresses, sigma_zz from Hooke's law; `plane` may be a mistake.
 fn von_mises(material: &Material<f64>, plane: Plane, [xx, yy, xy]: [f64; 3]) -> f64 {
@@ -28,10 +29,14 @@ fn von_mises(material: &Material<f64>, plane: Plane, [xx, yy, xy]: [f64; 3]) -> 
 /// What is reported of a random displacement; `plane` as above.
 fn stresses_on(degree: Degree, problem: &Problem, plane: Option<Plane>) -> Result<(), String> {
     let d = discretize(problem, &Method { degree, ..Method::default() }).map_err(text)?;
-    let mut random = Random(2013);
-    let u = random.field(d.space.nodes().len());
-    let solution = Solution::new(&d, Evaluated::new(&d, u.clone()), unsolved());
-    let near = |found: f64, expected: f64| (found - expected).abs() <= 1e-13 * expected;
+    for_all(4, field(d.space.nodes().len()), |u| stresses_of(&d, u, plane))
+}
+
+fn stresses_of(d: &Discretization, u: Vec<[f64; 2]>, plane: Option<Plane>) -> Outcome {
+    let (degree, problem) = (d.space.degree(), d.problem);
+    let solution = Solution::new(d, Evaluated::new(d, u.clone()), unsolved());
+    // Some ten roundings.
+    let near = |found: f64, expected: f64| relative_eq!(found, expected, max_relative = 1e-13);
     for (t, (stress, zz)) in solution.stress.iter().enumerate() {
         let material = problem.material.of(t);
         // Plane stress has no stress across the plane, plane strain has one.
@@ -42,17 +47,26 @@ fn stresses_on(degree: Degree, problem: &Problem, plane: Option<Plane>) -> Resul
             return Err(format!("von Mises {:e}, expected {expected:e}", solution.von_mises[t]));
         }
     }
-    let strain = (0..solution.stress.len()).map(|t| mean_strain(&d, t, &u)).fold(0.0, f64::max);
+    let strain = (0..solution.stress.len()).map(|t| mean_strain(d, t, &u)).fold(0.0, f64::max);
     if !((solution.largest_strain - strain).abs() <= 1e-12 * strain) {
         return Err(format!("largest strain {}, expected {strain}", solution.largest_strain));
     }
-    let points = solution.contact.iter().flat_map(|edge| &edge.points);
-    let deepest = points.map(|point| point.u_n - point.gap).fold(f64::NEG_INFINITY, f64::max);
-    let told = solution.boundaries.iter().map(|part| part.penetration);
-    let told = told.fold(f64::NEG_INFINITY, f64::max);
-    // Affine between the nodes, for P1.
-    if !(told >= deepest && (degree == Degree::Two || told == deepest)) {
-        return Err(format!("a penetration of {told:e}, at the nodes {deepest:e}"));
+    for part in &solution.boundaries {
+        let edges = solution.contact.iter().filter(|edge| *edge.boundary == *part.boundary);
+        let points = edges.flat_map(|edge| &edge.points);
+        let inside = points.map(|point| (point.u_n - point.gap, solution.nodes[point.node]));
+        let deepest =
+            inside.fold(
+                (f64::NEG_INFINITY, [0.0; 2]),
+                |most, found| {
+                    if found.0 > most.0 { found } else { most }
+                },
+            );
+        let told = (part.penetration, part.penetration_at);
+        // Affine between the nodes, for P1.
+        if !(told.0 >= deepest.0 && (degree == Degree::Two || told == deepest)) {
+            return Err(format!("a penetration of {told:?}, at the nodes {deepest:?}"));
+        }
     }
     for part in &solution.boundaries {
         // The recovered pressure has the integral of -lambda^h, by its hat functions.
@@ -85,9 +99,9 @@ fn stresses_on(degree: Degree, problem: &Problem, plane: Option<Plane>) -> Resul
     // Pressed on all edges, too, where a stretch goes on from one to the next.
     let down: Vec<[f64; 2]> = u.iter().map(|[x, y]| [*x, y - 1e3]).collect();
     for u in [&u, &down] {
-        let solution = Solution::new(&d, Evaluated::new(&d, u.clone()), unsolved());
+        let solution = Solution::new(d, Evaluated::new(d, u.clone()), unsolved());
         for part in &solution.boundaries {
-            stretches_are_those_of_contact(&d, u, &solution, part)?;
+            stretches_are_those_of_contact(d, u, &solution, part)?;
         }
     }
     let EnergyBalance { strain, loads, supports, contact, imbalance, .. } = solution.balance;
@@ -191,8 +205,11 @@ const COARSE: f64 = 60.0;
 fn magnitudes_on(degree: Degree, problem: &Problem, scale: f64) -> Outcome {
     let d = discretize(problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let nodes = d.space.nodes().len();
-    let mut random = Random(2013);
-    let u = random.field(nodes);
+    for_all(1, field(nodes), |u| magnitudes_of(&d, &u, scale))
+}
+
+fn magnitudes_of(d: &Discretization, u: &[[f64; 2]], scale: f64) -> Outcome {
+    let nodes = u.len();
     // Of all basis functions, one by one: of a sum of them the magnitudes are no larger than these.
     let mut least = vec![[0.0; 2]; nodes];
     let mut one_by_one = vec![[0.0; 2]; nodes];
@@ -209,7 +226,7 @@ fn magnitudes_on(degree: Degree, problem: &Problem, scale: f64) -> Outcome {
             }
         }
     }
-    let [inner, linear, whole] = [d.internal_forces(&u), d.linear_residual(&u), d.residual(&u)];
+    let [inner, linear, whole] = [d.internal_forces(u), d.linear_residual(u), d.residual(u)];
     for node in 0..nodes {
         for c in 0..2 {
             let sizes = [&inner, &linear, &whole].map(|f| scale * f.magnitudes[node][c]);
@@ -262,9 +279,12 @@ type Key = ([u64; 2], [u64; 2]);
 fn recovered(degree: Degree, across: bool) -> Outcome {
     let problem = cornered()?;
     let d = discretize(&problem, &Method { degree, ..Method::default() }).map_err(text)?;
-    let mut random = Random(2013);
-    let u = random.field(d.space.nodes().len());
-    let solution = Solution::new(&d, Evaluated::new(&d, u.clone()), unsolved());
+    for_all(1, field(d.space.nodes().len()), |u| recovered_from(&d, u, across))
+}
+
+fn recovered_from(d: &Discretization, u: Vec<[f64; 2]>, across: bool) -> Outcome {
+    let degree = d.space.degree();
+    let solution = Solution::new(d, Evaluated::new(d, u.clone()), unsolved());
     let key = |place: [f64; 2], normal: [f64; 2]| -> Key {
         let side = if across { [0.0; 2] } else { normal };
         (place.map(f64::to_bits), side.map(|n| n.round().to_bits()))
@@ -317,16 +337,14 @@ fn recovered(degree: Degree, across: bool) -> Outcome {
     Ok(())
 }
 
-/// A random displacement of a block of unequal triangles as a solution.
+/// A displacement as a solution.
 fn anything(
     degree: Degree,
     problem: &Problem,
-    u: impl Fn([f64; 2], [f64; 2]) -> [f64; 2],
+    u: impl Fn(usize, [f64; 2]) -> [f64; 2],
 ) -> Result<Solution, String> {
     let d = discretize(problem, &Method { degree, ..Method::default() }).map_err(text)?;
-    let mut random = Random(2013);
-    let drawn = random.field(d.space.nodes().len());
-    let values = d.space.nodes().iter().zip(drawn).map(|(&x, v)| u(x, v)).collect();
+    let values = d.space.nodes().iter().enumerate().map(|(node, &x)| u(node, x)).collect();
     Ok(Solution::new(&d, Evaluated::new(&d, values), unsolved()))
 }
 
@@ -342,7 +360,21 @@ fn unequal() -> Result<Problem, String> {
 /// those of a quadratic displacement, which has the same on all triangles.
 fn nodal_stresses(plain: bool) -> Outcome {
     let problem = unequal()?;
-    let solution = anything(Degree::One, &problem, |_, drawn| drawn)?;
+    for_all(3, field(problem.mesh.vertices().len()), |u| means_by_areas(&problem, &u, plain))?;
+    // u = (x^2 + y, x y): eps = (2 x, x, (1 + y)/2), sigma = 1.5 tr eps + 2 eps, sigma_zz = 1.5 tr eps.
+    let solution = anything(Degree::Two, &problem, |_, [x, y]| [x * x + y, x * y])?;
+    for (found, [x, y]) in solution.nodal_stresses(&problem).iter().zip(&solution.nodes) {
+        let trace = 1.5 * 3.0 * x;
+        let expected = [trace + 4.0 * x, trace + 2.0 * x, trace, 1.0 + y];
+        if !abs_diff_eq!(found[..], expected[..], epsilon = 1e-12) {
+            return Err(format!("P2, at ({x}, {y}): {found:?}, not {expected:?}"));
+        }
+    }
+    Ok(())
+}
+
+fn means_by_areas(problem: &Problem, u: &[[f64; 2]], plain: bool) -> Outcome {
+    let solution = anything(Degree::One, problem, |node, _| u[node])?;
     let mut sums = vec![([0.0; 4], 0.0); solution.nodes.len()];
     for (t, (nodes, (stress, zz))) in solution.elements.chunks(3).zip(&solution.stress).enumerate()
     {
@@ -356,7 +388,7 @@ fn nodal_stresses(plain: bool) -> Outcome {
             *weights += weight;
         }
     }
-    let found = solution.nodal_stresses(&problem);
+    let found = solution.nodal_stresses(problem);
     let largest = found.as_flattened().iter().fold(0.0, |m: f64, s| m.max(s.abs()));
     for (found, (sum, weight)) in found.iter().zip(&sums) {
         for (found, sum) in found.iter().zip(sum) {
@@ -365,19 +397,58 @@ fn nodal_stresses(plain: bool) -> Outcome {
             }
         }
     }
-    // u = (x^2 + y, x y): eps = (2 x, x, (1 + y)/2), sigma = 1.5 tr eps + 2 eps, sigma_zz = 1.5 tr eps.
-    let solution = anything(Degree::Two, &problem, |[x, y], _| [x * x + y, x * y])?;
-    for (found, [x, y]) in solution.nodal_stresses(&problem).iter().zip(&solution.nodes) {
-        let trace = 1.5 * 3.0 * x;
-        let expected = [trace + 4.0 * x, trace + 2.0 * x, trace, 1.0 + y];
-        if found.iter().zip(expected).any(|(f, e)| !((f - e).abs() <= 1e-12)) {
-            return Err(format!("P2, at ({x}, {y}): {found:?}, not {expected:?}"));
-        }
+    Ok(())
+}
+
+/// Where the displacement is off at one node, it is off at a place in a triangle by no more than is said, times `share`: shape functions of
+/// P2 are negative in part.
+fn between_nodes(share: f64) -> Outcome {
+    let problem = unequal()?;
+    for degree in [Degree::One, Degree::Two] {
+        let nodes = anything(degree, &problem, |_, x| x)?.nodes.len();
+        let place = (0..problem.mesh.triangles().len(), 0.0..1.0, 0.0..1.0);
+        for_all(200, (place, 0..nodes), |((t, a, b), node)| {
+            let l = [a * b, a * (1.0 - b), 1.0 - a];
+            let at = |off: f64| -> Result<f64, String> {
+                let of = |n: usize, [x, _]: [f64; 2]| [if n == node { x + off } else { x }, 0.0];
+                Ok(anything(degree, &problem, of)?.displacement_at(t, l)[0])
+            };
+            let mut errors = vec![0.0; nodes];
+            errors[node] = 0.1;
+            let solution = anything(degree, &problem, |_, x| x)?;
+            let told = share * solution.displacement_error_at(&errors, t, l);
+            let off = (at(0.1)? - at(0.0)?).abs();
+            // Rounding of a displacement of 3 in a difference.
+            if off <= told + 1e-14 {
+                Ok(())
+            } else {
+                Err(format!("off by {off:e}, {told:e} was told"))
+            }
+        })?;
     }
     Ok(())
 }
 
+/// The largest strain of a ring that is widened by 0.1 all through is its hoop strain: 0.1 over the mean radius of the innermost triangle,
+/// where `least` is that of the inner boundary.
+fn widened(least: f64) -> Outcome {
+    let cells = Rectangle { width: 1.0, height: 1.0, nx: 4, ny: 2, diagonal: Diagonal::Right };
+    let ring = moved_to(&cells.mesh().map_err(text)?, |[x, y]| [x + 1.0, y]);
+    let problem = Problem::of(ring, Material::lame(1.5, 1.0, Plane::Axisymmetric))
+        .with("top", Condition::clamped())
+        .with("bottom", Condition::contact(|_| 0.0));
+    let solution = anything(Degree::One, &problem, |_, _| [0.1, 0.0])?;
+    let expected = 0.1 / (least + 0.25 / 3.0);
+    if relative_eq!(solution.largest_strain, expected, max_relative = 1e-13) {
+        Ok(())
+    } else {
+        Err(format!("{}, expected {expected}", solution.largest_strain))
+    }
+}
+
 properties! {
+    displacements_between_nodes_are_off_by_no_more_than_is_said: between_nodes(1.0); not between_nodes(0.5);
+    the_hoop_strain_may_be_the_largest: widened(1.0); not widened(1.01);
     von_mises_stresses_and_the_largest_displacement_are_their_definitions: stresses(None);
         not stresses(Some(Plane::Stress));
     magnitudes_of_a_residual_are_those_of_its_terms: magnitudes(1.0); not magnitudes(0.01);

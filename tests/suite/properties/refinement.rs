@@ -25,8 +25,8 @@ use signorini::solve::route;
 use signorini::solve::{Gamma0, Method, Settings, SolveError, discretize, solve_discrete};
 
 use super::bodies::on_bodies;
-use super::{Outcome, properties, text};
-use crate::common::{Random, constant, unit_material};
+use super::{Outcome, field, one, properties, text};
+use crate::common::{constant, unit_material};
 
 /// The squared norm of a functional where no component is prescribed.
 fn free_square(d: &Discretization, functional: &[[f64; 2]]) -> f64 {
@@ -114,10 +114,9 @@ const FIRST: f64 = 0.1;
 fn passes(d: &Discretization, shares: &[f64], settings: &Settings) -> Result<Told, String> {
     let (Evaluated { u, .. }, _, _) = solve_discrete(d, &Settings::default()).map_err(text)?;
     let system = System::new(d).map_err(text)?;
-    let mut random = Random(2013);
     let target = system.numbering.gather(&u);
     let mut away = d.constraints.lift();
-    let mut error = system.numbering.gather(&random.field(u.len()));
+    let mut error = system.numbering.gather(&one(field(u.len()))?);
     let size = |field: &[[f64; 2]]| d.strain_energy(field).sqrt();
     let spread = |values: &[f64], lift: &mut [[f64; 2]]| system.numbering.scatter(values, lift);
     let mut only = vec![[0.0; 2]; u.len()];
@@ -282,8 +281,7 @@ fn forces_of_differences(degree: Degree, by: f64, bits: i32, share: f64) -> Resu
         let problem = carried(by)?;
         let d = discretize(&problem, &Method { degree, ..Method::default() }).map_err(text)?;
         let system = System::new(&d).map_err(text)?;
-        let mut random = Random(2013);
-        let bent = random.field(d.space.nodes().len()).into_iter();
+        let bent = one(field(d.space.nodes().len()))?.into_iter();
         let bent: Vec<[f64; 2]> = bent.map(|v| v.map(|v| size * (1000.0 * v).round())).collect();
         let whole = vec![[by; 2]; bent.len()];
         let mut iterate = Iterate::lift(&d);
