@@ -10,9 +10,10 @@ use nalgebra::Vector2;
 use super::SWEEPS_FOR_FORCES;
 use super::build::{Built, build};
 use super::certificate::{Certificate, Cut, Role, is_oblique};
+use super::contact::Contact;
 use super::field::Field;
 use super::forces::{ForceTarget, Lifting, Motion};
-use super::parts::{Boundary, ProblemParts};
+use super::parts::{Boundary, OnLine, ProblemParts};
 use super::sweeps::improve;
 use crate::fem::matrix::{LowerTriangle, Neighbours, Numbering};
 use crate::fem::mesh::length;
@@ -29,6 +30,57 @@ struct Prescription {
     direction: Vector2<f64>,
     boundary: usize,
     contact: bool,
+    /// The part of the jump that is the own of one of two bodies, with its sign; 1 elsewhere.
+    share: f64,
+}
+
+/// An edge of Gamma_C.
+struct OnContact {
+    edge: BoundaryEdge,
+    boundary: usize,
+    /// As [`Prescription::share`].
+    share: f64,
+    /// The direction of contact at its start, its end and in its middle.
+    directions: [Vector2<f64>; 3],
+}
+
+/// The edges of Gamma_C that have a contact which is `wanted`. Of two bodies the softer one moves more, so that both together have
+/// about the least energy.
+fn on_contact(
+    parts: &ProblemParts,
+    names: &[String],
+    wanted: impl Fn(usize) -> bool,
+) -> Vec<OnContact> {
+    let modulus = |contact: &Contact, i: usize| parts.material(contact.sides[i].edge.triangle).mu();
+    let mut shares: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
+    for contact in parts.contact.iter().filter(|contact| contact.is_pair()) {
+        let [first, second] = [0, 1].map(|i| modulus(contact, i));
+        let own = second / (first + second);
+        shares.entry(&contact.boundary).or_insert([own, own - 1.0]);
+    }
+    let of_line = |line: &OnLine| {
+        let wanted: OnLine = line.iter().copied().filter(|&(k, _)| wanted(k)).collect();
+        let &(k, i) = wanted.first()?;
+        let (contact, edge) = (&parts.contact[k], parts.contact[k].sides[i].edge);
+        let boundary = names.iter().position(|name| **name == *contact.boundary)?;
+        let direction = |x: f64| {
+            let beyond = |&(k, i): &(usize, usize)| {
+                let s = parts.contact[k].sides[i].within(x);
+                (s - s.clamp(0.0, 1.0)).abs()
+            };
+            let nearest = wanted.iter().min_by(|a, b| beyond(a).total_cmp(&beyond(b)));
+            let &(k, i) = nearest.unwrap_or(&(k, i));
+            let (s, [d, e]) = (parts.contact[k].sides[i].within(x), parts.contact[k].directions);
+            match s {
+                s if s <= 0.0 || d == e => d,
+                s if s >= 1.0 => e,
+                s => d * (1.0 - s) + e * s,
+            }
+        };
+        let share = shares.get(&*contact.boundary).map_or(1.0, |shares| shares[i]);
+        Some(OnContact { edge, boundary, share, directions: [0.0, 1.0, 0.5].map(direction) })
+    };
+    parts.lines.iter().filter_map(of_line).collect()
 }
 
 /// Makes displacements w.
@@ -68,40 +120,38 @@ impl<'a> Lifter<'a> {
         let mut demands: BTreeMap<usize, Vec<Prescription>> = BTreeMap::new();
         let mut add = |edge: BoundaryEdge,
                        boundary: usize,
-                       contact,
+                       (contact, share),
                        of: &dyn Fn(usize) -> Vec<Vector2<f64>>| {
             for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
                 let at_node = demands.entry(node).or_default();
                 for direction in of(a) {
-                    let demand = Prescription { direction, boundary, contact };
+                    let demand = Prescription { direction, boundary, contact, share };
                     if !at_node.contains(&demand) {
                         at_node.push(demand);
                     }
                 }
             }
         };
-        for contact in [false, true] {
-            for (boundary, name) in names.iter().enumerate() {
-                for &edge in parts.mesh.edges_of(name).unwrap_or_default() {
-                    let e = parts.mesh.triangle_edges()[edge.triangle][edge.local];
-                    match parts.boundary.get(&e) {
-                        Some(&Boundary::Held(held, _)) if !contact => {
-                            let axes = [Vector2::x(), Vector2::y()];
-                            let held: Vec<_> =
-                                (0..2).filter(|&c| held[c]).map(|c| axes[c]).collect();
-                            add(edge, boundary, contact, &|_| held.clone());
-                        }
-                        Some(&Boundary::Supported(d, ..)) if !contact => {
-                            add(edge, boundary, contact, &|_| vec![d.into()]);
-                        }
-                        Some(&Boundary::Contact(k)) if contact && !open[k] => {
-                            let [d, e] = parts.contact[k].directions;
-                            add(edge, boundary, contact, &|a| vec![[d, e, (d + e) / 2.0][a]]);
-                        }
-                        _ => {}
+        for (boundary, name) in names.iter().enumerate() {
+            for &edge in parts.mesh.edges_of(name).unwrap_or_default() {
+                let e = parts.mesh.triangle_edges()[edge.triangle][edge.local];
+                match parts.boundary.get(&e) {
+                    Some(&Boundary::Held(held, _)) => {
+                        let axes = [Vector2::x(), Vector2::y()];
+                        let held: Vec<_> = (0..2).filter(|&c| held[c]).map(|c| axes[c]).collect();
+                        add(edge, boundary, (false, 1.0), &|_| held.clone());
                     }
+                    Some(&Boundary::Supported(d, ..)) => {
+                        add(edge, boundary, (false, 1.0), &|_| vec![d.into()]);
+                    }
+                    _ => {}
                 }
             }
+        }
+        for OnContact { edge, boundary, share, directions } in
+            on_contact(parts, names, |k| !open[k])
+        {
+            add(edge, boundary, (true, share), &|a| vec![directions[a]]);
         }
         let mut prescribed = vec![[None; 2]; space.nodes().len()];
         let mut frames = BTreeMap::new();
@@ -149,10 +199,11 @@ impl<'a> Lifter<'a> {
         if target.boundary.is_some_and(|boundary| boundary != demand.boundary) {
             return 0.0;
         }
-        match target.motion {
+        let whole = match target.motion {
             Motion::Along(ramp) if demand.contact => ramp.map_or(1.0, |ramp| ramp.at(x[ramp.axis])),
             motion => motion.at(Vector2::from(x)).map_or(0.0, |r| r.dot(&demand.direction)),
-        }
+        };
+        whole * demand.share
     }
 
     /// w at the nodes, of least energy.
@@ -211,13 +262,13 @@ impl<'a> Lifter<'a> {
         }
         // w0 is 1 where w is free, too: it need not have the least energy.
         if target.boundary.is_none() {
-            for edge in &self.parts.contact {
-                let [d, e] = edge.directions;
-                for (a, node) in self.space.edge_nodes(edge.edge).into_iter().enumerate() {
+            for OnContact { edge, share, directions, .. } in
+                on_contact(self.parts, self.names, |_| true)
+            {
+                for (a, node) in self.space.edge_nodes(edge).into_iter().enumerate() {
                     if !self.demands.contains_key(&node) {
-                        let d = [d, e, (d + e) / 2.0][a];
-                        let w = Vector2::from(field[node]);
-                        field[node] = (w + d * ((1.0 - w.dot(&d)) / d.dot(&d))).into();
+                        let (d, w) = (directions[a], Vector2::from(field[node]));
+                        field[node] = (w + d * ((share - w.dot(&d)) / d.dot(&d))).into();
                     }
                 }
             }
@@ -249,7 +300,11 @@ impl<'a> Lifter<'a> {
                 match *what {
                     Boundary::Held(held, _) => Boundary::Held(held, [0.0; 2]),
                     Boundary::Supported(d, ..) => Boundary::Supported(d, 0.0, None),
-                    Boundary::Contact(k) if !open[k] => {
+                    Boundary::Contact(line) if parts.lines[line].iter().any(|&(k, _)| !open[k]) => {
+                        let (k, _) = parts.lines[line][0];
+                        if parts.contact[k].is_pair() {
+                            return Err("the force is one between two bodies".to_owned());
+                        }
                         let [d, e] = parts.contact[k].directions;
                         if is_oblique(d.into()) || d != e {
                             return Err("contact does not act along an axis".to_owned());
@@ -267,12 +322,14 @@ impl<'a> Lifter<'a> {
             );
         }
         let problem = Problem::of(mesh.clone(), parts.problem.material.clone());
-        let cuts = built.divisions.iter().map(|division| (division.base, division.at)).collect();
+        let cuts =
+            built.divisions.iter().map(|division| (division.base, division.places[1])).collect();
         let frames = parts.frames.clone();
         let dual = ProblemParts {
             problem: &problem,
             mesh,
             contact: Vec::new(),
+            lines: Vec::new(),
             prescribed,
             frames,
             boundary,

@@ -55,7 +55,7 @@ pub use signorini_audit::{dual, forces, proof};
 use self::proof::{Piece, Role};
 pub use self::quantities::ProvedQuantities;
 use crate::fem::law::Law;
-use crate::fem::{Degree, Mesh, Problem};
+use crate::fem::{Degree, Mesh, Pair, Problem};
 use crate::kernel::{Ball, Scalar, Triangle};
 use crate::memory;
 use crate::quote::quoted;
@@ -179,10 +179,11 @@ fn certify_near(
             "the body is one of revolution, and certificates are about plane bodies".to_owned(),
         ));
     }
-    if let Some(pair) = problem.pairs.first() {
+    let is_glued = |pair: &&Pair| matches!(pair.law, Law::Sliding | Law::Bonded);
+    if let Some(pair) = problem.pairs.iter().find(is_glued) {
         let [first, second] = pair.boundaries.each_ref().map(|name| quoted(name, '\''));
         return Err(CertifyError::Unsupported(format!(
-            "{first} and {second} are a pair, and there are no certificates for two bodies yet"
+            "{first} and {second} are a pair that may not open; certificates are for the law \"contact\""
         )));
     }
     if let Some(piece) = solution.pieces.iter().find(|p| matches!(p.geometry.law, Law::Friction(_)))

@@ -42,7 +42,7 @@ pub(super) struct Oscillation {
 impl Oscillation {
     /// `quadratic` tells whether v is, so that it follows data of degree 2.
     pub fn new(parts: &ProblemParts, quadratic: bool) -> Self {
-        let (given, between) = (given(parts, quadratic), parts.known_at_nodes());
+        let (given, between) = (given(parts, quadratic), parts.known_at_nodes(quadratic));
         let inexact = given.iter().filter_map(|given| {
             let degree = given.degree?;
             let exact = given.functions.iter().all(|f| is_within(f, degree));

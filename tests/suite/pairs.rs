@@ -12,6 +12,7 @@ use signorini::solve::{
 };
 
 mod balance;
+mod certified;
 mod curved;
 mod friction;
 mod limits;
