@@ -22,7 +22,7 @@ use crate::kernel::{Material, Triangle};
 /// Numbers that differ by this, in units of the largest of their kind, are the same.
 const ROUNDING: f64 = 1e-11;
 
-/// Places in a contact that differ by this part of the contact are the same.
+/// Places on an edge that differ by this part of the edge are the same.
 const PLACES: f64 = 1e-9;
 
 /// The part of a triangle by which places outside it lie in it: what is the same for other numbers, and the rounding of its own
@@ -416,10 +416,10 @@ impl Comparison<'_> {
         let (certificate, parts) = (self.certificate, self.parts);
         let contact = parts.contact_at(line, (s + t) / 2.0);
         for &(k, i) in &parts.lines[line] {
-            let [from, to] = [s, t].map(|x| parts.contact[k].sides[i].within(x));
+            let [from, to] = parts.contact[k].sides[i].places;
             let (low, high) = (from.min(to), from.max(to));
-            let is_in = low >= -PLACES && high <= 1.0 + PLACES;
-            let is_off = high <= PLACES || low >= 1.0 - PLACES;
+            let is_in = s >= low - PLACES && t <= high + PLACES;
+            let is_off = t <= low + PLACES || s >= high - PLACES;
             if !(if contact == Some((k, i)) { is_in } else { is_off }) {
                 return Err(outside("edge", e, "is in contact in part, or with several"));
             }
@@ -437,8 +437,8 @@ impl Comparison<'_> {
         if number != mesh.triangle_edges()[side.edge.triangle][side.edge.local] {
             return Err(differs());
         }
-        let [u, v] = self.places_on(other, b).map(|x| side.within(x));
-        let near = |(x, y): (f64, f64)| (own.within(x) - y).abs() <= PLACES;
+        let [u, v] = self.places_on(other, b);
+        let near = |(x, y): (f64, f64)| (side.place(own.within(x)) - y).abs() <= PLACES;
         if near((s, v)) && near((t, u)) { Ok(()) } else { Err(differs()) }
     }
 

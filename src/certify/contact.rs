@@ -48,6 +48,8 @@ pub(super) struct Side {
     pub places: [f64; 2],
     /// The length of the whole edge.
     pub length: f64,
+    /// An end of the contact was moved to an end or the middle of the edge, by more than rounding.
+    pub moved: bool,
 }
 
 /// A part of a contact, in units of it, with the pressure at its ends.
@@ -57,14 +59,19 @@ pub(super) struct Part {
     pub pressure: [f64; 2],
 }
 
-/// Places on an edge that are nearer to its ends or its middle are these.
-const SAME_PLACE: f64 = 1e-11;
+/// Places on an edge of a pair that are nearer to its ends or its middle are these: between nodes that face each other to rounding, or
+/// to what a mesh generator leaves, there would be slivers.
+pub(super) const SAME_PLACE: f64 = 1e-6;
+
+/// Places that differ by less are the same but for rounding, and so are directions.
+const ROUNDING: f64 = 1e-11;
 
 impl Side {
     fn new(mesh: &Mesh, stretch: &Stretch) -> Side {
-        let [from, to] = [0, 1].map(|a| near_place(stretch.positions[a]));
+        let places = [0, 1].map(|a| near_place(stretch.positions[a]));
+        let moved = (0..2).any(|a| (places[a] - stretch.positions[a]).abs() > ROUNDING);
         let (length, _) = mesh.length_and_normal(stretch.edge);
-        Side { edge: stretch.edge, places: [from, to], length }
+        Side { edge: stretch.edge, places, length, moved }
     }
 
     /// The place on the edge of place `s` of the contact.
@@ -178,7 +185,7 @@ impl Contact {
         let sides: Vec<Side> =
             geometry.stretches.iter().map(|s| Side::new(&problem.mesh, s)).collect();
         // Of straight sides they differ by rounding.
-        if sides.len() > 1 && (directions[1] - directions[0]).amax() <= SAME_PLACE {
+        if sides.len() > 1 && (directions[1] - directions[0]).amax() <= ROUNDING {
             directions = [directions[0]; 2];
         }
         let gap = [0, 1].map(|a| geometry.nodes[a].gap);
@@ -230,6 +237,11 @@ impl Contact {
             gap_bulge,
             parts: parts.flat_map(|ends| between(ends).parts(ends)).collect(),
         }
+    }
+
+    /// It is longer than nothing on each side.
+    pub fn has_length(&self) -> bool {
+        self.sides.iter().all(|side| side.places[0] != side.places[1])
     }
 
     /// It is one of two bodies.

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector2;
 
 use super::certificate::{Role, is_oblique};
-use super::contact::Contact;
+use super::contact::{Contact, SAME_PLACE};
 use super::data::{Traction, bulge_of, is_within};
 use super::errors::CertifyError;
 use super::field::Field;
@@ -67,8 +67,11 @@ impl<'a> ProblemParts<'a> {
     ) -> Result<Self, CertifyError> {
         let space = Space::new(&problem.mesh, degree);
         let constraints = Constraints::new(problem, &space)?;
-        let contact: Vec<Contact> =
-            pieces.iter().map(|piece| Contact::new(problem, piece, displacement, halved)).collect();
+        let contact: Vec<Contact> = pieces
+            .iter()
+            .map(|piece| Contact::new(problem, piece, displacement, halved))
+            .filter(Contact::has_length)
+            .collect();
         let unsupported = |why: String| Err(CertifyError::Unsupported(why));
         if let Some(point) = problem.points.first() {
             return unsupported(format!(
@@ -248,7 +251,7 @@ impl<'a> ProblemParts<'a> {
         };
         let mut all: Vec<f64> = contacts.flat_map(of).filter(|&x| 0.0 < x && x < 1.0).collect();
         all.sort_by(f64::total_cmp);
-        all.dedup_by(|a, b| *a - *b <= 1e-11);
+        all.dedup_by(|a, b| *a - *b <= SAME_PLACE);
         all
     }
 
@@ -263,7 +266,9 @@ impl<'a> ProblemParts<'a> {
                 })
                 .collect();
             ranges.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]));
-            if let Some(pair) = ranges.windows(2).find(|pair| pair[1].0[0] < pair[0].0[1] - 1e-11) {
+            if let Some(pair) =
+                ranges.windows(2).find(|pair| pair[1].0[0] < pair[0].0[1] - SAME_PLACE)
+            {
                 let boundary = quoted(&self.contact[pair[0].1].boundary, '\'');
                 return Err(CertifyError::Unsupported(format!(
                     "a part of an edge faces two others, on {boundary} or the boundary that it is a pair with"
@@ -359,6 +364,12 @@ impl<'a> ProblemParts<'a> {
     pub fn turning(&self) -> BTreeSet<&str> {
         let turning = self.contact.iter().filter(|edge| edge.turns());
         turning.map(|edge| &*edge.boundary).collect()
+    }
+
+    /// The first boundaries of pairs on which nodes that nearly face each other are taken to do so.
+    pub fn moved(&self) -> BTreeSet<&str> {
+        let moved = self.contact.iter().filter(|c| c.sides.iter().any(|side| side.moved));
+        moved.map(|contact| &*contact.boundary).collect()
     }
 
     /// The contact boundaries of which direction and gap are known at the nodes only: those that turn, and those whose obstacle is
