@@ -13,18 +13,18 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use signorini::certify::{Target, adapt, certify};
-use signorini::fem::{
-    Condition, Diagonal, Function, Mesh, Perturbation, Problem, Rectangle, SharedFunction, Space,
-    Structured, Trapezoid,
-};
+use signorini::certificates::{Target, adapt, certify};
 use signorini::io::Case;
 use signorini::io::convergence::{self, NORMS, Study};
 use signorini::io::picture::plot::{self, Figure, Panel, Style};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::{
-    ContactQuadrature, Degree, Gamma0, Method, Settings, Solution, SolveError, solve,
+use signorini::model::Degree;
+use signorini::model::{
+    Condition, Diagonal, Function, Mesh, Perturbation, Problem, Rectangle, SharedFunction, Space,
+    Structured, Trapezoid,
 };
+use signorini::results::Solution;
+use signorini::solve::{ContactQuadrature, Gamma0, Method, Settings, SolveError, solve};
 use signorini::study::exact::{Corner, Kind, Singular, Smooth};
 use signorini::study::ladder::fitted_slope;
 use signorini::study::{Errors, Exact};

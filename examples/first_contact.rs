@@ -32,7 +32,7 @@
 use std::error::Error;
 use std::f64::consts::PI;
 
-use signorini::certify::certify;
+use signorini::certificates::certify;
 use signorini::{
     Condition, Degree, Diagonal, Material, Method, Obstacle, Plane, Problem, Rectangle, Settings,
     Side, solve,

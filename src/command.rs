@@ -15,11 +15,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::CommandFactory;
-use signorini::fem::DataError;
 use signorini::io::Failure;
 use signorini::io::input::reason;
 use signorini::io::sweep::Extent;
 use signorini::io::{Case, checked};
+use signorini::model::DataError;
 use signorini::solve::SolveError;
 use signorini::{quote, solve as library};
 

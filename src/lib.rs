@@ -10,7 +10,8 @@
 //! `examples`, where `first_contact.rs` is a tutorial.
 //!
 //! ```
-//! use signorini::{Condition, Diagonal, Material, Method, Obstacle, Plane, Problem, Rectangle, Settings, solve};
+//! use signorini::{Condition, Diagonal, Material, Method, Obstacle, Plane, Problem, Rectangle, Settings};
+//! use crate::solve;
 //!
 //! let (nx, ny, diagonal) = (16, 16, Diagonal::Right);
 //! let mesh = Rectangle { width: 1.0, height: 1.0, nx, ny, diagonal }.mesh()?;
@@ -31,7 +32,8 @@
 //! along the axis are those of the whole revolution.
 //!
 //! ```
-//! use signorini::{Condition, Diagonal, Material, Method, Plane, Problem, Rectangle, Settings, solve};
+//! use signorini::{Condition, Diagonal, Material, Method, Plane, Problem, Rectangle, Settings};
+//! use crate::solve;
 //!
 //! let (nx, ny, diagonal) = (8, 8, Diagonal::Right);
 //! let mesh = Rectangle { width: 1.0, height: 1.0, nx, ny, diagonal }.mesh()?;
@@ -72,15 +74,17 @@
 //! | sigma = A eps in (1) | [`kernel::material`] |
 //! | \[.\]+ and (4) | [`kernel::positive_part`](mod@kernel::positive_part) |
 //! | (2), (5), P_gamma, lambda^h of section 2.3 | [`kernel::contact`] |
-//! | V^h: P1, and P2 of Remark 3.7; a(.,.) on a triangle | [`kernel::element`], [`fem::space`] |
+//! | V^h: P1, and P2 of Remark 3.7; a(.,.) on a triangle | [`kernel::element`], [`model::space`] |
 //! | P_gamma and sigma_n on an edge, the constant of (11) | [`kernel::contact_edge`] |
 //! | the integrals over Gamma_C in (8), without quadrature error | [`kernel::edge_integral`] |
 //! | the weight r and the hoop strain of bodies of revolution (not in the paper) | [`kernel::axial`] |
-//! | T^h and h_T | [`fem::mesh`] |
-//! | Gamma_D, L, Gamma_C with (7), kappa | [`fem::constraints`], [`fem::loads`], [`fem::contact_line`] |
-//! | (8) itself, J_h | [`fem::discretization`] |
-//! | A_gamma as a matrix | [`fem::matrix`] |
-//! | the solution of (8) | [`solve::condensed`], [`solve::newton`] |
+//! | T^h and h_T | [`model::mesh`] |
+//! | Gamma_D, L, Gamma_C with (7), kappa | [`model::constraints`], [`model::loads`], [`contact::contact_line`] |
+//! | (8) itself, J_h | [`contact::discretization`] |
+//! | A_gamma as a matrix | [`linear::matrix`] |
+//! | the solution of (8): the algorithm on one page | [`solve`](mod@solve) |
+//! | Newton's method; its tangents by the body condensed to its contact edges, or assembled | [`solve::newton`], [`solve::condensed`], [`solve::assembled`] |
+//! | the proof of a solve (not in the paper) | [`proof::enclosure`] |
 //!
 //! # What is stable
 //!
@@ -111,17 +115,29 @@ pub use signorini_kernel as kernel;
 pub use signorini_kernel::entry_of_nalgebra;
 
 #[cfg(not(kani))]
-pub mod certify;
+pub mod certificates;
 #[cfg(not(kani))]
-pub mod fem;
+pub mod contact;
+#[cfg(not(kani))]
+#[doc(hidden)]
+pub mod held;
 #[cfg(not(kani))]
 pub mod io;
+#[cfg(not(kani))]
+pub mod linear;
 #[cfg(not(kani))]
 #[doc(hidden)]
 pub mod memory;
 #[cfg(not(kani))]
+pub mod model;
+#[cfg(not(kani))]
+#[doc(hidden)]
+pub mod proof;
+#[cfg(not(kani))]
 #[doc(hidden)]
 pub mod quote;
+#[cfg(not(kani))]
+pub mod results;
 #[cfg(not(kani))]
 pub mod solve;
 #[cfg(not(kani))]
@@ -129,11 +145,13 @@ pub mod solve;
 pub mod study;
 
 // For a program with its problem in code.
-#[cfg(not(kani))]
-pub use fem::{Condition, Diagonal, Mesh, Obstacle, Problem, Rectangle, Side};
 #[cfg(all(not(kani), feature = "files"))]
 pub use io::Case;
 #[cfg(not(kani))]
 pub use kernel::{Material, Plane};
 #[cfg(not(kani))]
-pub use solve::{Degree, Gamma0, Method, Settings, Solution, solve};
+pub use model::{Condition, Degree, Diagonal, Mesh, Obstacle, Problem, Rectangle, Side};
+#[cfg(not(kani))]
+pub use results::Solution;
+#[cfg(not(kani))]
+pub use solve::{Gamma0, Method, Settings, solve};

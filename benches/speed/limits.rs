@@ -12,8 +12,8 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Accum, Mat, Par, Side};
-use signorini::fem::matrix::{LowerTriangle, Neighbours};
-use signorini::solve::factor::Factor;
+use signorini::linear::factor::Factor;
+use signorini::linear::matrix::{LowerTriangle, Neighbours};
 
 use crate::own::Measured;
 use crate::problem::{self, Size};

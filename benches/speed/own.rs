@@ -4,9 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use signorini::fem::Problem;
 use signorini::io::run::Solved;
 use signorini::io::{Case, outputs};
+use signorini::model::Problem;
 use signorini::solve::{self, ContactQuadrature, Times};
 
 use crate::child::{self, Task};

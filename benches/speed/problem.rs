@@ -5,15 +5,20 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
-use signorini::fem::{
-    BoundaryEdge, Condition, Diagonal, Discretization, Mesh, Problem, Rectangle, SharedFunction,
-};
+use signorini::contact::Discretization;
 use signorini::io::{Case, Expression};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::factor::Factor;
-use signorini::solve::ordering::nested_dissection;
-use signorini::solve::{self, ContactQuadrature, Degree, Method, Settings, Solution, Times};
+use signorini::linear::factor::Factor;
+use signorini::linear::matrix;
+use signorini::linear::matrix::{LowerTriangle, Neighbours, Numbering};
+use signorini::linear::ordering::nested_dissection;
+use signorini::model::Degree;
+use signorini::model::{
+    BoundaryEdge, Condition, Diagonal, Mesh, Problem, Rectangle, SharedFunction,
+};
+use signorini::results::Solution;
+use signorini::solve;
+use signorini::solve::{ContactQuadrature, Method, Settings, Times};
 
 /// A size of the case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,10 +2,10 @@
 //! the loads and the points of a rule are the solver's doubles, taken for the rational numbers that they are. The solver's own
 //! loops ([`residual`]) compute with them: forces, stresses and P are its code, and exact. The tangent is the kernel's.
 
-use signorini::fem::residual;
-use signorini::fem::{Degree, Discretization, EdgeRule, Piece};
+use signorini::contact::{Discretization, EdgeRule, Piece, residual};
 use signorini::kernel::edge_integral::{self, ExactEdge};
 use signorini::kernel::{EdgeIntegrals, Material, P1, P2, Plane};
+use signorini::model::Degree;
 use signorini::nalgebra::{Matrix2, Vector2};
 
 use crate::bodies::sum;

@@ -37,7 +37,7 @@ const STRESSES: Place = ("src/kernel/contact_edge.rs", "pub fn stress_product(")
 const COERCIVITY: Place = ("src/kernel/contact_edge.rs", "pub fn coercivity_constant<");
 const STIFFNESS: Place = ("src/kernel/material.rs", "pub fn normal_stiffness<");
 const INTEGRALS: Place = ("src/kernel/edge_integral.rs", "pub trait ExactEdge<");
-const RESIDUAL: Place = ("src/fem/discretization.rs", "pub fn residual(");
+const RESIDUAL: Place = ("src/contact/discretization.rs", "pub fn residual(");
 
 /// All of them.
 #[rustfmt::skip]
@@ -51,10 +51,10 @@ pub const ITEMS: &[Item] = &[
         "that V is complete: taken from analysis"),
     item("K", "the cone v_n <= 0 in V", &[],
         "for the shape functions of P1 and their opposites"),
-    item("L", "the loads", &[("src/fem/loads.rs", "pub fn assemble(")],
+    item("L", "the loads", &[("src/model/loads.rs", "pub fn assemble(")],
         "that L is continuous: taken from analysis; loads of degree above 2 but by `tests/suite/properties/places.rs`"),
     item("V^h", "piecewise polynomials of degree 1 or 2", &[("src/kernel/element.rs", "pub trait Element<")],
-        "that they are continuous: triangles share their nodes (`src/fem/space.rs`)"),
+        "that they are continuous: triangles share their nodes (`src/model/space.rs`)"),
     item("(3)", "the variational inequality", &[],
         "that it has one solution (Stampacchia); that it is (1)-(2) for all v in K: at a point, and for the shape functions of P1 at affine solutions"),
     item("(4)", "a <= [a]+, a [a]+ = [a]+^2", &[POSITIVE_PART], ""),
@@ -64,7 +64,7 @@ pub const ITEMS: &[Item] = &[
     item("Remark 2.2", "gamma may be a function", &[PRESSURE],
         "that gamma is measurable: in the code it is constant on each edge"),
     item("(6)", "Nitsche's form of Green's formula", &[P0], "Green's formula for fields that are not affine"),
-    item("(7)", "gamma = gamma0 h_T", &[("src/fem/contact_line.rs", "pub fn gamma0(")],
+    item("(7)", "gamma = gamma0 h_T", &[("src/contact/contact_line.rs", "pub fn gamma0(")],
         "meshes of more than eight triangles"),
     item("Remark 2.3", "(8) holds formally for the exact solution", &[], "the regularity that the formula asks for"),
     item("(8)", "the method", &[RESIDUAL, INTEGRALS],

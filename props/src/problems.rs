@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use signorini::fem::{Condition, Diagonal, Mesh, Problem, Rectangle, SharedFunction};
 use signorini::kernel::Material;
+use signorini::model::{Condition, Diagonal, Mesh, Problem, Rectangle, SharedFunction};
 
 use crate::claim::text;
 

@@ -10,15 +10,16 @@ use std::fmt::Write;
 use std::path::Path;
 
 use faer::{Mat, Side};
-use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
-use signorini::fem::{
-    Diagonal, Discretization, Mesh, Perturbation, Problem, Rectangle, Structured, Trapezoid,
-};
+use signorini::contact::Discretization;
 use signorini::io::Case;
 use signorini::kernel::{Material, Plane};
-use signorini::solve::factor::Factor;
-use signorini::solve::ordering::nested_dissection;
-use signorini::solve::{Degree, Gamma0, Method, discretize_any};
+use signorini::linear::factor::Factor;
+use signorini::linear::matrix;
+use signorini::linear::matrix::{LowerTriangle, Neighbours, Numbering};
+use signorini::linear::ordering::nested_dissection;
+use signorini::model::Degree;
+use signorini::model::{Diagonal, Mesh, Perturbation, Problem, Rectangle, Structured, Trapezoid};
+use signorini::solve::{Gamma0, Method, discretize_any};
 
 use crate::claim::text;
 use crate::problems::{self, cells, floor, held, mapped, unloaded};

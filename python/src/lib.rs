@@ -12,7 +12,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use signorini::fem::{Function, Mesh, Pair, SharedFunction};
+use signorini::contact::Pair;
 use signorini::io::Case;
 use signorini::io::outputs::{self, Extra};
 use signorini::io::picture::draw;
@@ -21,8 +21,9 @@ use signorini::io::result::{Results, result_json};
 use signorini::io::summary;
 use signorini::io::{Failure, run};
 use signorini::kernel::Stress;
-use signorini::solve::Solution;
-use signorini::solve::solution::ContactPoint;
+use signorini::model::{Function, Mesh, SharedFunction};
+use signorini::results::Solution;
+use signorini::results::solution::ContactPoint;
 
 create_exception!(signorini, CaseError, PyValueError, "The case is wrong.");
 create_exception!(

@@ -214,7 +214,7 @@ pub struct Evidence {
     pub cover: Option<Lifting>,
     /// The displacements with what they are to do.
     pub liftings: Vec<(ForceTarget, Lifting)>,
-    /// Dual pairs for contact forces (`certify::dual`).
+    /// Dual pairs for contact forces (`signorini_audit::dual`).
     pub pairs: Vec<(ForceTarget, Certificate)>,
     /// The intervals that they are said to prove.
     pub between: Option<Between>,

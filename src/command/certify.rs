@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use signorini::certify::binding::compare;
-use signorini::certify::certify_field;
+use signorini::certificates::binding::compare;
+use signorini::certificates::certify_field;
 use signorini::io::Failure;
 use signorini::io::field::read_field;
 use signorini::io::summary::{self, AuditedCase};

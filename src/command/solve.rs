@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use signorini::certify::adapt::Stage;
+use signorini::certificates::adapt::Stage;
 use signorini::io::files::spare;
 use signorini::io::outputs::{self, Extra};
 use signorini::io::result::{Results, result_json};

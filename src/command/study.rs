@@ -6,7 +6,7 @@ use signorini::io::Failure;
 use signorini::io::convergence;
 use signorini::io::files::spare;
 use signorini::io::summary;
-use signorini::solve::Degree;
+use signorini::model::Degree;
 
 use super::arguments::{CaseArguments, StudyOptions};
 use super::progress::Phases;

@@ -33,10 +33,11 @@ use self::source::Source;
 use self::table::{Table, Value};
 use super::input::{self, Failure, FileError, MOST_OF_A_CASE, Position};
 use super::remarks::Words;
-use crate::certify::{Asked, Target};
-use crate::fem::{Mesh, Pair, Perturbation, Problem, SharedFunction, Structured};
+use crate::certificates::{Asked, Target};
+use crate::contact::Pair;
 use crate::kernel::Plane;
 use crate::memory;
+use crate::model::{Mesh, Perturbation, Problem, SharedFunction, Structured};
 use crate::quote;
 use crate::solve::{Method, Settings};
 use crate::study::Exact;
@@ -355,10 +356,11 @@ fn read_output(table: &Table, mesh: &Mesh) -> Result<(Vec<[f64; 2]>, Option<f64>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::certify::Ramp;
-    use crate::fem::Condition;
+    use crate::certificates::Ramp;
     use crate::kernel::{Material, Plane};
-    use crate::solve::{ContactQuadrature, Degree, Gamma0};
+    use crate::model::Condition;
+    use crate::model::Degree;
+    use crate::solve::{ContactQuadrature, Gamma0};
 
     fn read(text: &str) -> Result<Case, FileError> {
         Case::parse(Path::new("x.toml"), text, &[])

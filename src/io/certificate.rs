@@ -1,11 +1,12 @@
-//! The files of a certificate, certificate.json and certificate.bin, read and verified. What they hold: `certify::format`.
+//! The files of a certificate, certificate.json and certificate.bin, read and verified. What they hold: `certificates::format`.
 
 use std::path::Path;
 
 use super::input;
 use super::input::Failure;
-use crate::certify::format::{self, Refused};
-pub use crate::certify::format::{Audit, Header, decode, encode, hash};
+use crate::certificates::format;
+use crate::certificates::format::Refused;
+pub use crate::certificates::format::{Audit, Header, decode, encode, hash};
 use crate::memory;
 use crate::quote;
 

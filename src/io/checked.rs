@@ -4,8 +4,9 @@
 use super::case::{Case, Measure};
 use super::result::{GammaChoice, MeshSizes};
 use super::summary::{self, Lines, QuantityFormat};
-use crate::fem::loads::{self, Resultants};
-use crate::fem::{BoundaryEdge, Condition, ContactLine, Degree, Mesh, Problem, Space};
+use crate::contact::ContactLine;
+use crate::model::loads::Resultants;
+use crate::model::{BoundaryEdge, Condition, Degree, Mesh, Problem, Space, loads};
 use crate::quote::{self, quoted};
 use crate::solve::{ContactQuadrature, Outline};
 

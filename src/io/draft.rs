@@ -5,8 +5,9 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::numbers::short;
-use crate::fem::tree::Bounds;
-use crate::fem::{BoundaryEdge, Mesh, Pair};
+use crate::contact::Pair;
+use crate::model::tree::Bounds;
+use crate::model::{BoundaryEdge, Mesh};
 use crate::quote::{self, number};
 
 /// The boundaries that are listed; more are counted.

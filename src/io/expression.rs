@@ -28,8 +28,8 @@ mod parser;
 pub use condition::PlaceCondition;
 use thiserror::Error;
 
-use crate::fem::Function;
 use crate::kernel::{Ball, Enclosing};
+use crate::model::Function;
 
 /// The greatest depth to which parentheses, functions, signs and powers may nest.
 pub const MOST_LEVELS: usize = 200;
@@ -166,7 +166,7 @@ impl From<f64> for Expression {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fem::Distance;
+    use crate::model::Distance;
 
     fn parse(text: &str) -> Expression {
         text.parse().unwrap_or_else(|e| panic!("{text}: {e}"))

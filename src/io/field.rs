@@ -14,8 +14,8 @@ use std::path::Path;
 
 use super::input::{self, Failure, FileError, Position};
 use super::vtu::reader::{Points, Triangles, from_vtu};
-use crate::fem::tree::{Bounds, Tree};
-use crate::fem::{Degree, Mesh, Space};
+use crate::model::tree::{Bounds, Tree};
+use crate::model::{Degree, Mesh, Space};
 use crate::quote;
 
 /// The most bytes of a file: the text of some ten million points.
@@ -176,8 +176,8 @@ fn from_csv(text: &str) -> Result<Points, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fem::{Diagonal, Rectangle};
     use crate::io::vtu::{CellKind, DataArray, Grid, vtu};
+    use crate::model::{Diagonal, Rectangle};
 
     fn mesh(diagonal: Diagonal) -> Mesh {
         Rectangle { width: 1.0, height: 2.0, nx: 3, ny: 2, diagonal }.mesh().unwrap()

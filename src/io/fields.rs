@@ -6,10 +6,10 @@ use super::csv;
 use super::files::{NotFinite, Output};
 use super::input::Failure;
 use super::vtu::{CellKind, DataArray, Grid, vtu};
-use crate::fem::{Mesh, Problem};
 use crate::kernel::Stress;
-use crate::solve::solution::ContactPoint;
-use crate::solve::{Solution, stresses};
+use crate::model::{Mesh, Problem};
+use crate::results::solution::ContactPoint;
+use crate::results::{Solution, stresses};
 
 impl Solution {
     /// Writes solution.vtu, contact.vtu and contact.csv into `folder`, of `problem`, which is the one that this solves;

@@ -20,7 +20,7 @@ use std::path::Path;
 
 use super::input::{self, FileError, MOST_OF_A_MESH};
 use super::raw_mesh::{ByDimension, Elements, Kind, Made, Node, RawMesh};
-use crate::fem::{Pair, pairs};
+use crate::contact::{Pair, pairs};
 use crate::memory;
 use cursor::{Cursor, Version, shown};
 
@@ -554,7 +554,7 @@ mod tests {
     use approx::assert_abs_diff_eq;
 
     use super::*;
-    use crate::fem::Mesh;
+    use crate::model::Mesh;
 
     const TEXT: &[u8] = include_bytes!("../../tests/meshes/square-ascii.msh");
     const BINARY: &[u8] = include_bytes!("../../tests/meshes/square-binary.msh");

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::fem::MeshError;
 use crate::memory::{self, OutOfMemory};
+use crate::model::MeshError;
 use crate::quote;
 
 /// The longest case file. A case for people has some thousand bytes.

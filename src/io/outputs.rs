@@ -19,10 +19,11 @@ use super::result::{
 use super::revolution;
 use super::run::Solved;
 use super::vtu::{CellKind, DataArray, Grid, vtu};
-use crate::certify::Continuous;
-use crate::fem::{Degree, Space};
+use crate::certificates::Continuous;
 use crate::memory;
-use crate::solve::{ContactQuadrature, Extreme, Gamma0, Solution};
+use crate::model::{Degree, Space};
+use crate::results::{Extreme, Solution};
+use crate::solve::{ContactQuadrature, Gamma0};
 use crate::study::Errors;
 
 const PICTURE: &str = "picture.svg";

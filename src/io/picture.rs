@@ -25,7 +25,7 @@ use svg::node::element::{Circle, Group};
 use super::case::Case;
 use super::files::{NotFinite, check_finite};
 use super::result::Results;
-use crate::solve::Solution;
+use crate::results::Solution;
 use body::{BAR, Colours, body, colour_bar, definitions, outlines};
 use contact::{ContactLine, arrow, hatched, obstacle, pressure, tags};
 use draw::{
@@ -203,8 +203,8 @@ mod tests {
     use super::draw::{RED, distance, short, viridis};
     use super::scene::{ContactSample, ContactSurface};
     use super::*;
-    use crate::certify::quantities::{Limit, Zone};
-    use crate::fem::{Diagonal, Rectangle};
+    use crate::certificates::quantities::{Limit, Zone};
+    use crate::model::{Diagonal, Rectangle};
     use svg::Document;
     use svg::node::element::tag::Type;
     use svg::parser::Event;

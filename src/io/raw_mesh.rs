@@ -10,11 +10,12 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use nalgebra::Vector2;
 
 use super::input::Failure;
-use crate::fem::merge::merge;
-use crate::fem::mesh::{ROUNDED, length};
-use crate::fem::tree::Bounds;
-use crate::fem::{Mesh, MeshError, Pair};
+use crate::contact::Pair;
 use crate::memory::{self, bytes_of};
+use crate::model::merge::merge;
+use crate::model::mesh::{ROUNDED, length};
+use crate::model::tree::Bounds;
+use crate::model::{Mesh, MeshError};
 use crate::quote::number;
 
 type Result<T> = std::result::Result<T, Failure>;

@@ -7,13 +7,13 @@ mod motion;
 mod resolution;
 
 use super::numbers::short;
-use crate::fem::contact_line::Gamma;
-use crate::fem::piece::{Piece, Stretch};
-use crate::fem::tree::Bounds;
-use crate::fem::{Degree, Problem};
+use crate::contact::contact_line::Gamma;
+use crate::contact::piece::{Piece, Stretch};
+use crate::model::tree::Bounds;
+use crate::model::{Degree, Problem};
 use crate::quote;
-use crate::solve::solution::ContactValues;
-use crate::solve::{ContactBoundary, Solution};
+use crate::results::solution::ContactValues;
+use crate::results::{ContactBoundary, Solution};
 
 /// Strains above this are more than small-strain theory is for.
 const LARGE_STRAIN: f64 = 0.05;

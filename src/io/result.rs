@@ -13,16 +13,17 @@ use serde_json::Value;
 
 use super::case::{MaterialEcho, Units};
 use super::files::NotFinite;
-use crate::certify::adapt::AdaptedLevel;
-use crate::certify::quantities::{Limit, Quantity, Zone};
-use crate::certify::{CertifyError, Continuous, Ramp};
-use crate::fem::Mesh;
-use crate::fem::contact_line::Gamma;
-use crate::fem::solvability::Play;
+use crate::certificates::adapt::AdaptedLevel;
+use crate::certificates::quantities::{Limit, Quantity, Zone};
+use crate::certificates::{CertifyError, Continuous, Ramp};
+use crate::contact::contact_line::Gamma;
+use crate::held::solvability::Play;
+use crate::model::Mesh;
+use crate::proof::Intervals;
+use crate::proof::enclosure::{Enclosure, Isolation, Unproved};
 use crate::quote;
-use crate::solve::enclosure::{Enclosure, Isolation, Unproved};
-use crate::solve::{
-    ContactBoundary, EnergyBalance, GammaReport, Intervals, MethodReport, Quantities, Status,
+use crate::results::{
+    ContactBoundary, EnergyBalance, GammaReport, MethodReport, Quantities, Status,
 };
 use crate::study::Errors;
 

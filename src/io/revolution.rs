@@ -1,7 +1,7 @@
 //! What a reader must know of the numbers of a body of revolution.
 
 use super::case::Case;
-use crate::fem::{Condition, Obstacle};
+use crate::model::{Condition, Obstacle};
 use crate::quote::quoted;
 
 /// The remark on a body of revolution: what its numbers are of, what its obstacles are, and what was moved.

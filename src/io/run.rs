@@ -5,9 +5,10 @@ use std::time::Instant;
 use super::case::Case;
 use super::input::Failure;
 use super::result::Adaptation;
-use crate::certify::adapt::{self, AdaptError, Stage};
-use crate::certify::{CertifyError, Continuous, certify_with};
-use crate::solve::{Course, Solution, SolveError, Times, solve_along};
+use crate::certificates::adapt::{AdaptError, Stage};
+use crate::certificates::{CertifyError, Continuous, adapt, certify_with};
+use crate::results::Solution;
+use crate::solve::{Course, SolveError, Times, solve_along};
 
 #[derive(Debug)]
 pub struct Solved {

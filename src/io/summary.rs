@@ -12,12 +12,12 @@ use super::result::{
 };
 use super::sweep::Sweep;
 use super::{Case, numbers};
-use crate::certify::Continuous;
-use crate::certify::adapt::AdaptedLevel;
-use crate::fem::solvability::Play;
+use crate::certificates::Continuous;
+use crate::certificates::adapt::AdaptedLevel;
+use crate::held::solvability::Play;
 use crate::quote;
-use crate::solve::answers::BoundaryFriction;
-use crate::solve::{ContactBoundary, MethodReport, RouteName, Status};
+use crate::results::answers::BoundaryFriction;
+use crate::results::{ContactBoundary, MethodReport, RouteName, Status};
 
 /// Lines of a name and a text; one without a name goes on with what the one before it is about.
 #[derive(Default)]

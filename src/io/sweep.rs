@@ -21,8 +21,8 @@ use super::result::Results;
 use super::run;
 use super::summary;
 use crate::quote;
-use crate::solve::Solution;
-use crate::solve::answers::label;
+use crate::results::Solution;
+use crate::results::answers::label;
 
 /// The most runs of a sweep: more are a mistake of the person who asks for them.
 pub const MOST_RUNS: usize = 10_000;

@@ -11,7 +11,7 @@ use std::iter::repeat_n;
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
 use super::files::{NotFinite, check_finite};
-use crate::fem::Degree;
+use crate::model::Degree;
 
 /// Cells of one kind, with data on their points and on the cells themselves.
 #[derive(Clone, Copy)]

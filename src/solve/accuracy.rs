@@ -8,17 +8,18 @@
 
 use std::sync::Arc;
 
-use super::enclosure::{Enclosure, Unproved, Verifier};
-use super::factor::Factor;
-use super::intervals::Arithmetic;
 use super::iterate::{Evaluation, Iterate, NOISE};
 use super::newton::Until;
-use super::system::System;
-use super::{Settings, SolveError, Status};
-use crate::fem::dense::norm;
-use crate::fem::discretization::Discretization;
-use crate::fem::rigid::NEGLIGIBLE;
+use super::{Settings, SolveError};
+use crate::contact::discretization::Discretization;
+use crate::held::rigid::NEGLIGIBLE;
 use crate::kernel::DoubleDouble;
+use crate::linear::dense::norm;
+use crate::linear::factor::Factor;
+use crate::linear::system::System;
+use crate::proof::enclosure::{Enclosure, Unproved, Verifier};
+use crate::proof::intervals::Arithmetic;
+use crate::results::Status;
 
 /// A way to better an iterate.
 pub trait Route {

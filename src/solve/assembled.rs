@@ -12,15 +12,15 @@ use super::accuracy::{Pass, Route};
 use super::body::{
     Body, ContactEnergy, Derivatives, Residual, Step, all_springs, blocks, derivatives, no_springs,
 };
-use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};
-use super::system::System;
-use crate::fem::clearance;
-use crate::fem::dense::norm;
-use crate::fem::piece::Stretch;
-use crate::fem::rigid::Parts;
+use crate::contact::piece::Stretch;
+use crate::held::clearance;
+use crate::held::rigid::Parts;
 use crate::kernel::DoubleDouble;
+use crate::linear::dense::norm;
+use crate::linear::factor::Factor;
+use crate::linear::system::System;
 
 /// The tangent last factored.
 pub struct Assembled<'a, 'd, 'p> {

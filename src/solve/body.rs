@@ -7,7 +7,7 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
-use crate::fem::discretization::Discretization;
+use crate::contact::discretization::Discretization;
 use crate::kernel::{DoubleDouble, Response};
 
 /// The pieces of Gamma_C as Newton's method needs them.

@@ -25,14 +25,14 @@ use nalgebra::{DMatrix, DVector};
 use super::SolveError;
 use super::accuracy::{Pass, Route};
 use super::body::{Body, ContactEnergy, Derivatives, Residual, Step, derivatives};
-use super::compliance::{Compliance, Reach};
-use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate, NOISE};
 use super::newton::{self, Until};
-use super::system::System;
-use crate::fem::dense::norm;
-use crate::fem::mesh::ROUNDED;
 use crate::kernel::DoubleDouble;
+use crate::linear::compliance::{Compliance, Reach};
+use crate::linear::dense::norm;
+use crate::linear::factor::Factor;
+use crate::linear::system::System;
+use crate::model::mesh::ROUNDED;
 
 /// The body, factored, and the forces of contact on it.
 pub struct Condensed<'a, 'd, 'p> {

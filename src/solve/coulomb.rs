@@ -20,14 +20,14 @@ use super::accuracy::{Pass, Route};
 use super::assembled::Assembled;
 use super::body::{Derivatives, all_springs, derivatives};
 use super::course::Course;
-use super::factor::Factor;
 use super::iterate::{Evaluation, Iterate};
 use super::newton::Until;
-use super::system::System;
-use crate::fem::dense::norm;
-use crate::fem::friction::Bound;
-use crate::fem::law::Law;
-use crate::fem::{Discretization, Piece};
+use crate::contact::friction::Bound;
+use crate::contact::law::Law;
+use crate::contact::{Discretization, Piece};
+use crate::linear::dense::norm;
+use crate::linear::factor::Factor;
+use crate::linear::system::System;
 
 /// A step is taken where the residual falls to this share of what it was.
 const FALLS: f64 = 0.9;
@@ -56,13 +56,13 @@ const SUPPORT: f64 = 1e-6;
 
 impl Discretization<'_> {
     /// Returns whether a piece has Coulomb's friction.
-    pub(super) fn has_coulomb(&self) -> bool {
+    pub(crate) fn has_coulomb(&self) -> bool {
         self.contact.iter().any(|piece| coefficient(piece).is_some())
     }
 }
 
 /// mu, where a piece has Coulomb's friction.
-pub(super) fn coefficient(piece: &Piece<impl Sized>) -> Option<f64> {
+pub(crate) fn coefficient(piece: &Piece<impl Sized>) -> Option<f64> {
     match piece.geometry.law {
         Law::Friction(Bound::Coulomb(mu)) => Some(mu),
         _ => None,

@@ -9,7 +9,7 @@
 //! which is the solution where contact stays as it was, for Psi'(y) = Psi''(y) y. Any start leads to the same solution: (8)
 //! has one, and the verdict on it is as strict.
 
-use crate::fem::discretization::Discretization;
+use crate::contact::discretization::Discretization;
 
 /// A phase of a solve, as it begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,7 +57,7 @@ impl<'a> Course<'a> {
         self.start.map(|_| Course { start: None, ..self })
     }
 
-    pub(super) fn enters(&self, phase: Phase) {
+    pub(crate) fn enters(&self, phase: Phase) {
         if let Some(watcher) = self.watcher {
             watcher(phase);
         }

@@ -2,9 +2,9 @@
 
 use thiserror::Error;
 
-use crate::fem::matrix::OutsidePattern;
-use crate::fem::{DataError, MeshError};
+use crate::linear::matrix::OutsidePattern;
 use crate::memory::OutOfMemory;
+use crate::model::{DataError, MeshError};
 use crate::quote::{fixed, number};
 
 /// Why there is no solution.

@@ -6,13 +6,12 @@
 
 use nalgebra::Vector2;
 
-use super::system::System;
-use crate::fem::discretization::{Discretization, Functional};
-use crate::fem::residual;
-use crate::fem::solvability::{Play, Slides};
-use crate::fem::stress_points::Nodal;
-use crate::fem::{EdgeRule, Piece};
+use crate::contact::discretization::{Discretization, Functional};
+use crate::contact::stress_points::Nodal;
+use crate::contact::{EdgeRule, Piece, residual};
+use crate::held::solvability::{Play, Slides};
 use crate::kernel::DoubleDouble;
+use crate::linear::system::System;
 
 /// A residual this many times the distance of doubles, times its magnitudes, is noise: Newton's method ends there. With 0 it goes on
 /// to the last step that is allowed for one body in five; with 4000 it ends as well, but the passes have more to correct.

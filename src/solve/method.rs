@@ -1,7 +1,7 @@
 //! The choices that method (8) leaves open, and when its solution is good enough. What a case file could not ask for is refused
 //! here too, whoever put it together.
 
-use crate::fem::{DataError, Degree};
+use crate::model::{DataError, Degree};
 
 /// More Gauss points than this gain nothing: the integrand has a kink where contact ends.
 pub const MOST_GAUSS_POINTS: usize = 64;
@@ -126,7 +126,7 @@ impl ContactQuadrature {
 
 impl Method {
     /// Nothing, if a case file could ask for this method.
-    pub(super) fn check(&self) -> Result<(), DataError> {
+    pub(crate) fn check(&self) -> Result<(), DataError> {
         self.gamma0.checked()?;
         self.quadrature.checked().map(|_| ())
     }
@@ -143,7 +143,7 @@ impl Settings {
     }
 
     /// Nothing, if a case file could ask for these settings.
-    pub(super) fn check(&self) -> Result<(), DataError> {
+    pub(crate) fn check(&self) -> Result<(), DataError> {
         for (what, share) in [("proof", self.proof), ("the tolerance", self.tolerance)] {
             if !(share > 0.0 && share < 1.0) {
                 return Err(refused(what, share, "a number above 0 and below 1"));

@@ -5,79 +5,52 @@
 //! 3. Newton's method on J_h with an exact line search ([`newton`]), from soft springs to stiff ones, by the [`route`] that
 //!    takes less: the body condensed to its contact edges, or the tangent factored in each step.
 //! 4. Refine and verify ([`accuracy::refine`]): corrections from the true residual until the enclosure of the exact solution of
-//!    (8) is as narrow as asked for ([`enclosure`]); the other route where the first proves too little.
-//! 5. Report ([`solution`]): stresses, contact pressure, resultants, and the verdict, which is the proof.
+//!    (8) is as narrow as asked for ([`crate::proof::enclosure`]); the other route where the first proves too little.
+//! 5. Report ([`crate::results`]): stresses, contact pressure, resultants, and the verdict, which is the proof.
 //!
 //! docs/theory.md: 4 has Newton's method, 5 the routes and the refinement, 7.5 the enclosure.
 
 #[doc(hidden)]
 pub mod accuracy;
 #[doc(hidden)]
-pub mod answers;
-#[doc(hidden)]
 pub mod assembled;
 #[doc(hidden)]
-pub mod balls;
-#[doc(hidden)]
 pub mod body;
-#[doc(hidden)]
-pub mod compliance;
 pub mod condensed;
 #[doc(hidden)]
 pub mod coulomb;
 #[doc(hidden)]
 pub mod course;
-#[doc(hidden)]
-pub mod enclosure;
 mod error;
-#[doc(hidden)]
-pub mod factor;
-#[doc(hidden)]
-pub mod intervals;
-mod isolated;
 #[doc(hidden)]
 pub mod iterate;
 mod method;
 pub mod newton;
 #[doc(hidden)]
-pub mod ordering;
-#[doc(hidden)]
-pub mod pressed;
-mod report;
-#[doc(hidden)]
 pub mod route;
-#[doc(hidden)]
-pub mod solution;
-#[doc(hidden)]
-pub mod stresses;
-#[doc(hidden)]
-pub mod system;
-mod times;
-mod whole;
+mod setup;
+pub(crate) mod times;
 
-use self::accuracy::Outcome;
-pub use self::answers::{ContactBoundary, EnergyBalance};
 pub use self::course::{Course, Phase};
-pub use self::enclosure::{Enclosure, Unproved};
 pub use self::error::{SolveError, history};
-pub use self::intervals::Intervals;
-use self::iterate::Evaluated;
 pub use self::method::{
     ContactQuadrature, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
 };
-pub use self::report::{MethodReport, NewtonReport, Report, RouteName, Status, Verdict};
-use self::route::Strategy;
-pub use self::solution::{GammaReport, Quantities, Solution};
-pub use self::stresses::{Extreme, LargestStresses};
-use self::system::System;
-use self::times::Stopwatch;
+pub use self::setup::{Outline, check, discretize, discretize_any};
 pub use self::times::Times;
-pub use crate::fem::Degree;
-use crate::fem::contact_line::{Coercivity, Gamma};
-use crate::fem::held;
-use crate::fem::material::largest_entry;
-use crate::fem::{Discretization, EdgeRule, Problem};
+
+use self::accuracy::Outcome;
+use self::iterate::Evaluated;
+use self::route::Strategy;
+use self::setup::{is_out_of_range, stiffest};
+use self::times::Stopwatch;
+use crate::contact::Discretization;
+use crate::linear::system::System;
 use crate::memory;
+use crate::model::{Degree, Problem};
+use crate::results::{
+    EnergyBalance, MethodReport, NewtonReport, Report, RouteName, Solution, Verdict,
+};
 
 /// Solves `problem` by method (8).
 ///
@@ -196,124 +169,4 @@ fn solve_discrete_along<'d>(
     };
     let enclosure = outcome.enclosure;
     Ok((evaluated, Report { newton, method, enclosure, verdict, plays }, times))
-}
-
-/// Builds and checks everything that [`solve`] needs, short of a matrix.
-///
-/// # Errors
-/// As [`solve`], as far as they show before anything is solved.
-pub fn check(problem: &Problem, method: &Method) -> Result<Outline, SolveError> {
-    Ok(Outline::new(&discretize(problem, method)?))
-}
-
-/// The size of a discrete problem and its coercivity.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Outline {
-    /// The number of nodes; each has two degrees of freedom.
-    pub nodes: usize,
-    /// How many of the degrees of freedom are prescribed.
-    pub prescribed: usize,
-    /// How many edges Gamma_C has.
-    pub contact_edges: usize,
-    /// How many rigid motions the supports leave free.
-    pub free_motions: usize,
-    /// How many of them contact does not stop either.
-    pub slides: usize,
-    /// gamma0, kappa and where the limit comes from.
-    pub gamma: GammaReport,
-}
-
-impl Outline {
-    fn new(d: &Discretization) -> Self {
-        Outline {
-            nodes: d.space.nodes().len(),
-            prescribed: d.constraints.values().iter().flatten().flatten().count(),
-            contact_edges: d.contact.len(),
-            free_motions: d.motions.len(),
-            slides: d.slides.as_ref().map_or(0, |slides| slides.basis.len()),
-            gamma: GammaReport::new(d),
-        }
-    }
-}
-
-/// Method (8) on the problem's mesh.
-///
-/// # Errors
-/// Data that don't make a problem, supports that hold the body inside its obstacle, and kappa >= 1 without leave.
-pub fn discretize<'a>(
-    problem: &'a Problem,
-    method: &Method,
-) -> Result<Discretization<'a>, SolveError> {
-    let d = discretize_any(problem, method)?;
-    held::check(&d)?;
-    Ok(d)
-}
-
-/// As [`discretize`], of a problem that no displacement of finite energy solves, too: (8) has a solution on every mesh.
-///
-/// # Errors
-/// As [`discretize`].
-#[doc(hidden)]
-pub fn discretize_any<'a>(
-    problem: &'a Problem,
-    method: &Method,
-) -> Result<Discretization<'a>, SolveError> {
-    method.check()?;
-    let mut limit = 1.0;
-    let gamma = |c: &Coercivity| {
-        limit = c.limit();
-        match method.gamma0 {
-            // The springs between a stiff body and a soft one are those of the soft one.
-            Gamma0::Auto if !problem.pairs.is_empty() => Gamma::Local(0.5),
-            Gamma0::Auto => Gamma::Uniform(limit / 2.0),
-            Gamma0::Value(gamma0) => Gamma::Uniform(gamma0),
-            Gamma0::Local(kappa) => Gamma::Local(kappa),
-        }
-    };
-    let rule = match method.quadrature {
-        ContactQuadrature::Exact => EdgeRule::Exact,
-        ContactQuadrature::Gauss(points) => EdgeRule::gauss(points),
-    };
-    let d = Discretization::new(problem, method.degree, gamma, rule);
-    if !can_be_multiplied(problem) {
-        return Err(SolveError::OutOfRange);
-    }
-    let d = d?;
-    if !limit.is_normal() {
-        return Err(SolveError::OutOfRange);
-    }
-    if d.kappa() < 1.0 || method.allow_noncoercive {
-        Ok(d)
-    } else {
-        Err(SolveError::NotCoercive {
-            gamma0: d.gamma0,
-            kappa: d.kappa(),
-            limit: d.coercivity.limit(),
-            edge: d.coercivity.limiting_edge,
-        })
-    }
-}
-
-/// Returns whether a number is positive and not between 1/far and far.
-fn is_out_of_range(x: f64, far: f64) -> bool {
-    x > 0.0 && !(1.0 / far..=far).contains(&x)
-}
-
-/// The largest entry of a law.
-fn stiffest(problem: &Problem) -> f64 {
-    problem.material.distinct().iter().map(largest_entry).fold(0.0, f64::max)
-}
-
-/// Returns whether the products of the lengths and moduli of a problem, some of each, are normal doubles, as far as the numbers
-/// are lengths and moduli at all.
-fn can_be_multiplied(problem: &Problem) -> bool {
-    let extent = |c: usize| {
-        let coordinates = || problem.mesh.vertices().iter().map(|x| x[c]);
-        let low = coordinates().fold(f64::INFINITY, f64::min);
-        coordinates().fold(f64::NEG_INFINITY, f64::max) - low
-    };
-    let modulus = stiffest(problem);
-    let can_be_a_modulus = modulus.is_infinite() || !is_out_of_range(modulus, 1e80);
-    !is_out_of_range(extent(0).max(extent(1)), 1e40) && can_be_a_modulus
 }

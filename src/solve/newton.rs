@@ -26,13 +26,13 @@
 
 use super::SolveError;
 use super::body::{Body, ContactEnergy, Derivatives, Step, derivatives};
-use crate::fem::dense::norm;
 use crate::kernel::DoubleDouble;
+use crate::linear::dense::norm;
 
 /// A share that need not be known better. The line search ends where the derivative along the step is this small beside the one
 /// at its start, and asks for a decrease of this share of what that derivative promises (Armijo's sigma: any below 1/2 will do); the
-/// [enclosure](super::enclosure) corrects a bound no further when what is left to correct is this small a part of it.
-pub(super) const SLIGHT: f64 = 1e-2;
+/// [enclosure](crate::proof::enclosure) corrects a bound no further when what is left to correct is this small a part of it.
+pub(crate) const SLIGHT: f64 = 1e-2;
 
 /// How many times stiffer than the body the springs of contact are at first. From 8 to 100 it matters little; as stiff from the start as
 /// they are in the end, seven of 504 bodies at random are not solved in 200 steps.

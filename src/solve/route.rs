@@ -11,17 +11,17 @@ use std::sync::Arc;
 
 use super::accuracy::{self, Outcome, Route};
 use super::assembled::Assembled;
-use super::compliance::Reach;
 use super::condensed::Condensed;
 use super::coulomb::Coulomb;
 use super::course::Phase;
-use super::enclosure::Verifier;
-use super::factor::Factor;
-use super::report::RouteName;
-use super::system::System;
 use super::times::{Stopwatch, Times};
 use super::{Settings, SolveError};
+use crate::linear::compliance::Reach;
+use crate::linear::factor::Factor;
+use crate::linear::system::System;
 use crate::memory;
+use crate::proof::enclosure::Verifier;
+use crate::results::report::RouteName;
 
 /// The Newton steps that a prediction counts on.
 const STEPS: f64 = 12.0;

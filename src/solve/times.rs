@@ -52,7 +52,7 @@ impl Times {
 }
 
 /// Tells the time since it was last asked.
-pub(super) struct Stopwatch(Instant);
+pub(crate) struct Stopwatch(Instant);
 
 impl Stopwatch {
     pub fn start() -> Self {

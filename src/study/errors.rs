@@ -13,14 +13,14 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::exact::ExactSolution;
-use crate::fem::Piece;
-use crate::fem::Problem;
-use crate::fem::element::with_element;
-use crate::fem::graded_quadrature::Rule;
-use crate::fem::space::Space;
+use crate::contact::Piece;
 use crate::kernel::element::displacement_gradient;
 use crate::kernel::{ContactPoint, Element, positive_part};
-use crate::solve::Solution;
+use crate::model::Problem;
+use crate::model::element::with_element;
+use crate::model::graded_quadrature::Rule;
+use crate::model::space::Space;
+use crate::results::Solution;
 
 /// Points in each direction. u is a polynomial of degree at most 7 on each piece for the smooth solutions with whole
 /// exponents (exact from 8 points on); for the singular ones the rule converges geometrically away from the singular point

@@ -15,11 +15,11 @@ use std::f64::consts::PI;
 use super::a_priori;
 use super::errors::{Errors, POINTS};
 use super::exact::ExactSolution;
-use crate::fem::Piece;
-use crate::fem::graded_quadrature::{EdgePoint, Rule};
-use crate::fem::material::largest_eigenvalue;
-use crate::fem::space::Space;
+use crate::contact::Piece;
 use crate::kernel::{Material, Scalar, Triangle};
+use crate::model::graded_quadrature::{EdgePoint, Rule};
+use crate::model::material::largest_eigenvalue;
+use crate::model::space::Space;
 
 /// c_T^2 of (22).
 pub fn gradient_constant_squared<S: Scalar>(triangle: &Triangle<S>) -> S {

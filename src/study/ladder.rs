@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
-use crate::fem::{MeshError, Perturbation, Problem, Space, Structured};
+use crate::model::{Degree, MeshError, Perturbation, Problem, Space, Structured};
+use crate::results::Solution;
 use crate::solve::{
-    ContactQuadrature, Degree, Gamma0, Method, Outline, Settings, Solution, SolveError, check,
-    solve,
+    ContactQuadrature, Gamma0, Method, Outline, Settings, SolveError, check, solve,
 };
 use crate::study::exact::{self, Kind};
 use crate::study::{Errors, Exact, interpolation};

@@ -3,13 +3,16 @@
 //!
 //! a(v^h, w) = a(u, w) = L(w) + int_{Gamma_C} sigma_n(u) w_n for all w in V^h.
 
-use crate::fem::contact_line::Gamma;
-use crate::fem::graded_quadrature::Rule;
-use crate::fem::matrix::{self, Neighbours, Numbering};
-use crate::fem::{Discretization, Problem};
-use crate::solve::factor::Factor;
-use crate::solve::ordering::nested_dissection;
-use crate::solve::{ContactQuadrature, Gamma0, Method, Solution, SolveError, discretize};
+use crate::contact::Discretization;
+use crate::contact::contact_line::Gamma;
+use crate::linear::factor::Factor;
+use crate::linear::matrix;
+use crate::linear::matrix::{Neighbours, Numbering};
+use crate::linear::ordering::nested_dissection;
+use crate::model::Problem;
+use crate::model::graded_quadrature::Rule;
+use crate::results::Solution;
+use crate::solve::{ContactQuadrature, Gamma0, Method, SolveError, discretize};
 use crate::study::{Errors, ExactSolution, a_priori, errors};
 
 /// The two sides and their ingredients.

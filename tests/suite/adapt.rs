@@ -4,13 +4,14 @@
 
 use crate::common::exact::{corner, on_square, on_trapezoid, singular};
 use crate::common::*;
-use signorini::certify::adapt::AdaptError;
-use signorini::certify::{Adapted, Target, adapt, certify};
-use signorini::fem::{Condition, Materials, PointSupport, Problem};
+use signorini::certificates::adapt::AdaptError;
+use signorini::certificates::{Adapted, Target, adapt, certify};
 use signorini::io::Case;
 use signorini::io::run;
 use signorini::kernel::{Material, Plane};
-use signorini::solve::{Degree, Method, Settings, solve};
+use signorini::model::Degree;
+use signorini::model::{Condition, Materials, PointSupport, Problem};
+use signorini::solve::{Method, Settings, solve};
 use signorini::study::Ladder;
 use signorini::study::ladder::fitted_slope;
 

@@ -4,9 +4,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use signorini::certify::binding::compare;
-use signorini::certify::forces::Evidence;
-use signorini::certify::{Continuous, certify};
+use signorini::certificates::binding::compare;
+use signorini::certificates::forces::Evidence;
+use signorini::certificates::{Continuous, certify};
 use signorini::io::certificate::{self, Header};
 use signorini::io::run;
 

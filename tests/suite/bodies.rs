@@ -7,13 +7,15 @@
 
 use std::collections::BTreeMap;
 
-use signorini::fem::{Condition, Diagonal, Materials, Mesh, Problem, Rectangle};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::enclosure::enclose;
-use signorini::solve::system::System;
+use signorini::linear::system::System;
+use signorini::model::Degree;
+use signorini::model::{Condition, Diagonal, Materials, Mesh, Problem, Rectangle};
+use signorini::proof::Unproved;
+use signorini::proof::enclosure::enclose;
+use signorini::results::Solution;
 use signorini::solve::{
-    ContactQuadrature, Degree, Gamma0, Method, Settings, Solution, SolveError, Unproved, check,
-    discretize, solve,
+    ContactQuadrature, Gamma0, Method, Settings, SolveError, check, discretize, solve,
 };
 
 use crate::common::{DEGREES, Random, constant};

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use crate::certify::accepts;
 use crate::common::{case_of, encoded};
-use signorini::certify::proof::{Certificate, Role};
-use signorini::certify::quantities::Name;
-use signorini::certify::{Continuous, Rejection, certify, certify_field};
+use signorini::certificates::proof::{Certificate, Role};
+use signorini::certificates::quantities::Name;
+use signorini::certificates::{Continuous, Rejection, certify, certify_field};
 use signorini::io::Case;
 use signorini::kernel::Ball;
 use signorini::solve::solve;

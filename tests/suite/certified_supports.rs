@@ -5,11 +5,13 @@
 use crate::certify::accepts;
 use crate::common::exact::{on_square, singular, smooth};
 use crate::common::*;
-use signorini::certify::proof::Role;
-use signorini::certify::{Continuous, certify};
-use signorini::fem::{Condition, Problem, SharedFunction};
+use signorini::certificates::proof::Role;
+use signorini::certificates::{Continuous, certify};
 use signorini::io::certificate;
-use signorini::solve::{Degree, Settings, Solution, solve};
+use signorini::model::Degree;
+use signorini::model::{Condition, Problem, SharedFunction};
+use signorini::results::Solution;
+use signorini::solve::{Settings, solve};
 use signorini::study::Ladder;
 use signorini::study::exact::Kind;
 

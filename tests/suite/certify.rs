@@ -10,14 +10,16 @@ use crate::common::exact::{
     corner, moved, on_square, on_trapezoid, singular, smooth, smooth_with_gap,
 };
 use crate::common::*;
-use signorini::certify::proof::Role;
-use signorini::certify::{Continuous, Rejection, certify, certify_field};
-use signorini::fem::{Condition, Obstacle, Problem, Side};
+use signorini::certificates::proof::Role;
+use signorini::certificates::{Continuous, Rejection, certify, certify_field};
 use signorini::io::Case;
 use signorini::io::certificate::{self, Header};
 use signorini::io::result::ContinuousCertificate;
 use signorini::kernel::{Ball, Material, Plane};
-use signorini::solve::{Degree, Gamma0, Method, Settings, Solution, discretize, solve};
+use signorini::model::Degree;
+use signorini::model::{Condition, Obstacle, Problem, Side};
+use signorini::results::Solution;
+use signorini::solve::{Gamma0, Method, Settings, discretize, solve};
 use signorini::study::Ladder;
 
 /// The bounds on three levels of a ladder, each of which is above the true error of the same field, by less than a factor.

@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use signorini::certify::Continuous;
-use signorini::fem::{Condition, Diagonal, Mesh, Problem, Rectangle, SharedFunction, Space};
+use signorini::certificates::Continuous;
 use signorini::io::certificate::{self, Header};
 use signorini::io::{Case, Expression};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method};
+use signorini::model::Degree;
+use signorini::model::{Condition, Diagonal, Mesh, Problem, Rectangle, SharedFunction, Space};
+use signorini::solve::{ContactQuadrature, Gamma0, Method};
 use signorini::study::{Errors, Exact};
 
 pub const DEGREES: [Degree; 2] = [Degree::One, Degree::Two];
@@ -172,8 +173,8 @@ pub mod exact {
     use std::f64::consts::PI;
     use std::sync::Arc;
 
-    use signorini::fem::{Perturbation, Structured, Trapezoid};
-    use signorini::solve::{Degree, Settings};
+    use signorini::model::{Degree, Perturbation, Structured, Trapezoid};
+    use signorini::solve::Settings;
     use signorini::study::exact::{Corner, Kind, Singular, SlipTip, Smooth, StickSlip};
     use signorini::study::{Exact, Ladder};
 

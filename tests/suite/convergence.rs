@@ -21,12 +21,14 @@ use crate::common::exact::{
     corner, moved, on_square, on_trapezoid, singular, smooth, smooth_with_gap,
 };
 use approx::assert_relative_eq;
-use signorini::fem::contact_line::assemble;
-use signorini::fem::{Discretization, EdgeRule, Piece, Space, loads, residual};
+use signorini::contact::contact_line::assemble;
+use signorini::contact::{Discretization, EdgeRule, Piece, residual};
 use signorini::kernel::P2;
+use signorini::model::Degree;
+use signorini::model::{Space, loads};
 use signorini::nalgebra::Vector2;
 use signorini::solve::iterate::Evaluated;
-use signorini::solve::{Degree, Gamma0, Settings, solve_discrete};
+use signorini::solve::{Gamma0, Settings, solve_discrete};
 use signorini::study::interpolation::{Interpolation, seminorms};
 use signorini::study::ladder::{fitted_slope, rates};
 use signorini::study::{Errors, Exact, a_priori};

@@ -3,7 +3,9 @@
 use std::cell::Cell;
 
 use signorini::io::Case;
-use signorini::solve::{self, Course, Phase, RouteName, Solution};
+use signorini::results::{RouteName, Solution};
+use signorini::solve;
+use signorini::solve::{Course, Phase};
 
 use crate::common::case;
 

@@ -1,13 +1,13 @@
 //! The enclosure of the exact solution of (8) that comes with every solve.
 
-use signorini::fem::{Condition, Diagonal, Problem, Rectangle};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::enclosure::{self, Enclosure};
-use signorini::solve::system::System;
-use signorini::solve::{
-    ContactQuadrature, Degree, Gamma0, Method, Settings, Solution, Unproved, Verdict, check,
-    discretize, solve,
-};
+use signorini::linear::system::System;
+use signorini::model::Degree;
+use signorini::model::{Condition, Diagonal, Problem, Rectangle};
+use signorini::proof::enclosure::Enclosure;
+use signorini::proof::{Unproved, enclosure};
+use signorini::results::{Solution, Verdict};
+use signorini::solve::{ContactQuadrature, Gamma0, Method, Settings, check, discretize, solve};
 
 use crate::common::{DEGREES, Random, case};
 

@@ -13,10 +13,10 @@ use approx::{abs_diff_eq, assert_relative_eq};
 
 use crate::common::Random;
 use crate::common::exact::{corner, on_square, on_trapezoid, singular, smooth};
-use signorini::fem::Space;
 use signorini::kernel::{Material, Plane};
+use signorini::model::Degree;
+use signorini::model::Space;
 use signorini::nalgebra::{Matrix2, Vector2};
-use signorini::solve::Degree;
 use signorini::study::errors::POINTS;
 use signorini::study::exact::{Corner, Patch, Singular, SlipTip, Smooth, StickSlip};
 use signorini::study::{Errors, Exact};

@@ -3,17 +3,17 @@
 
 use std::collections::BTreeMap;
 
-use signorini::certify::certify;
-use signorini::fem::friction::Bound;
-use signorini::fem::law::Law;
-use signorini::fem::{Condition, Diagonal, Friction, Obstacle, Problem, Rectangle, Side};
+use signorini::certificates::certify;
+use signorini::contact::Friction;
+use signorini::contact::friction::Bound;
+use signorini::contact::law::Law;
 use signorini::kernel::{Material, Plane, PreciseBall};
+use signorini::linear::system::System;
+use signorini::model::Degree;
+use signorini::model::{Condition, Diagonal, Obstacle, Problem, Rectangle, Side};
+use signorini::results::{RouteName, Solution, Verdict};
 use signorini::solve::route;
-use signorini::solve::system::System;
-use signorini::solve::{
-    Course, Degree, Gamma0, Method, RouteName, Settings, Solution, SolveError, Times, Verdict,
-    discretize, solve,
-};
+use signorini::solve::{Course, Gamma0, Method, Settings, SolveError, Times, discretize, solve};
 use signorini::study::Exact;
 use signorini::study::ladder::rates;
 

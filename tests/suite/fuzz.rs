@@ -11,10 +11,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use signorini::fem::Function;
 use signorini::io::Expression;
 use signorini::io::gmsh;
 use signorini::io::raw_mesh::Made;
+use signorini::model::Function;
 
 use crate::common::Random;
 

@@ -5,8 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use signorini::fem::Mesh;
 use signorini::io::{Case, gmsh};
+use signorini::model::Mesh;
 use signorini::solve::solve;
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
@@ -129,7 +129,7 @@ fn every_fresh_variant_of_the_bracket_gives_the_same_result() {
         let text = text.replace("\"bracket.msh\"", &format!("\"{output}\""));
         let case = Case::parse(&case, &text, &[]).unwrap_or_else(|e| panic!("{output}: {e}"));
         let (s, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
-        let of_boundary = |b: &signorini::solve::ContactBoundary| {
+        let of_boundary = |b: &signorini::results::ContactBoundary| {
             [b.force, b.resultant[0], b.resultant[1], b.moment, b.length, b.peak_pressure]
         };
         let mut numbers = vec![s.quantities.energy, s.quantities.work];

@@ -2,13 +2,12 @@
 //! equilibrium, and from the same bodies on supports that happen to carry nothing.
 
 use approx::assert_abs_diff_eq;
-use signorini::fem::{
-    Condition, DataError, Mesh, Obstacle, PointSupport, Problem, Side, Space, contact_line,
-};
+use signorini::contact::contact_line;
 use signorini::kernel::{Material, Plane};
-use signorini::solve::{
-    Course, Degree, Method, RouteName, Settings, Solution, SolveError, solve, solve_along,
-};
+use signorini::model::Degree;
+use signorini::model::{Condition, DataError, Mesh, Obstacle, PointSupport, Problem, Side, Space};
+use signorini::results::{RouteName, Solution};
+use signorini::solve::{Course, Method, Settings, SolveError, solve, solve_along};
 
 use crate::common::*;
 
@@ -33,7 +32,7 @@ fn solved(problem: &Problem, degree: Degree) -> Solution {
 #[test]
 fn a_block_on_a_floor_carries_its_weight_and_stays_where_it_is() {
     for degree in DEGREES {
-        let mesh = skewed_square(6, signorini::fem::Diagonal::Crossed);
+        let mesh = skewed_square(6, signorini::model::Diagonal::Crossed);
         let s = solved(
             &block_under(mesh, [0.0, -0.1], vec![("bottom", Condition::contact(|_| 0.0))]),
             degree,

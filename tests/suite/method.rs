@@ -4,11 +4,13 @@
 use crate::common::*;
 use faer::linalg::solvers::Solve;
 use faer::{Col, Mat};
-use signorini::fem::{Condition, Diagonal, Discretization, Problem, Rectangle};
+use signorini::contact::Discretization;
+use signorini::model::Degree;
+use signorini::model::{Condition, Diagonal, Problem, Rectangle};
+use signorini::results::{Status, Verdict};
 use signorini::solve::iterate::Evaluated;
 use signorini::solve::{
-    ContactQuadrature, Degree, Gamma0, Method, Settings, Status, Verdict, discretize, solve,
-    solve_discrete,
+    ContactQuadrature, Gamma0, Method, Settings, discretize, solve, solve_discrete,
 };
 
 /// [0, 0.3] x [0, 1] in 6 x 4 cells, lambda = mu = 1, clamped on top, no load, one Gauss point per contact edge, the gap at

@@ -3,11 +3,12 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use signorini::fem::boundary_normals::SmoothBoundary;
-use signorini::fem::pairs::{PairPiece, of_problem};
-use signorini::fem::{Condition, Law};
+use signorini::contact::Law;
+use signorini::contact::pairs::{PairPiece, of_problem};
 use signorini::io::Case;
-use signorini::solve::Degree;
+use signorini::model::Condition;
+use signorini::model::Degree;
+use signorini::model::boundary_normals::SmoothBoundary;
 
 fn folder(test: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("pair_cases").join(test);

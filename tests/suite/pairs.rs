@@ -3,13 +3,14 @@
 
 use std::sync::Arc;
 
-use signorini::fem::piece::PieceGeometry;
-use signorini::fem::{Condition, Discretization, Law, Materials, Mesh, Pair, Piece, Problem};
+use signorini::contact::piece::PieceGeometry;
+use signorini::contact::{Discretization, Law, Pair, Piece};
 use signorini::kernel::{Material, Plane};
+use signorini::model::Degree;
+use signorini::model::{Condition, Materials, Mesh, Problem};
 use signorini::nalgebra::Vector2;
-use signorini::solve::{
-    Degree, Gamma0, Method, Settings, Solution, SolveError, discretize, solve, solve_discrete,
-};
+use signorini::results::Solution;
+use signorini::solve::{Gamma0, Method, Settings, SolveError, discretize, solve, solve_discrete};
 
 mod balance;
 mod certified;
@@ -118,7 +119,7 @@ fn with_geometry(d: &Discretization, change: impl Fn(&mut PieceGeometry)) -> Vec
         let mut geometry = (*piece.geometry).clone();
         change(&mut geometry);
         let piece = Piece { geometry: Arc::new(geometry), ..piece.clone() };
-        signorini::fem::residual::exact_piece(d, &piece)
+        signorini::contact::residual::exact_piece(d, &piece)
     };
     d.contact.iter().map(changed).collect()
 }

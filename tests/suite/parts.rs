@@ -6,14 +6,16 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use approx::{assert_abs_diff_eq, assert_relative_eq, relative_eq};
-use signorini::fem::{
-    Condition, Diagonal, Materials, Mesh, Obstacle, PointSupport, Problem, Rectangle, Side,
-};
 use signorini::io::{Case, gmsh};
 use signorini::kernel::{Material, Plane};
+use signorini::model::Degree;
+use signorini::model::{
+    Condition, Diagonal, Materials, Mesh, Obstacle, PointSupport, Problem, Rectangle, Side,
+};
 use signorini::nalgebra::Vector2;
-use signorini::solve::solution::ContactValues;
-use signorini::solve::{Degree, Solution, solve};
+use signorini::results::Solution;
+use signorini::results::solution::ContactValues;
+use signorini::solve::solve;
 
 use super::common::*;
 

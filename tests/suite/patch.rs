@@ -3,10 +3,12 @@
 
 use std::sync::Arc;
 
-use signorini::fem::{Diagonal, Problem};
 use signorini::kernel::{Material, Plane};
+use signorini::model::Degree;
+use signorini::model::{Diagonal, Problem};
 use signorini::nalgebra::Vector2;
-use signorini::solve::{Degree, Settings, Solution, solve};
+use signorini::results::Solution;
+use signorini::solve::{Settings, solve};
 use signorini::study::Exact;
 use signorini::study::exact::{self, Kind, Patch};
 

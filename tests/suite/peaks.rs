@@ -5,9 +5,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use signorini::fem::{Condition, Mesh, Obstacle, Problem, Side};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::{ContactBoundary, Degree, solve};
+use signorini::model::Degree;
+use signorini::model::{Condition, Mesh, Obstacle, Problem, Side};
+use signorini::results::ContactBoundary;
+use signorini::solve::solve;
 
 use super::common::*;
 

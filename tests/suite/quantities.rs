@@ -2,15 +2,19 @@
 
 use std::sync::Arc;
 
-use signorini::certify::dual::WrongPair;
-use signorini::certify::forces::{self, Evidence, Motion, WrongLifting};
-use signorini::certify::proof::{Certificate, Role};
-use signorini::certify::quantities::{Limit, Name};
-use signorini::certify::{Asked, Continuous, Ramp, Target, adapt, adapt_to, certify, certify_with};
-use signorini::fem::{Condition, Perturbation, Problem, Structured};
+use signorini::certificates::dual::WrongPair;
+use signorini::certificates::forces::{Evidence, Motion, WrongLifting};
+use signorini::certificates::proof::{Certificate, Role};
+use signorini::certificates::quantities::{Limit, Name};
+use signorini::certificates::{
+    Asked, Continuous, Ramp, Target, adapt, adapt_to, certify, certify_with, forces,
+};
 use signorini::io::certificate::{self, Header};
 use signorini::kernel::Ball;
-use signorini::solve::{Degree, Method, Settings, Solution, solve};
+use signorini::model::Degree;
+use signorini::model::{Condition, Perturbation, Problem, Structured};
+use signorini::results::Solution;
+use signorini::solve::{Method, Settings, solve};
 use signorini::study::Exact;
 use signorini::study::exact::{self, Kind, Patch};
 
@@ -311,7 +315,7 @@ fn no_more_contact_and_no_more_opening_than_the_zones_say() {
             let sum = |of: &dyn Fn(usize, &[_]) -> f64| {
                 within.clone().fold(
                     0.0,
-                    |sum, pair: &[signorini::solve::solution::ContactValues]| {
+                    |sum, pair: &[signorini::results::solution::ContactValues]| {
                         sum + (of(0, pair) + of(1, pair)) / 2.0 * (pair[1].arc - pair[0].arc)
                     },
                 )
@@ -319,7 +323,10 @@ fn no_more_contact_and_no_more_opening_than_the_zones_say() {
             let (found, most) = match zone.limit {
                 Limit::Force(most) => {
                     limits[0] += 1;
-                    (sum(&|k, p: &[signorini::solve::solution::ContactValues]| -p[k].lambda), most)
+                    (
+                        sum(&|k, p: &[signorini::results::solution::ContactValues]| -p[k].lambda),
+                        most,
+                    )
                 }
                 Limit::Opening(most) => {
                     limits[1] += 1;
@@ -538,7 +545,7 @@ fn a_weight_with_kinks_inside_edges_has_the_force_of_a_uniform_pressure_times_it
             let asked = Asked { forces: vec![("bottom".to_owned(), Some(weight))] };
             let c = certify_with(&problem, &solved(&problem, degree), &asked).unwrap();
             let of = |q: &&_| {
-                let q: &signorini::certify::quantities::Quantity = q;
+                let q: &signorini::certificates::quantities::Quantity = q;
                 q.name == Name::ContactForce && q.weight == Some(weight)
             };
             let quantity = c.quantities.list.iter().find(of).unwrap();
@@ -566,7 +573,7 @@ fn the_value_beside_the_interval_of_a_weighted_force_is_that_of_the_discrete_pre
         let solution = solved(&problem, degree);
         let c = certify_with(&problem, &solution, &asked).unwrap();
         let of = |q: &&_| {
-            let q: &signorini::certify::quantities::Quantity = q;
+            let q: &signorini::certificates::quantities::Quantity = q;
             q.name == Name::ContactForce && q.weight == Some(weight)
         };
         let value = c.quantities.list.iter().find(of).unwrap().value;

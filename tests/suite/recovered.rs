@@ -19,10 +19,11 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
 
-use signorini::fem::{Condition, Mesh, Obstacle, Problem, Side};
 use signorini::kernel::{Material, Plane};
+use signorini::model::Degree;
+use signorini::model::{Condition, Mesh, Obstacle, Problem, Side};
 use signorini::nalgebra::Complex;
-use signorini::solve::{Degree, solve};
+use signorini::solve::solve;
 
 use super::common::*;
 use super::peaks::{SIDES, triangulated};

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use signorini::fem::{Condition, Diagonal, Mesh, Obstacle, Problem, Rectangle, Side};
 use signorini::io::Case;
 use signorini::kernel::{Material, Plane};
+use signorini::model::{Condition, Diagonal, Mesh, Obstacle, Problem, Rectangle, Side};
 use signorini::solve::{Method, Settings, SolveError, solve};
 
 use super::common::{DEGREES, case, case_of, named_edges};

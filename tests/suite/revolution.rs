@@ -10,10 +10,11 @@ mod pairs;
 mod random;
 mod refused;
 
-use signorini::fem::{Condition, Degree, Diagonal, Mesh, Problem, Rectangle};
 use signorini::kernel::{Material, Plane};
+use signorini::model::{Condition, Degree, Diagonal, Mesh, Problem, Rectangle};
 use signorini::nalgebra::Matrix2;
-use signorini::solve::{Settings, Solution, solve};
+use signorini::results::Solution;
+use signorini::solve::{Settings, solve};
 
 use crate::common::*;
 

@@ -2,14 +2,14 @@
 //! which Newton's method takes its longest. That both routes of the solver end at the same displacement is a property of
 //! `properties::conditions`.
 
-use signorini::fem::{Condition, Diagonal, Mesh, Problem, Rectangle, SharedFunction};
 use signorini::io::Case;
 use signorini::kernel::{Material, Plane};
+use signorini::linear::system::System;
+use signorini::model::Degree;
+use signorini::model::{Condition, Diagonal, Mesh, Problem, Rectangle, SharedFunction};
+use signorini::results::{RouteName, Verdict};
 use signorini::solve::route::Strategy;
-use signorini::solve::system::System;
-use signorini::solve::{
-    Degree, Gamma0, Method, RouteName, Settings, SolveError, Verdict, discretize, solve,
-};
+use signorini::solve::{Gamma0, Method, Settings, SolveError, discretize, solve};
 
 use crate::common::*;
 

@@ -6,13 +6,15 @@ use approx::assert_relative_eq;
 
 use crate::common::exact::on_square;
 use crate::common::*;
-use signorini::certify::{certify, format};
-use signorini::fem::material::{
+use signorini::certificates::{certify, format};
+use signorini::kernel::{Material, Plane};
+use signorini::model::Degree;
+use signorini::model::material::{
     Across, Orthotropic, eigenvalues, least_eigenvalue, stable, stable_orthotropic,
 };
-use signorini::fem::{Condition, Diagonal, Mesh, Obstacle, Problem};
-use signorini::kernel::{Material, Plane};
-use signorini::solve::{Degree, Settings, Solution, Verdict, solve};
+use signorini::model::{Condition, Diagonal, Mesh, Obstacle, Problem};
+use signorini::results::{Solution, Verdict};
+use signorini::solve::{Settings, solve};
 use signorini::study::exact::Smooth;
 use signorini::study::{Exact, Ladder};
 

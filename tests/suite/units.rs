@@ -3,11 +3,11 @@
 
 use std::collections::BTreeMap;
 
-use signorini::fem::{Condition, Diagonal, Obstacle, Problem, Rectangle, Side};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::{
-    Course, Degree, Gamma0, Method, Settings, Solution, SolveError, check, solve, solve_along,
-};
+use signorini::model::Degree;
+use signorini::model::{Condition, Diagonal, Obstacle, Problem, Rectangle, Side};
+use signorini::results::Solution;
+use signorini::solve::{Course, Gamma0, Method, Settings, SolveError, check, solve, solve_along};
 
 use crate::common::{DEGREES, constant};
 

@@ -7,9 +7,10 @@
 //! singular point, with the solver's functionals on contact edges. That the formulas of these solutions satisfy (1) and (2)
 //! is a test (tests/suite/exact.rs).
 
-use signorini::fem::graded_quadrature::Rule;
-use signorini::fem::{Condition, Degree, Discretization};
+use signorini::contact::Discretization;
 use signorini::kernel::{ContactPoint, Element, P1, P2, positive_part};
+use signorini::model::graded_quadrature::Rule;
+use signorini::model::{Condition, Degree};
 use signorini::nalgebra::Vector2;
 use signorini::solve::discretize_any;
 use signorini::study::ExactSolution;

@@ -8,10 +8,9 @@
 //! ```
 
 use proptest::prelude::*;
-use signorini::fem::Degree;
-use signorini::fem::Space;
-use signorini::fem::contact_line::assemble;
+use signorini::contact::contact_line::assemble;
 use signorini::kernel::{Material, Plane, Triangle, positive_part};
+use signorini::model::{Degree, Space};
 use signorini::nalgebra::{Matrix2, Vector2};
 use signorini::solve::Gamma0;
 use signorini::study::Ladder;

@@ -5,9 +5,10 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use signorini::fem::{Diagonal, Perturbation, Problem, Rectangle, Structured, Trapezoid};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::{Degree, Method, Settings};
+use signorini::model::Degree;
+use signorini::model::{Diagonal, Perturbation, Problem, Rectangle, Structured, Trapezoid};
+use signorini::solve::{Method, Settings};
 use signorini::study::exact::{Corner, Kind, Singular, Smooth};
 use signorini::study::{Exact, Ladder};
 

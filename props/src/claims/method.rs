@@ -257,9 +257,10 @@ pub use row::claim;
 #[cfg(not(kani))]
 mod row {
     use proptest::prelude::*;
-    use signorini::fem::{Degree, EdgeRule};
+    use signorini::contact::EdgeRule;
     use signorini::kernel::P2;
     use signorini::kernel::edge_integral::{gauss, maximum, roots};
+    use signorini::model::Degree;
 
     use super::*;
     use crate::bodies::{Body, Definition, Rule, bodies, combined, contact_class, sum};

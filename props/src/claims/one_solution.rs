@@ -19,13 +19,13 @@ use std::sync::Arc;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use proptest::prelude::*;
-use signorini::fem::{Condition, Diagonal, Discretization, Mesh, Problem, SharedFunction};
+use signorini::contact::Discretization;
 use signorini::kernel::{Material, Plane};
-use signorini::solve::factor::Factor;
-use signorini::solve::system::System;
-use signorini::solve::{
-    ContactQuadrature, Degree, Gamma0, Method, Settings, discretize_any, solve,
-};
+use signorini::linear::factor::Factor;
+use signorini::linear::system::System;
+use signorini::model::Degree;
+use signorini::model::{Condition, Diagonal, Mesh, Problem, SharedFunction};
+use signorini::solve::{ContactQuadrature, Gamma0, Method, Settings, discretize_any, solve};
 
 use crate::claim::{Check, Outcome, noticed, text};
 use crate::discrete::{CUT, Discrete, Nodal, exactly};

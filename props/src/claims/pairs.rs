@@ -4,12 +4,11 @@
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use signorini::fem::piece::PieceGeometry;
-use signorini::fem::residual::{add_internal_forces, exact_piece};
-use signorini::fem::{
-    Condition, Degree, Discretization, Law, Materials, Mesh, Pair, Piece, Problem,
-};
+use signorini::contact::piece::PieceGeometry;
+use signorini::contact::residual::{add_internal_forces, exact_piece};
+use signorini::contact::{Discretization, Law, Pair, Piece};
 use signorini::kernel::{Material, Plane, Response};
+use signorini::model::{Condition, Degree, Materials, Mesh, Problem};
 use signorini::solve::{Gamma0, Method, discretize};
 
 use crate::claim::{Claim, Outcome, text};

@@ -1,9 +1,10 @@
 //! At a point of a triangle the error of a displacement is that of the nodes.
 
-use signorini::fem::{Degree, Problem};
 use signorini::kernel::{Material, Plane};
+use signorini::model::{Degree, Problem};
+use signorini::results::Solution;
 use signorini::solve::iterate::Evaluated;
-use signorini::solve::{Method, Solution, discretize_any};
+use signorini::solve::{Method, discretize_any};
 
 use props::claim::{Outcome, text};
 use props::claims::assembled::solver::unsolved;

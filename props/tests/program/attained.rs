@@ -16,21 +16,20 @@ use std::sync::Arc;
 
 use faer::{Mat, Side as Triangle};
 use proptest::prelude::*;
-use signorini::certify::Rejection;
-use signorini::certify::certify;
-use signorini::certify::proof::{Certificate, Edge, Lift, Proof, Role};
-use signorini::fem::constraints::Constraints;
-use signorini::fem::korn::{Hold, Korn, Term};
-use signorini::fem::{
+use signorini::certificates::proof::{Certificate, Edge, Lift, Proof, Role};
+use signorini::certificates::{Rejection, certify};
+use signorini::kernel::{Ball, Material, Plane};
+use signorini::linear::factor::Factor;
+use signorini::linear::system::System;
+use signorini::model::Degree;
+use signorini::model::constraints::Constraints;
+use signorini::model::{
     Condition, Diagonal, Materials, Mesh, Obstacle, Problem, Rectangle, SharedFunction, Side, Space,
 };
-use signorini::kernel::{Ball, Material, Plane};
 use signorini::nalgebra::Vector3;
-use signorini::solve::factor::Factor;
-use signorini::solve::system::System;
-use signorini::solve::{
-    Degree, Gamma0, Method, Settings, discretize_any, enclosure, solve, solve_discrete,
-};
+use signorini::proof::enclosure;
+use signorini::proof::korn::{Hold, Korn, Term};
+use signorini::solve::{Gamma0, Method, Settings, discretize_any, solve, solve_discrete};
 
 use crate::enclosure::factor_of;
 use crate::solved::{Draw as Floor, bodies};

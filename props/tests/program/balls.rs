@@ -2,12 +2,13 @@
 //! which the discrete solution is enclosed. Each operation on members of the operands is one of exact rationals, and must lie in the result.
 
 use proptest::prelude::*;
-use signorini::fem::moments::moments;
-use signorini::fem::{Degree, EdgeRule};
+use signorini::contact::EdgeRule;
+use signorini::contact::moments::moments;
 use signorini::kernel::DoubleDouble;
 use signorini::kernel::PreciseBall;
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::{Ball, Enclosing, P1, positive_part};
+use signorini::model::Degree;
 
 use props::claim::Outcome;
 use props::numbers::Exact;

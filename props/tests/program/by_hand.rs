@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 
 use proptest::prelude::*;
-use signorini::certify::proof::{Certificate, Curved, Edge, Piece, Role};
+use signorini::certificates::proof::{Certificate, Curved, Edge, Piece, Role};
 use signorini::kernel::{Ball, Enclosing, Material, Plane, PreciseBall};
 
 use props::bodies::whole;

@@ -3,17 +3,20 @@
 
 use std::sync::Arc;
 
-use signorini::fem::korn::Korn;
-use signorini::fem::matrix::LowerTriangle;
-use signorini::fem::{Condition, Diagonal, Discretization, Obstacle, Problem, Rectangle, Side};
+use signorini::contact::Discretization;
 use signorini::kernel::PreciseBall;
 use signorini::kernel::{Material, Plane};
-use signorini::solve::enclosure::{self, Enclosure, Unproved, Verifier};
-use signorini::solve::factor::Factor;
-use signorini::solve::intervals::Arithmetic;
-use signorini::solve::system::System;
+use signorini::linear::factor::Factor;
+use signorini::linear::matrix::LowerTriangle;
+use signorini::linear::system::System;
+use signorini::model::Degree;
+use signorini::model::{Condition, Diagonal, Obstacle, Problem, Rectangle, Side};
+use signorini::proof::enclosure;
+use signorini::proof::enclosure::{Enclosure, Unproved, Verifier};
+use signorini::proof::intervals::Arithmetic;
+use signorini::proof::korn::Korn;
 use signorini::solve::{
-    ContactQuadrature, Degree, Gamma0, Method, Settings, SolveError, discretize_any, solve_discrete,
+    ContactQuadrature, Gamma0, Method, Settings, SolveError, discretize_any, solve_discrete,
 };
 
 use crate::{at_points, pressed, rounding};

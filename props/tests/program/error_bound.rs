@@ -8,8 +8,8 @@
 //! over rationals, and with the true errors of solutions that are known.
 
 use signorini::kernel::{Ball, Material, Plane, PreciseBall};
+use signorini::model::Degree;
 use signorini::nalgebra::Matrix2;
-use signorini::solve::Degree;
 
 use crate::by_hand::{
     CLASSES, balanced, draws_of, duality_gap, evaluated, evaluated_with_supports,

@@ -4,8 +4,8 @@
 //! x, without a traction on Gamma_N. Loads may oscillate, and prescribed values may need a lift.
 
 use proptest::prelude::*;
-use signorini::certify::forces::{ForceTarget, Forces, Lifting, Mean, Motion};
-use signorini::certify::proof::{Certificate, Lift, Role};
+use signorini::certificates::forces::{ForceTarget, Forces, Lifting, Mean, Motion};
+use signorini::certificates::proof::{Certificate, Lift, Role};
 use signorini::kernel::Ball;
 use signorini::nalgebra::Vector2;
 

@@ -4,16 +4,18 @@
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use signorini::fem::boundary_normals::SmoothBoundary;
-use signorini::fem::korn::Korn;
-use signorini::fem::matrix::{self, Neighbours};
-use signorini::fem::obstacle::MOST_OFF;
-use signorini::fem::{Diagonal, Distance, Function, Mesh, Obstacle, Problem, Rectangle, Side};
 use signorini::kernel::{Material, Plane};
+use signorini::linear::factor::Factor;
+use signorini::linear::matrix;
+use signorini::linear::matrix::Neighbours;
+use signorini::linear::system::System;
+use signorini::model::Degree;
+use signorini::model::boundary_normals::SmoothBoundary;
+use signorini::model::obstacle::MOST_OFF;
+use signorini::model::{Diagonal, Distance, Function, Mesh, Obstacle, Problem, Rectangle, Side};
 use signorini::nalgebra::Vector2;
-use signorini::solve::factor::Factor;
-use signorini::solve::system::System;
-use signorini::solve::{Degree, Method, discretize_any};
+use signorini::proof::korn::Korn;
+use signorini::solve::{Method, discretize_any};
 
 use props::claim::{Outcome, noticed, text};
 use props::problems::mesh;

@@ -1,4 +1,4 @@
-//! What contact alone holds (`solve::pressed`, docs/theory.md, 7.5), on a square with one contact edge:
+//! What contact alone holds (`proof::pressed`, docs/theory.md, 7.5), on a square with one contact edge:
 //!
 //! - a piece that is taken for pressed is pressed all along, and stays so on the ball for which it is said to: moved to its
 //!   border by the fields whose P0 is largest at an end of a pressed edge beside |v|_S;
@@ -10,16 +10,18 @@
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
-use signorini::fem::contact_line::Coercivity;
-use signorini::fem::korn::Term;
-use signorini::fem::quadrature::gauss;
-use signorini::fem::{Diagonal, Discretization, EdgeRule, Piece, Problem, Rectangle};
+use signorini::contact::contact_line::Coercivity;
+use signorini::contact::{Discretization, EdgeRule, Piece};
 use signorini::kernel::PreciseBall;
 use signorini::kernel::contact_edge::integral_of_product;
 use signorini::kernel::{self, Material, Plane};
-use signorini::solve::balls::pieces;
-use signorini::solve::pressed::{Pressed, SHARES};
-use signorini::solve::{Degree, Method, Settings, solve};
+use signorini::model::Degree;
+use signorini::model::quadrature::gauss;
+use signorini::model::{Diagonal, Problem, Rectangle};
+use signorini::proof::balls::pieces;
+use signorini::proof::korn::Term;
+use signorini::proof::pressed::{Pressed, SHARES};
+use signorini::solve::{Method, Settings, solve};
 
 use props::claim::{Outcome, text};
 use props::draws;

@@ -1,11 +1,11 @@
 //! Forces of the true solution between two numbers (docs/theory.md, 7.7): the identity behind the mean stress, the signs of what
 //! contact adds, where contact can act, and the largest value of what is not known; and the checker that evaluates them.
 
-use signorini::certify::Continuous;
-use signorini::certify::proof::Role;
-use signorini::certify::quantities::Name;
+use signorini::certificates::Continuous;
+use signorini::certificates::proof::Role;
+use signorini::certificates::quantities::Name;
 use signorini::kernel::Ball;
-use signorini::solve::Degree;
+use signorini::model::Degree;
 
 use crate::solved::{Draw, bodies};
 use props::claim::Outcome;
@@ -182,7 +182,7 @@ fn balls_far_around_the_rationals() -> Outcome {
 
 fn of(certified: &Continuous, name: Name, boundary: &str) -> Option<[f64; 2]> {
     let is = |q: &&_| {
-        let q: &signorini::certify::quantities::Quantity = q;
+        let q: &signorini::certificates::quantities::Quantity = q;
         q.name == name && q.boundary == boundary
     };
     certified.quantities.list.iter().find(is)?.interval.clone().ok()

@@ -1,10 +1,11 @@
 //! Certificates that are wrong in one thing, which the checker must refuse for its own reason.
 
-use signorini::certify::Rejection::{
-    self, Length, NotPrescribed, NotPrescribedAlong, NotPrescribedAlongBetween,
-    NotPrescribedBetween, Orientation, OutOfBalance, Penetration, Tension, Unbalanced, Wrong,
+use signorini::certificates::Rejection;
+use signorini::certificates::Rejection::{
+    Length, NotPrescribed, NotPrescribedAlong, NotPrescribedAlongBetween, NotPrescribedBetween,
+    Orientation, OutOfBalance, Penetration, Tension, Unbalanced, Wrong,
 };
-use signorini::certify::proof::{Certificate, Claim as Said, Edge, Role};
+use signorini::certificates::proof::{Certificate, Claim as Said, Edge, Role};
 use signorini::kernel::{Ball, Material, Plane, PreciseBall};
 
 use crate::by_hand::{Draw, supported};

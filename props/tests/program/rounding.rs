@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use signorini::fem::Degree;
-use signorini::fem::matrix::{self, Neighbours};
-use signorini::fem::{Condition, Problem, SharedFunction};
-use signorini::fem::{residual, rounded_stress};
+use signorini::contact::residual;
 use signorini::kernel::PreciseBall;
-use signorini::solve::factor::Factor;
-use signorini::solve::system::System;
+use signorini::linear::factor::Factor;
+use signorini::linear::matrix;
+use signorini::linear::matrix::Neighbours;
+use signorini::linear::system::System;
+use signorini::model::{Condition, Degree, Problem, SharedFunction};
+use signorini::proof::rounded_stress;
 use signorini::solve::{Method, discretize_any};
 
 use props::claim::{Outcome, text};

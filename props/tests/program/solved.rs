@@ -6,13 +6,14 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use signorini::certify::proof::{Piece, Role};
-use signorini::certify::{Certificate, Continuous, certify, certify_field};
-use signorini::fem::{Condition, Diagonal, Problem, Rectangle, SharedFunction, quadrature};
+use signorini::certificates::proof::{Piece, Role};
+use signorini::certificates::{Certificate, Continuous, certify, certify_field};
 use signorini::io::Expression;
 use signorini::kernel::{Ball, Enclosing, Material, Plane};
+use signorini::model::Degree;
+use signorini::model::{Condition, Diagonal, Problem, Rectangle, SharedFunction, quadrature};
 use signorini::nalgebra::Matrix2;
-use signorini::solve::{Degree, Method, Settings, solve};
+use signorini::solve::{Method, Settings, solve};
 
 use props::claim::text;
 use props::ensure;

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::table::{Spot, Table, Value};
-use crate::fem::material::{
-    Across, MaterialError, Orthotropic, largest_entry, stable, stable_orthotropic,
-};
-use crate::fem::{Materials, Mesh, SharedFunction, SurfaceForce};
 use crate::io::expression::Expression;
 use crate::io::input::FileError;
 use crate::kernel::{Material, Plane};
+use crate::model::material::{
+    Across, MaterialError, Orthotropic, largest_entry, stable, stable_orthotropic,
+};
+use crate::model::{Materials, Mesh, SharedFunction, SurfaceForce};
 use crate::quote::{self, key as shown, quoted};
 use crate::study::{Exact, exact};
 

@@ -6,10 +6,11 @@ use std::sync::Arc;
 use super::body::constant;
 use super::exact::read_kind;
 use super::table::{Spot, Table, Value};
-use crate::fem::{
-    BoundaryEdge, Condition, Hand, Mesh, Obstacle, Pair, Path, PointSupport, SharedFunction, Side,
-};
+use crate::contact::Pair;
 use crate::io::input::FileError;
+use crate::model::{
+    BoundaryEdge, Condition, Hand, Mesh, Obstacle, Path, PointSupport, SharedFunction, Side,
+};
 use crate::quote::{listed, names, quoted};
 use crate::study::Exact;
 use crate::study::exact::Kind;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::table::{Table, Value};
-use crate::fem::Friction;
+use crate::contact::Friction;
 use crate::io::input::FileError;
 
 /// What is expected in place of friction in a body of revolution.

@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 
 use super::exact::angle;
 use super::table::{Table, Value};
-use crate::fem::structured::MOST_CELLS;
-use crate::fem::{Diagonal, Mesh, Pair, Perturbation, Rectangle, Structured, Trapezoid};
+use crate::contact::Pair;
 use crate::io::expression::PlaceCondition;
 use crate::io::gmsh;
 use crate::io::input::FileError;
 use crate::io::raw_mesh::Made;
+use crate::model::structured::MOST_CELLS;
+use crate::model::{Diagonal, Mesh, Perturbation, Rectangle, Structured, Trapezoid};
 use crate::quote::quoted;
 
 /// A mesh and how it was made.

@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use super::table::{Table, Value};
-use crate::certify::{Asked, Ramp, Target};
-use crate::fem::Condition;
-use crate::fem::structured::MOST_CELLS;
+use crate::certificates::{Asked, Ramp, Target};
 use crate::io::input::FileError;
+use crate::model::Condition;
+use crate::model::Degree;
+use crate::model::structured::MOST_CELLS;
 use crate::solve::{
-    ContactQuadrature, Degree, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
+    ContactQuadrature, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
 };
 
 pub(super) fn read_method(table: &Table) -> Result<Method, FileError> {

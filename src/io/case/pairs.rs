@@ -2,9 +2,10 @@
 
 use super::friction;
 use super::table::{Spot, Table, Value};
-use crate::fem::mesh::split_names;
-use crate::fem::{Law, Mesh, Pair};
+use crate::contact::{Law, Pair};
 use crate::io::input::FileError;
+use crate::model::Mesh;
+use crate::model::mesh::split_names;
 use crate::quote::{key, quoted};
 
 /// A pair and where the file has it.

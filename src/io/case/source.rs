@@ -11,9 +11,9 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeArray, DeString, DeTable, DeValue};
 
-use crate::fem::SharedFunction;
 use crate::io::expression::Expression;
 use crate::io::input::{Failure, FileError, Position};
+use crate::model::SharedFunction;
 use crate::quote::{cut, quoted};
 
 /// A file, its text, and the settings over it. Places in the settings come after those in the text.

@@ -12,9 +12,9 @@ use toml::de::{DeInteger, DeTable, DeValue};
 
 use super::beyond;
 use super::source::Source;
-use crate::fem::{MeshError, SharedFunction};
 use crate::io::expression::Expression;
 use crate::io::input::{Failure, FileError};
+use crate::model::{MeshError, SharedFunction};
 use crate::quote::{cut, key as shown, listed, number, quoted};
 
 /// The subject of a message: its name and its place. The file as a whole has neither.

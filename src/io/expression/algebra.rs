@@ -1,8 +1,8 @@
 //! The number types over which expressions are evaluated: doubles, doubles with their derivatives, balls, polynomials.
 
 use super::{Binary, Expression, Number, Unary};
-use crate::fem::Distance;
 use crate::kernel::{Ball, Enclosing, Scalar};
+use crate::model::Distance;
 
 impl Number for f64 {
     fn from_double(value: f64) -> f64 {

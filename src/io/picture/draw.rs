@@ -5,8 +5,8 @@ use std::fmt::Write;
 use svg::node::element::{Circle, Group, Path as PathElement, Rectangle, Text, Title};
 use svg::{Document, Node};
 
-use crate::fem::tree::Bounds;
 use crate::io::numbers;
+use crate::model::tree::Bounds;
 use crate::quote;
 
 pub(super) const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";

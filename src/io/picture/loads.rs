@@ -10,10 +10,10 @@ use super::draw::{
     rounded, short, stroke,
 };
 use super::scene::{Load, Scene};
-use crate::fem::{BoundaryEdge, Condition, Degree, SharedFunction};
 use crate::io::case::Case;
 use crate::io::numbers::round_below;
-use crate::solve::Solution;
+use crate::model::{BoundaryEdge, Condition, Degree, SharedFunction};
+use crate::results::Solution;
 
 /// The colour of forces, and that of prescribed displacements.
 pub(super) const FORCE: &str = "#0072b2";

@@ -13,7 +13,7 @@ use super::draw::{
     rectangle, red_area, short, stroke, text, thinned, width_of,
 };
 use super::scene::{ContactSample, ContactSurface, Scene};
-use crate::certify::quantities::{Limit, Zone};
+use crate::certificates::quantities::{Limit, Zone};
 use crate::io::numbers::{self, ticks};
 
 /// The height of a panel on the page, and the space between two in a row.

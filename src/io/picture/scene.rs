@@ -3,16 +3,16 @@
 use super::contact::{FURTHEST_WHERE_BENT, turns};
 use super::draw::{Point, distance, moved, short};
 use super::loads;
-use crate::certify::quantities::Zone;
-use crate::fem::mesh::ROUNDED;
-use crate::fem::tree::Bounds;
-use crate::fem::{BoundaryEdge, Condition, Degree, Obstacle};
+use crate::certificates::quantities::Zone;
 use crate::io::case::{Case, Measure};
 use crate::io::numbers::round_below;
 use crate::io::result::{ContinuousCertificate, Results};
+use crate::model::mesh::ROUNDED;
+use crate::model::tree::Bounds;
+use crate::model::{BoundaryEdge, Condition, Degree, Obstacle};
 use crate::quote;
-use crate::solve::solution::{ContactEdgeValues, ContactValues, PieceNodeValues, PieceValues};
-use crate::solve::{ContactBoundary, Solution, Verdict};
+use crate::results::solution::{ContactEdgeValues, ContactValues, PieceNodeValues, PieceValues};
+use crate::results::{ContactBoundary, Solution, Verdict};
 
 #[derive(Clone, Debug)]
 pub(super) struct Scene {

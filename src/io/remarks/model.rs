@@ -3,15 +3,16 @@
 use std::collections::BTreeSet;
 
 use super::{NO_LENGTH, Words, named_obstacle, obstacle_of, place, size};
-use crate::fem::boundary_normals::{SMOOTH, SmoothBoundary};
-use crate::fem::groups::groups;
-use crate::fem::mesh::ROUNDED;
-use crate::fem::rigid::Parts;
-use crate::fem::{BoundaryEdge, ContactLine, Degree, Mesh, Pair, Problem, Space};
+use crate::contact::{ContactLine, Pair};
+use crate::held::rigid::Parts;
 use crate::io::numbers::short;
 use crate::kernel::Material;
+use crate::model::boundary_normals::{SMOOTH, SmoothBoundary};
+use crate::model::groups::groups;
+use crate::model::mesh::ROUNDED;
+use crate::model::{BoundaryEdge, Degree, Mesh, Problem, Space};
 use crate::quote;
-use crate::solve::{ContactBoundary, Solution};
+use crate::results::{ContactBoundary, Solution};
 
 /// Linear triangles are too stiff from this Poisson's ratio on in plane strain: 1 % at 0.475, 2.4 % at 0.49, 41 % at 0.4995, as
 /// measured on a block of 32 x 32 cells.

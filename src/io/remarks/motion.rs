@@ -4,9 +4,9 @@
 use std::collections::BTreeSet;
 
 use super::{NO_LENGTH, Words, obstacle_of, place, size};
-use crate::fem::{Condition, Obstacle, Problem};
+use crate::model::{Condition, Obstacle, Problem};
 use crate::quote;
-use crate::solve::Solution;
+use crate::results::Solution;
 
 /// The distance from the obstacle may differ from the linearised one by this share of the motion.
 const MOST_OFF: f64 = 0.1;

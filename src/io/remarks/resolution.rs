@@ -3,11 +3,12 @@
 use std::ops::Range;
 
 use super::{Known, NO_LENGTH, Words, place, size};
-use crate::fem::piece::PieceGeometry;
-use crate::fem::{Condition, ContactLine, Degree, Problem, Space};
+use crate::contact::ContactLine;
+use crate::contact::piece::PieceGeometry;
+use crate::model::{Condition, Degree, Problem, Space};
 use crate::quote;
-use crate::solve::solution::ContactEdgeValues;
-use crate::solve::{ContactBoundary, Solution};
+use crate::results::solution::ContactEdgeValues;
+use crate::results::{ContactBoundary, Solution};
 
 /// A stretch of fewer edges than this gives a peak that is 2 % off Hertz's, of two edges 3 %, of less than one 20 % and more.
 const FEWEST_EDGES: f64 = 4.0;

@@ -12,8 +12,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use nalgebra::{Matrix2, Vector2};
 
 use super::{ExactSolution, kolosov};
-use crate::fem::graded_quadrature::{Features, Singularity};
 use crate::kernel::Material;
+use crate::model::graded_quadrature::{Features, Singularity};
 
 /// The solution (c).
 #[derive(Clone, Debug, PartialEq)]

@@ -33,11 +33,12 @@ pub use stick_slip::StickSlip;
 
 use nalgebra::Matrix2;
 
-use crate::fem::graded_quadrature::Features;
-use crate::fem::mesh::Mesh;
-use crate::fem::problem::{Condition, Problem};
-use crate::fem::{Friction, Function, SharedFunction};
+use crate::contact::Friction;
 use crate::kernel::{Material, Scalar, Stress};
+use crate::model::graded_quadrature::Features;
+use crate::model::mesh::Mesh;
+use crate::model::problem::{Condition, Problem};
+use crate::model::{Function, SharedFunction};
 
 /// A displacement field that solves (1)-(2), with its data.
 pub trait ExactSolution: Debug + Send + Sync {

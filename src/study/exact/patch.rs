@@ -16,8 +16,8 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::ExactSolution;
-use crate::fem::material::strain;
 use crate::kernel::Material;
+use crate::model::material::strain;
 
 /// A solution u = `matrix` x + `shift` with the gap g = `gap`\[0\] + `gap`\[1\] x.
 #[derive(Clone, Debug, PartialEq)]

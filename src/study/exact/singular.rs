@@ -12,8 +12,8 @@
 use nalgebra::Matrix2;
 
 use super::{ExactSolution, kolosov};
-use crate::fem::graded_quadrature::{Features, Singularity};
 use crate::kernel::{Enclosing, Material};
+use crate::model::graded_quadrature::{Features, Singularity};
 
 /// The solution (b).
 #[derive(Clone, Debug, PartialEq)]

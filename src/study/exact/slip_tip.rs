@@ -11,8 +11,8 @@ use nalgebra::Matrix2;
 
 use super::singular::Place;
 use super::{ExactSolution, kolosov};
-use crate::fem::graded_quadrature::{Features, Singularity};
 use crate::kernel::Material;
+use crate::model::graded_quadrature::{Features, Singularity};
 
 /// The solution (f).
 #[derive(Clone, Debug, PartialEq)]

@@ -10,8 +10,8 @@
 use nalgebra::Matrix2;
 
 use super::{ExactSolution, force_of, truncated_power};
-use crate::fem::graded_quadrature::Features;
 use crate::kernel::Material;
+use crate::model::graded_quadrature::Features;
 
 /// The solution (e).
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,8 @@
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
-use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
+use signorini::linear::matrix;
+use signorini::linear::matrix::{LowerTriangle, Neighbours, Numbering};
 
 use super::*;
 use crate::common::{DEGREES, Random};

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use signorini::fem::piece::Stretch;
+use signorini::contact::piece::Stretch;
 
 use super::*;
 use crate::common::case;

@@ -1,7 +1,7 @@
 //! Friction between two bodies: a stiff one is a rough obstacle, the names of the bodies do not matter, what sticks is glued along the
 //! boundary, forces cancel, friction alone holds a body, and Coulomb's law has one solution near.
 
-use signorini::fem::Friction;
+use signorini::contact::Friction;
 
 use super::*;
 use crate::common::DEGREES;

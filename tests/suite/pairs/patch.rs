@@ -85,7 +85,7 @@ fn off(
     degree: Degree,
     exact: impl Fn(usize, [f64; 2]) -> [f64; 2],
 ) -> f64 {
-    let space = signorini::fem::Space::new(&problem.mesh, degree);
+    let space = signorini::model::Space::new(&problem.mesh, degree);
     let mut expected = vec![[0.0; 2]; space.nodes().len()];
     for (t, nodes) in space.elements().enumerate() {
         // The lower body has 7 x 5 cells.

@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
-use signorini::fem::{Condition, Diagonal, Mesh, Problem, Rectangle, Trapezoid};
 use signorini::kernel::{Material, Plane};
-use signorini::solve::{
-    Degree, MethodReport, NewtonReport, Report, RouteName, Status, Unproved, Verdict,
-};
+use signorini::model::Degree;
+use signorini::model::{Condition, Diagonal, Mesh, Problem, Rectangle, Trapezoid};
+use signorini::proof::Unproved;
+use signorini::results::{MethodReport, NewtonReport, Report, RouteName, Status, Verdict};
 
 use super::{Outcome, text};
 use crate::common::{conditions, constant, function};

@@ -7,15 +7,15 @@
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_4;
 
-use signorini::fem::{Condition, DataError, Diagonal, Mesh, Problem, Rectangle, residual};
+use signorini::contact::residual;
 use signorini::kernel::DoubleDouble;
 use signorini::kernel::{Material, Plane};
+use signorini::linear::system::System;
+use signorini::model::Degree;
+use signorini::model::{Condition, DataError, Diagonal, Mesh, Problem, Rectangle};
+use signorini::results::{RouteName, Solution};
 use signorini::solve::Times;
-use signorini::solve::system::System;
-use signorini::solve::{
-    ContactQuadrature, Degree, Method, RouteName, Settings, Solution, SolveError, discretize,
-    route, solve,
-};
+use signorini::solve::{ContactQuadrature, Method, Settings, SolveError, discretize, route, solve};
 
 use super::{Outcome, properties, text};
 use crate::common::{DEGREES, Random, case, constant, moved_to, turned};

@@ -6,11 +6,13 @@
 
 use std::collections::BTreeMap;
 
-use signorini::fem::{Condition, Diagonal, Piece, Problem, Rectangle};
+use signorini::contact::Piece;
 use signorini::kernel::triangle::on_edge;
 use signorini::kernel::{Material, Plane};
+use signorini::model::Degree;
+use signorini::model::{Condition, Diagonal, Problem, Rectangle};
 use signorini::nalgebra::Vector2;
-use signorini::solve::{Degree, Method, discretize};
+use signorini::solve::{Method, discretize};
 
 use super::{Outcome, properties, text};
 use crate::common::{Random, moved_to};

@@ -4,15 +4,16 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use signorini::fem::graded_quadrature::{Features, Rule};
-use signorini::fem::material::{stable_lame, stable_young_poisson};
-use signorini::fem::{
+use signorini::kernel::{Material, Plane};
+use signorini::model::Degree;
+use signorini::model::graded_quadrature::{Features, Rule};
+use signorini::model::material::{stable_lame, stable_young_poisson};
+use signorini::model::{
     Condition, DataError, Diagonal, Mesh, Perturbation, Problem, Rectangle, Structured, Trapezoid,
 };
-use signorini::kernel::{Material, Plane};
 use signorini::solve::{
-    ContactQuadrature, Degree, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
-    SolveError, discretize,
+    ContactQuadrature, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings, SolveError,
+    discretize,
 };
 use signorini::study::Exact;
 use signorini::study::Ladder;

@@ -3,14 +3,16 @@
 
 use std::collections::BTreeMap;
 
-use signorini::fem::contact_line::Coercivity;
-use signorini::fem::{Condition, EdgeRule, Materials, Problem, quadrature};
+use signorini::contact::EdgeRule;
+use signorini::contact::contact_line::Coercivity;
 use signorini::kernel::DoubleDouble;
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::element::displacement_gradient;
 use signorini::kernel::{EdgeIntegrals, Element, Material, P1, P2, Plane, positive_part};
+use signorini::model::Degree;
+use signorini::model::{Condition, Materials, Problem, quadrature};
 use signorini::nalgebra::{Matrix2, Vector2};
-use signorini::solve::{ContactQuadrature, Degree, Gamma0, Method, SolveError, discretize};
+use signorini::solve::{ContactQuadrature, Gamma0, Method, SolveError, discretize};
 use signorini::study::{Errors, ExactSolution};
 
 use super::bodies::small_bodies;

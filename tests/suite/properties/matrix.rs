@@ -3,8 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
-use signorini::fem::{Discretization, EdgeRule};
+use signorini::contact::{Discretization, EdgeRule};
+use signorini::linear::matrix;
+use signorini::linear::matrix::{LowerTriangle, Neighbours, Numbering};
 
 use super::bodies::on_bodies;
 use super::{Outcome, properties, text};

@@ -3,12 +3,12 @@
 
 use std::collections::BTreeMap;
 
-use signorini::certify::adapt::{THETA, Target, adapt, marked};
-use signorini::fem::merge::merge;
-use signorini::fem::{
+use signorini::certificates::adapt::{THETA, Target, adapt, marked};
+use signorini::kernel::{Material, Plane};
+use signorini::model::merge::merge;
+use signorini::model::{
     Condition, DataError, Diagonal, Materials, Mesh, MeshError, Problem, Rectangle, SurfaceForce,
 };
-use signorini::kernel::{Material, Plane};
 use signorini::solve::{Method, Settings, SolveError, discretize};
 
 use super::{Outcome, properties, text};
@@ -169,7 +169,7 @@ fn adapted(theta: f64) -> Outcome {
     let relative = first / 2.0;
     let found = go(relative)?;
     let (last, before) = found.levels.split_last().ok_or("no level")?;
-    let is_met = |level: &signorini::certify::adapt::AdaptedLevel| level.relative <= relative;
+    let is_met = |level: &signorini::certificates::adapt::AdaptedLevel| level.relative <= relative;
     let only_last = is_met(last) && !before.iter().any(is_met);
     if before.is_empty() || !(found.unmet.is_none() && only_last) {
         return Err(format!("a target of {relative}: {:?}", found.levels));

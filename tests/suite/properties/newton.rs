@@ -9,10 +9,11 @@ use std::ops::Range;
 
 use signorini::kernel::DoubleDouble;
 use signorini::nalgebra::DMatrix;
+use signorini::results::{Status, Verdict};
 use signorini::solve::accuracy::Outcome as Solved;
 use signorini::solve::body::{self, Body as _, ContactEnergy, Derivatives, Residual, Step};
 use signorini::solve::newton::{self, Until};
-use signorini::solve::{Method, Settings, SolveError, Status, Verdict, solve};
+use signorini::solve::{Method, Settings, SolveError, solve};
 
 use super::bodies::loaded_bodies;
 use super::{Outcome, properties, text};

@@ -3,10 +3,11 @@
 
 use std::sync::Arc;
 
-use signorini::fem::constraints::Constraints;
-use signorini::fem::{
-    Condition, Degree, Diagonal, Function, Mesh, Piece, PointSupport, Problem, Rectangle,
-    SharedFunction, Space, contact_line, loads,
+use signorini::contact::{Piece, contact_line};
+use signorini::model::constraints::Constraints;
+use signorini::model::{
+    Condition, Degree, Diagonal, Function, Mesh, PointSupport, Problem, Rectangle, SharedFunction,
+    Space, loads,
 };
 
 use super::{Outcome, properties, text};
@@ -115,7 +116,7 @@ fn free(problem: &Problem, x: [f64; 2]) -> Result<Vec<(String, f64)>, String> {
     let space = Space::new(&problem.mesh, Degree::One);
     let constraints = Constraints::new(problem, &space).map_err(text)?;
     let (_, motions) = constraints.free_motions(&space);
-    let said = |m: &signorini::fem::FreeMotion| {
+    let said = |m: &signorini::held::FreeMotion| {
         let [ux, uy] = m.at(x);
         (format!("{m}: {}", m.remedy()), ux.hypot(uy))
     };

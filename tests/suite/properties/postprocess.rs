@@ -3,10 +3,13 @@
 
 use std::collections::BTreeMap;
 
-use signorini::fem::{Condition, Diagonal, Discretization, Mesh, Piece, Problem, Rectangle};
+use signorini::contact::{Discretization, Piece};
 use signorini::kernel::{Material, Plane};
+use signorini::model::Degree;
+use signorini::model::{Condition, Diagonal, Mesh, Problem, Rectangle};
+use signorini::results::{ContactBoundary, EnergyBalance, Solution};
 use signorini::solve::iterate::Evaluated;
-use signorini::solve::{ContactBoundary, Degree, EnergyBalance, Method, Solution, discretize};
+use signorini::solve::{Method, discretize};
 
 use super::bodies::{on_bodies, unsolved};
 use super::{Outcome, properties, text};

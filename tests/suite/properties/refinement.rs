@@ -8,20 +8,21 @@
 use std::sync::Arc;
 
 use faer::{Mat, Side};
-use signorini::fem::matrix::LowerTriangle;
-use signorini::fem::{Condition, Diagonal, Discretization, EdgeRule, Problem, Rectangle};
+use signorini::contact::{Discretization, EdgeRule};
 use signorini::kernel::{Material, Plane};
+use signorini::linear::factor::Factor;
+use signorini::linear::matrix::LowerTriangle;
+use signorini::linear::system::System;
+use signorini::model::Degree;
+use signorini::model::{Condition, Diagonal, Problem, Rectangle};
+use signorini::proof::enclosure::Verifier;
+use signorini::results::{RouteName, Verdict};
 use signorini::solve::Times;
 use signorini::solve::accuracy::{self, Pass, Route};
-use signorini::solve::enclosure::Verifier;
-use signorini::solve::factor::Factor;
 use signorini::solve::iterate::{Evaluated, Evaluation, Iterate};
 use signorini::solve::newton::Until;
 use signorini::solve::route;
-use signorini::solve::system::System;
-use signorini::solve::{
-    Degree, Gamma0, Method, RouteName, Settings, SolveError, Verdict, discretize, solve_discrete,
-};
+use signorini::solve::{Gamma0, Method, Settings, SolveError, discretize, solve_discrete};
 
 use super::bodies::on_bodies;
 use super::{Outcome, properties, text};

@@ -1,8 +1,8 @@
 //! Method (8) for P1 bodies of revolution written out anew, with Gauss points, and mistakes in it: what the solver says solves the right
 //! equations and none of the wrong ones.
 
-use signorini::fem::{Condition, Obstacle, Problem};
-use signorini::solve::Solution;
+use signorini::model::{Condition, Obstacle, Problem};
+use signorini::results::Solution;
 
 use super::*;
 

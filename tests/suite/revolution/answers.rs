@@ -3,12 +3,13 @@
 use std::f64::consts::{PI, TAU};
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use signorini::fem::contact_line::{self, Coercivity};
-use signorini::fem::residual::add_internal_forces;
-use signorini::fem::{Condition, Degree, Mesh, Obstacle, Problem, Space};
+use signorini::contact::contact_line;
+use signorini::contact::contact_line::Coercivity;
+use signorini::contact::residual::add_internal_forces;
 use signorini::kernel::{Material, Plane};
+use signorini::model::{Condition, Degree, Mesh, Obstacle, Problem, Space};
 use signorini::nalgebra::Matrix2;
-use signorini::solve::Solution;
+use signorini::results::Solution;
 
 use super::*;
 
@@ -69,7 +70,7 @@ fn control_a_plate_widens_otherwise_than_a_cylinder() {
 
 #[test]
 fn an_orthotropic_cylinder_widens_by_its_own_ratio() {
-    use signorini::fem::material::{Across, Orthotropic, stable_orthotropic};
+    use signorini::model::material::{Across, Orthotropic, stable_orthotropic};
     // e1 along r, e2 along z, e3 along the hoop; r and hoop alike, or the axis would be singular.
     let across = Across { e3: 2.0, nu13: 0.4, nu23: 0.15 };
     let moduli =

@@ -8,10 +8,10 @@
 use std::f64::consts::PI;
 
 use approx::assert_abs_diff_eq;
-use signorini::fem::quadrature::gauss;
-use signorini::fem::{Condition, Degree, Mesh, Problem};
-use signorini::solve::Solution;
-use signorini::solve::solution::ContactEdgeValues;
+use signorini::model::quadrature::gauss;
+use signorini::model::{Condition, Degree, Mesh, Problem};
+use signorini::results::Solution;
+use signorini::results::solution::ContactEdgeValues;
 
 use super::*;
 

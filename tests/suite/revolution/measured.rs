@@ -1,6 +1,6 @@
 //! The numbers of docs/parts.md: `cargo test --test suite revolution::measured -- --ignored --nocapture`.
 
-use signorini::fem::Degree;
+use signorini::model::Degree;
 
 use super::answers::{sleeve, with_an_end_of_contact};
 use super::half_space::{beside_hertz, flat_punch};

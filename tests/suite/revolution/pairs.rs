@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use signorini::fem::{Condition, Materials, Mesh, Pair, Problem};
-
-use signorini::solve::solution::PieceValues;
+use signorini::contact::Pair;
+use signorini::model::{Condition, Materials, Mesh, Problem};
+use signorini::results::solution::PieceValues;
 
 use super::half_space::{before_the_cut, contact_radius, hertz_displacement};
 use super::*;

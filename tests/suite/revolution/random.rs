@@ -1,7 +1,7 @@
 //! Bodies of revolution at random: rings, cylinders and cones on flat, conical and round obstacles, on supports or held by contact
 //! alone. SIGNORINI_BODIES sets how many are drawn.
 
-use signorini::fem::{Condition, Obstacle, Problem, Side};
+use signorini::model::{Condition, Obstacle, Problem, Side};
 use signorini::solve::{ContactQuadrature, Gamma0, Method, solve};
 
 use super::*;
@@ -75,7 +75,7 @@ fn bodies_of_revolution_at_random_are_proved_and_their_forces_balance() {
             Ok((s, _)) => s,
             Err(error) => panic!("{said}: {error}"),
         };
-        let proved = s.verdict == signorini::solve::Verdict::Proved
+        let proved = s.verdict == signorini::results::Verdict::Proved
             && s.enclosure.as_ref().is_ok_and(|e| e.relative.is_none_or(|r| r <= 1e-6));
         if !proved {
             unproved.push(format!("{said}: {:?}", s.enclosure.as_ref().err()));

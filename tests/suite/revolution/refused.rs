@@ -1,8 +1,8 @@
 //! What is no body of revolution is refused, with the place, what was found and what was expected.
 
-use signorini::certify::certify;
-use signorini::fem::{Condition, Materials, Problem};
+use signorini::certificates::certify;
 use signorini::kernel::{Material, Plane};
+use signorini::model::{Condition, Materials, Problem};
 use signorini::solve::check;
 
 use super::*;

@@ -4,10 +4,10 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use num_traits::ToPrimitive;
-use signorini::fem::matrix::Numbering;
-use signorini::fem::residual;
-use signorini::fem::{BoundaryEdge, Degree, Discretization, Piece};
-use signorini::solve::Solution;
+use signorini::contact::{Discretization, Piece, residual};
+use signorini::linear::matrix::Numbering;
+use signorini::model::{BoundaryEdge, Degree};
+use signorini::results::Solution;
 use signorini::solve::iterate::Evaluated;
 
 use super::definition::{Mistake, Named, Setting, defined, inner, unit};

@@ -3,9 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use signorini::fem::EdgeRule;
-use signorini::fem::{BoundaryEdge, Discretization};
+use signorini::contact::{Discretization, EdgeRule};
 use signorini::kernel::{Material, Plane};
+use signorini::model::BoundaryEdge;
 
 use super::draw::{Draw, Polynomial, Traction, owner};
 use super::given::Given;

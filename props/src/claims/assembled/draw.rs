@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use signorini::fem::EdgeRule;
-use signorini::fem::{
+use signorini::contact::EdgeRule;
+use signorini::kernel::{Material, Plane};
+use signorini::model::{
     BoundaryEdge, Condition, Diagonal, Function, Mesh, Problem, Rectangle, SharedFunction,
 };
-use signorini::kernel::{Material, Plane};
 
 use super::given::Given;
 use crate::draws;

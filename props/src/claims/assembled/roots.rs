@@ -1,7 +1,8 @@
 //! Square roots: the solver's h_T, |E|, n and gamma against the exact squares and normals.
 
-use signorini::fem::{Degree, Discretization, Mesh};
+use signorini::contact::Discretization;
 use signorini::kernel::Triangle;
+use signorini::model::{Degree, Mesh};
 use signorini::nalgebra::Vector2;
 
 use super::compare::UNIT;

@@ -1,11 +1,13 @@
 //! The same numbers by the solver.
 
-use signorini::fem::Discretization;
-use signorini::fem::matrix::{self, LowerTriangle, Neighbours, Numbering};
-use signorini::solve::iterate::Evaluated;
-use signorini::solve::{
-    MethodReport, NewtonReport, Report, RouteName, Solution, Status, Unproved, Verdict,
+use signorini::contact::Discretization;
+use signorini::linear::matrix;
+use signorini::linear::matrix::{LowerTriangle, Neighbours, Numbering};
+use signorini::proof::Unproved;
+use signorini::results::{
+    MethodReport, NewtonReport, Report, RouteName, Solution, Status, Verdict,
 };
+use signorini::solve::iterate::Evaluated;
 
 use super::definition::Named;
 

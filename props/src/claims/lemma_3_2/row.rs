@@ -1,8 +1,8 @@
 //! The row of Lemma 3.2: the bounds over every field, coercivity on random bodies, and how sharp it is.
 
 use super::*;
-use signorini::fem::Problem;
-use signorini::solve::{Degree, discretize_any};
+use signorini::model::{Degree, Problem};
+use signorini::solve::discretize_any;
 
 use crate::bodies::{Body, Definition, bodies};
 use crate::claim::{Claim, Outcome, model_checked};

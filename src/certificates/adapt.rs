@@ -1,0 +1,347 @@
+//! Adaptivity to a proved target: solve, bound the distance to the true solution, bisect the triangles that have the largest
+//! shares in the square of the bound, and again, until the bound is as small as it is to be.
+//!
+//! The target may be a contact force in place of the energy norm: then the force is to lie between two numbers that are that
+//! near to each other, and the shares are those in the distance of the two (docs/theory.md, 7.7).
+//!
+//! A mesh is refined where the fewest triangles have the share [`THETA`] of the whole (Doerfler's marking), by
+//! [`newest-vertex bisection`](crate::model::mesh::bisection). Newton's method starts from the coarser solution.
+//!
+//! Every level has a certificate of its own, for the problem on its own mesh: nothing that is proved rests on the levels
+//! before. The body is the polygon of the first mesh: the middle of a straight edge lies on it, but for rounding.
+
+#[cfg(feature = "files")]
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::errors::CertifyError;
+use super::quantities::Name;
+use super::{Asked, Continuous, certify_with};
+use crate::contact::ContactLine;
+use crate::contact::piece::PieceGeometry;
+use crate::model::Degree;
+use crate::model::{Condition, Mesh, Problem, Space};
+use crate::quote::quoted;
+use crate::results::Solution;
+use crate::solve::{Course, Method, Phase, Settings, SolveError, Times, solve_along};
+
+/// The share of the square of the bound that the marked triangles have. With more, levels are fewer and grow faster.
+pub const THETA: f64 = 0.5;
+
+/// After so many levels in a row whose bound is no smaller than one before, finer meshes are not tried, if the bound says
+/// something and the meshes are not far smaller than is allowed: a coarse mesh may need more levels to see what it has to.
+const NO_BETTER: usize = 3;
+
+/// A mesh with less than this part of the unknowns that are allowed is far smaller.
+const FAR_SMALLER: f64 = 0.05;
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// The bound over the energy norm, or half the width of what a force lies between over its middle, is to be at most this.
+    pub relative: f64,
+    /// No mesh has more degrees of freedom than this, but for the first.
+    pub max_unknowns: usize,
+}
+
+/// The result on one mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[non_exhaustive]
+pub struct AdaptedLevel {
+    /// Degrees of freedom: twice the nodes.
+    pub unknowns: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// The number of Newton steps.
+    pub newton_steps: usize,
+    /// |u - v|_a is at most this.
+    pub bound: f64,
+    /// The bound over |v|_a.
+    pub relative: f64,
+    /// Half the width of what the force lies between over its middle, if a force is the target.
+    #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub force: Option<f64>,
+}
+
+/// The level with the smallest bound, with all others.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Adapted {
+    /// Its solution.
+    pub solution: Solution,
+    /// The time that the solves took, all levels together.
+    pub times: Times,
+    /// Its bound, or why there is none.
+    pub certified: Result<Continuous, CertifyError>,
+    /// The time that the certificates and the meshes took, all levels together.
+    pub certifying: std::time::Duration,
+    /// All levels, from the coarsest on.
+    pub levels: Vec<AdaptedLevel>,
+    /// The number of the one that is given, from 0.
+    pub level: usize,
+    /// Why the bound does not meet the target.
+    pub unmet: Option<String>,
+}
+
+/// The stage of the adaptive loop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Stage {
+    /// A part of a solve.
+    Solve(Phase),
+    /// The bound, on the level of this number, from 0.
+    Certify(usize),
+    /// The next mesh.
+    Refine,
+}
+
+/// Why there is no level that meets the target, nor one that is as fine as allowed.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
+pub enum AdaptError {
+    #[error("level {level}: {error}")]
+    Solve { level: usize, error: SolveError },
+    #[error("no mesh can be adapted to a proved target: {0}")]
+    Certify(#[from] CertifyError),
+    #[error(
+        "no mesh can be adapted: {} is curved and has a gap along its normal, and bisection keeps the straight edges of the mesh; expected a straight boundary, or an [obstacle]",
+        quoted(boundary, '\'')
+    )]
+    Curved { boundary: String },
+}
+
+impl AdaptError {
+    /// Tells whether the case is wrong. Otherwise it is right, but there is no result of it here.
+    pub fn is_wrong_case(&self) -> bool {
+        match self {
+            AdaptError::Solve { error, .. } => error.is_wrong_case(),
+            AdaptError::Certify(error) => {
+                matches!(error, CertifyError::Data(_) | CertifyError::Unsupported(_))
+            }
+            AdaptError::Curved { .. } => true,
+        }
+    }
+}
+
+/// Solves `problem` on meshes that are refined until the bound meets the `target` or falls no more, and gives the problem on the
+/// mesh with the smallest bound; `watcher` is told what goes on. A failure on a finer mesh than the first ends the refinement.
+///
+/// # Errors
+/// A first level without a solution.
+pub fn adapt(
+    problem: Problem,
+    method: &Method,
+    settings: &Settings,
+    target: Target,
+    watcher: &dyn Fn(Stage),
+) -> Result<(Problem, Adapted), AdaptError> {
+    adapt_to(problem, (method, settings), (target, None), &Asked::default(), watcher)
+}
+
+/// [`adapt`], where the target may be the contact force of a boundary; `asked` is what the certificates prove beside it.
+///
+/// # Errors
+/// As [`adapt`].
+pub fn adapt_to(
+    mut problem: Problem,
+    (method, settings): (&Method, &Settings),
+    (target, force): (Target, Option<&str>),
+    asked: &Asked,
+    watcher: &dyn Fn(Stage),
+) -> Result<(Problem, Adapted), AdaptError> {
+    check_straight(&problem)?;
+    let mut asked = asked.clone();
+    let whole = force.map(|boundary| (boundary.to_owned(), None));
+    asked.forces.extend(whole.filter(|whole| !asked.forces.contains(whole)));
+    let of_solve = |phase| watcher(Stage::Solve(phase));
+    let mut newest = problem.mesh.opposite_longest();
+    let mut start: Option<Vec<[f64; 2]>> = None;
+    let (mut levels, mut times) = (Vec::new(), Times::default());
+    let mut certifying = std::time::Duration::ZERO;
+    let mut before: Option<Best> = None;
+    let (best, unmet) = loop {
+        let level = levels.len();
+        let course = Course::default().watched_by(&of_solve);
+        let course = start.as_deref().map_or(course, |start| course.from_displacement(start));
+        let (solution, took) =
+            match (solve_along(&problem, method, settings, course), before.take()) {
+                (Ok(solved), best) => {
+                    before = best;
+                    solved
+                }
+                (Err(error), None) => return Err(AdaptError::Solve { level, error }),
+                (Err(error), Some(best)) => {
+                    // The residuals of the steps are on lines of their own.
+                    let error = error.to_string();
+                    let error = error.lines().next().unwrap_or_default();
+                    break (best, Some(format!("level {level} has no solution: {error}")));
+                }
+            };
+        times = times.plus(&took);
+        watcher(Stage::Certify(level));
+        let begin = std::time::Instant::now();
+        let certified = certify_with(&problem, &solution, &asked);
+        certifying += begin.elapsed();
+        let certified = match certified {
+            Ok(certified) => certified,
+            Err(error) => {
+                let unmet = Some(format!("level {level} has no certificate: {error}"));
+                let (off, reached) = (f64::INFINITY, f64::INFINITY);
+                let certified = Err(error);
+                let this = || Best { problem, solution, certified, level, off, reached };
+                break (before.unwrap_or_else(this), unmet);
+            }
+        };
+        let (bound, relative) = (certified.bound, certified.relative);
+        let within = force.map(|boundary| within(&certified, boundary));
+        // What is to be small, and what the target compares.
+        let (off, reached) = within.map_or((bound, relative), |within| (within, within));
+        levels.push(AdaptedLevel {
+            unknowns: unknowns(&problem.mesh, method.degree),
+            triangles: problem.mesh.triangles().len(),
+            newton_steps: solution.newton.iterations(),
+            bound,
+            relative,
+            force: within.filter(|within| within.is_finite()),
+        });
+        let met = reached <= target.relative;
+        watcher(Stage::Refine);
+        let begin = std::time::Instant::now();
+        // There is no share of an energy that is 0.
+        let finer = if met {
+            Err(None)
+        } else if let Some(Err(reason)) = force.map(|boundary| force_of(&certified, boundary)) {
+            Err(Some(reason))
+        } else if relative.is_finite() {
+            let finer = problem.mesh.bisected(&newest, &marked(shares(&certified, force)));
+            finer.map_err(|error| Some(error.to_string()))
+        } else {
+            Err(Some("the body is at rest, its energy is 0".to_owned()))
+        };
+        certifying += begin.elapsed();
+        start = finer.iter().map(|f| f.prolonged(&problem.mesh, &solution.displacement)).next();
+        let best = match before.take() {
+            Some(best) if !met && best.off <= off => best,
+            _ => Best {
+                problem: problem.clone(),
+                solution,
+                certified: Ok(certified),
+                level,
+                off,
+                reached,
+            },
+        };
+        let finer = match finer {
+            Ok(finer) => finer,
+            Err(unmet) => break (best, unmet),
+        };
+        let far_smaller = FAR_SMALLER * target.max_unknowns as f64;
+        let is_small = (unknowns(&problem.mesh, method.degree) as f64) < far_smaller;
+        if level >= best.level + NO_BETTER && best.reached <= 1.0 && !is_small {
+            let what = if force.is_some() { "what the force lies between" } else { "the bound" };
+            break (best, Some(format!("{what} has not come nearer for {NO_BETTER} levels")));
+        }
+        if unknowns(&finer.mesh, method.degree) > target.max_unknowns {
+            let reason = "the next mesh has more unknowns than adapt.max_unknowns allows";
+            break (best, Some(reason.to_owned()));
+        }
+        newest = vec![0; finer.mesh.triangles().len()];
+        problem = problem.refined(finer);
+        before = Some(best);
+    };
+    let Best { problem, solution, certified, level, .. } = best;
+    Ok((problem, Adapted { solution, times, certified, certifying, levels, level, unmet }))
+}
+
+/// The level with what is to be small at its smallest so far, with its problem.
+struct Best {
+    problem: Problem,
+    solution: Solution,
+    certified: Result<Continuous, CertifyError>,
+    level: usize,
+    off: f64,
+    /// What the target compares.
+    reached: f64,
+}
+
+/// The interval of a boundary's contact force, or why it is not known.
+fn force_of(certified: &Continuous, boundary: &str) -> Result<[f64; 2], String> {
+    let mut all = certified.quantities.list.iter();
+    let is = |q: &&super::quantities::Quantity| {
+        q.name == Name::ContactForce && q.boundary == boundary && q.weight.is_none()
+    };
+    all.find(is).map_or_else(
+        || Err(format!("there is no contact on {}", quoted(boundary, '\''))),
+        |quantity| quantity.interval.clone(),
+    )
+}
+
+/// Half the width of that over its middle.
+fn within(certified: &Continuous, boundary: &str) -> f64 {
+    force_of(certified, boundary).map_or(f64::INFINITY, |[low, high]| (high - low) / (low + high))
+}
+
+/// The roots of what the triangles share in the bound, or in the width of what a force lies between.
+fn shares<'a>(certified: &'a Continuous, force: Option<&str>) -> &'a [f64] {
+    let (own, dual) = (&certified.indicators, &certified.quantities.indicators);
+    if force.is_some() && dual.len() == own.len() { dual } else { own }
+}
+
+/// Degrees of freedom on a mesh.
+fn unknowns(mesh: &Mesh, degree: Degree) -> usize {
+    let middles = match degree {
+        Degree::One => 0,
+        Degree::Two => mesh.edge_count(),
+    };
+    2 * (mesh.vertices().len() + middles)
+}
+
+/// Where contact acts along normals, these are those of straight edges.
+fn check_straight(problem: &Problem) -> Result<(), AdaptError> {
+    let space = Space::new(&problem.mesh, Degree::One);
+    let line = ContactLine::new(problem, &space).map_err(CertifyError::Data)?;
+    let along_its_normal = |name: &str| {
+        let condition = problem.conditions.get(name);
+        matches!(condition, Some(Condition::Contact { .. }))
+    };
+    let boundary = |piece: &PieceGeometry| piece.first().boundary.to_string();
+    let curved = line.pieces().find(|p| !p.along_normal && along_its_normal(&boundary(p)));
+    match curved {
+        Some(piece) => Err(AdaptError::Curved { boundary: boundary(piece) }),
+        None => Ok(()),
+    }
+}
+
+/// The fewest triangles whose shares make up [`THETA`] of the whole; `indicators` are the roots of the shares. Where all
+/// shares are 0, all triangles.
+pub fn marked(indicators: &[f64]) -> Vec<usize> {
+    let share = |&t: &usize| indicators[t] * indicators[t];
+    let mut order: Vec<usize> = (0..indicators.len()).collect();
+    order.sort_by(|a, b| indicators[*b].total_cmp(&indicators[*a]));
+    let whole: f64 = order.iter().map(share).sum();
+    let mut sum = 0.0;
+    let mut count = 0;
+    for t in &order {
+        sum += share(t);
+        count += 1;
+        if sum >= THETA * whole && whole > 0.0 {
+            break;
+        }
+    }
+    order.truncate(count);
+    order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_fewest_triangles_with_half_of_the_whole_are_marked() {
+        assert_eq!(marked(&[1.0, 3.0, 2.0, 2.0]), [1], "9 of 18");
+        assert_eq!(marked(&[1.0, 2.0, 2.0, 2.0]), [1, 2], "8 of 13");
+        assert_eq!(marked(&[0.0, 0.0]), [0, 1]);
+    }
+}

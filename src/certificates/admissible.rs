@@ -1,0 +1,358 @@
+//! v from a displacement: it gets the prescribed values, and is pushed out of the obstacle.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector2;
+
+use super::contact::Contact;
+use super::field::Field;
+use super::parts::{Free, ProblemParts, held_along};
+use crate::model::BoundaryEdge;
+use crate::model::mesh::length;
+
+/// v: u with the prescribed values, and pushed out of the obstacle at the vertices of Gamma_C and, if it is quadratic, between
+/// them; on the edge k of Gamma_C by `further[k]` more than doubles ask for.
+pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Field {
+    let mut field = u.clone();
+    let v = &mut field.vertices;
+    for (vertex, v) in v.iter_mut().enumerate() {
+        *v = match (parts.held_alone(vertex), parts.prescribed[vertex]) {
+            (Some((d, w)), _) => held_along(d, w, *v),
+            (None, [Some(x), Some(y)]) => [x, y],
+            (None, _) => *v,
+        };
+    }
+    let size = u.vertices.iter().flatten().fold(0.0_f64, |max, u| max.max(u.abs()));
+    let obstacles = || parts.contact.iter().zip(further).filter(|(edge, _)| !edge.is_pair());
+    let mut walls: BTreeMap<usize, Vec<Wall>> = BTreeMap::new();
+    for (edge, further) in obstacles() {
+        for (k, vertex) in parts.mesh.ends(edge.edge).into_iter().enumerate() {
+            let (n, gap) = (edge.directions[k], edge.gap[k]);
+            // Balls must see it.
+            let is_rounded = parts.frames.contains_key(&vertex) || is_tilted(n);
+            let scale = gap.abs() + if is_rounded { size } else { 0.0 };
+            let margin = 64.0 * f64::EPSILON * scale + further;
+            let (most, further) = (gap - margin, *further);
+            walls.entry(vertex).or_default().push(Wall { n, gap, further, most, margin });
+        }
+    }
+    // On an edge along which the direction turns, both ends may have to give way.
+    for _ in 0..8 {
+        for (&vertex, walls) in &walls {
+            let free = parts.free_at(vertex);
+            let out = out_of(walls, v[vertex].into(), free);
+            v[vertex] = match (parts.frames.get(&vertex), parts.held_alone(vertex)) {
+                (Some(_), Some((d, w))) => held_along(d, w, out.into()),
+                _ => out.into(),
+            };
+        }
+        let mut moved = false;
+        for (edge, further) in obstacles() {
+            if !edge.turns() || u.bulges.is_some() {
+                continue;
+            }
+            // Between the ends it is at most the mean of the products of each with the other's direction.
+            let (ends, [d, e]) = (parts.mesh.ends(edge.edge), edge.directions);
+            let free = [0, 1].map(|k| match parts.free_at(ends[k]) {
+                Free::All => edge.directions[k],
+                Free::Along(t) => t * t.dot(&edge.directions[k]),
+                Free::Nothing => Vector2::zeros(),
+            });
+            let along = free[0].dot(&e) + free[1].dot(&d);
+            let at = ends.map(|vertex| Vector2::from(v[vertex]));
+            let beyond = at[0].dot(&e) + at[1].dot(&d) - edge.gap[0] - edge.gap[1];
+            let scale = edge.gap[0].abs() + edge.gap[1].abs() + 2.0 * size;
+            let margin = 64.0 * f64::EPSILON * scale + 2.0 * further;
+            if beyond > -margin && along > 0.0 {
+                let step = (beyond + 2.0 * margin) / along;
+                for k in 0..2 {
+                    v[ends[k]] = (at[k] - free[k] * step).into();
+                }
+                moved = true;
+            }
+        }
+        if !moved {
+            break;
+        }
+    }
+    for (&vertex, walls) in &mut walls {
+        let all = walls.iter().all(|wall| wall.further == 0.0 && !is_tilted(wall.n));
+        if all && matches!(parts.free_at(vertex), Free::All) {
+            walls.sort_by(|a, b| b.gap.total_cmp(&a.gap));
+            walls.iter().for_each(|wall| touch(wall.n, wall.gap, size, &mut v[vertex]));
+        }
+    }
+    if let Some(bulges) = &mut field.bulges {
+        parts.hold_between(bulges);
+        let number = |edge: BoundaryEdge| parts.mesh.triangle_edges()[edge.triangle][edge.local];
+        let at_ends = |v: &[[f64; 2]], edge: BoundaryEdge| {
+            parts.mesh.ends(edge).map(|vertex| Vector2::from(v[vertex]))
+        };
+        for (edge, further) in obstacles() {
+            let ends = parts.mesh.ends(edge.edge);
+            let bulge = Vector2::from(bulges[number(edge.edge)]);
+            let over =
+                Over::new(edge, (at_ends(&field.vertices, edge.edge), bulge), (size, *further));
+            let modulus = parts.material(edge.edge.triangle).mu();
+            let free = ends.map(|vertex| matches!(parts.free_at(vertex), Free::All));
+            if let Some((k, step)) = over.at_an_end(edge, modulus, free) {
+                let v = &mut field.vertices[ends[k]];
+                *v = (Vector2::from(*v) - edge.directions[k] * step).into();
+            }
+        }
+        for (edge, further) in obstacles() {
+            let bulge = &mut bulges[number(edge.edge)];
+            let v = (at_ends(&field.vertices, edge.edge), Vector2::from(*bulge));
+            let over = Over::new(edge, v, (size, *further));
+            let mean = (edge.directions[0] + edge.directions[1]) / 2.0;
+            *bulge = (Vector2::from(*bulge) - mean * over.between(edge)).into();
+            if *further == 0.0 && !edge.turns() {
+                touch(edge.directions[0], edge.gap_bulge, size + edge.gap[0].abs(), bulge);
+            }
+        }
+    }
+    let pairs = || parts.contact.iter().zip(further).filter(|(edge, _)| edge.is_pair());
+    for _ in 0..SWEEPS {
+        let moved = pairs().fold(false, |moved, (contact, further)| {
+            move_apart(parts, contact, &mut field, (size, *further)) || moved
+        });
+        if !moved {
+            break;
+        }
+    }
+    field
+}
+
+/// The number of times that two bodies are moved apart: what is moved at one contact moves its neighbours.
+const SWEEPS: usize = 16;
+
+/// Moves two bodies apart where they go through each other: for each Bernstein coefficient of v . d - g that is positive, with the
+/// least energy that some springs at the vertices and in the middles of both edges have, each as stiff as its body.
+fn move_apart(
+    parts: &ProblemParts,
+    contact: &Contact,
+    field: &mut Field,
+    (size, further): (f64, f64),
+) -> bool {
+    let mesh = parts.mesh;
+    let (d, [g, h]) = (contact.directions, contact.gap);
+    let mean = (d[0] + d[1]) / 2.0;
+    let quadratic = field.bulges.is_some();
+    let gap_bulge = if quadratic { contact.gap_bulge } else { 0.0 };
+    let gap = [g, (g + h) / 2.0 + 2.0 * gap_bulge, h];
+    let margin = 64.0 * f64::EPSILON * (size + g.abs() + h.abs() + gap_bulge.abs()) + further;
+    // Each unknown: a vertex, or the number of an edge for its bulge; its direction; its coefficients; and how easily it moves.
+    let mut unknowns = Vec::with_capacity(6);
+    for (i, side) in contact.sides.iter().enumerate() {
+        let ease = 1.0 / parts.material(side.edge.triangle).mu();
+        let [s, t] = side.places;
+        let blossom = |[a, m, b]: [f64; 3]| {
+            [(s, s), (s, t), (t, t)].map(|(s, t)| {
+                a * (1.0 - s) * (1.0 - t) + m * ((1.0 - s) * t + s * (1.0 - t)) + b * s * t
+            })
+        };
+        let along = mean * Contact::sign(i);
+        let mut add = |at: Result<usize, usize>, along: Vector2<f64>, shape: [f64; 3]| {
+            let change = blossom(shape).map(|n| along * (n * Contact::sign(i)));
+            let effects = |ends| coefficients(&change, &d, &[0.0; 3], ends);
+            let effects: Vec<f64> =
+                contact.parts.iter().flat_map(|part| effects(part.ends)).collect();
+            unknowns.push((at, along, effects, ease));
+        };
+        for (vertex, shape) in
+            mesh.ends(side.edge).into_iter().zip([[1.0, 0.5, 0.0], [0.0, 0.5, 1.0]])
+        {
+            match parts.free_at(vertex) {
+                Free::All => add(Ok(vertex), along, shape),
+                Free::Along(t) => add(Ok(vertex), t * t.dot(&along), shape),
+                Free::Nothing => {}
+            }
+        }
+        if quadratic {
+            let number = mesh.triangle_edges()[side.edge.triangle][side.edge.local];
+            add(Err(number), along, [0.0, 2.0, 0.0]);
+        }
+    }
+    let jump = |field: &Field| {
+        let jump = contact.jump(mesh, field);
+        let of_part = |ends| coefficients(&jump, &d, &gap, ends);
+        contact.parts.iter().flat_map(|part| of_part(part.ends)).collect::<Vec<f64>>()
+    };
+    let mut over = jump(field);
+    let mut moved = false;
+    for j in 0..over.len() {
+        let beyond = over[j] + margin;
+        let give: f64 =
+            unknowns.iter().map(|(_, _, effects, ease)| ease * effects[j] * effects[j]).sum();
+        if !(beyond > 0.0 && give > 0.0) {
+            continue;
+        }
+        // A little farther, so that rounding does not ask again.
+        let step = (beyond + margin) / give;
+        for (at, along, effects, ease) in &unknowns {
+            let by = step * ease * effects[j];
+            over.iter_mut().zip(effects).for_each(|(over, effect)| *over -= by * effect);
+            let place = match (at, &mut field.bulges) {
+                (Ok(vertex), _) => &mut field.vertices[*vertex],
+                (Err(edge), Some(bulges)) => &mut bulges[*edge],
+                (Err(_), None) => continue,
+            };
+            *place = (Vector2::from(*place) - *along * by).into();
+        }
+        moved = true;
+    }
+    moved
+}
+
+/// n is not along an axis.
+fn is_tilted(n: Vector2<f64>) -> bool {
+    n[0] != 0.0 && n[1] != 0.0
+}
+
+/// Puts v, which may be `size` large, on the obstacle to the last bit, where it is there but for rounding, and n is along an
+/// axis.
+fn touch(n: Vector2<f64>, gap: f64, size: f64, v: &mut [f64; 2]) {
+    let near = 512.0 * f64::EPSILON * (gap.abs() + size);
+    for c in 0..2 {
+        if n[c].abs() == 1.0 && (v[c] * n[c] - gap).abs() <= near {
+            v[c] = n[c] * gap;
+        }
+    }
+}
+
+/// v . n is to be at most `most`, which is `margin` less than what is allowed.
+struct Wall {
+    n: Vector2<f64>,
+    gap: f64,
+    /// The amount by which it is pushed out beyond what doubles ask for.
+    further: f64,
+    most: f64,
+    margin: f64,
+}
+
+/// The place nearest to v on the right side of all walls; where there is none, a place on that of one of them.
+fn out_of(walls: &[Wall], v: Vector2<f64>, free: Free) -> Vector2<f64> {
+    let is_out = |x: &Vector2<f64>| walls.iter().all(|w| x.dot(&w.n) <= w.most + w.margin / 2.0);
+    if is_out(&v) {
+        return v;
+    }
+    let (alone, n): (Vec<_>, Vec<_>) = walls
+        .iter()
+        .filter_map(|wall| {
+            let n = match free {
+                Free::All => wall.n,
+                Free::Along(t) => t * t.dot(&wall.n),
+                Free::Nothing => return None,
+            };
+            let along = n.dot(&wall.n);
+            let step = (v.dot(&wall.n) - wall.most) / along;
+            (along > 0.0).then(|| (v - n * step, wall))
+        })
+        .unzip();
+    let mut places = alone.clone();
+    if matches!(free, Free::All) {
+        for (k, a) in n.iter().enumerate() {
+            for b in &n[..k] {
+                let sine = a.n.perp(&b.n);
+                if sine.abs() > 1e-6 {
+                    let turned = |n: Vector2<f64>| Vector2::new(-n.y, n.x);
+                    places.push((turned(a.n) * b.most - turned(b.n) * a.most) / sine);
+                }
+            }
+        }
+    }
+    let far = |x: &Vector2<f64>| (x - v).dot(&(x - v));
+    let nearest = places.into_iter().filter(is_out).min_by(|a, b| far(a).total_cmp(&far(b)));
+    let farthest = || alone.into_iter().max_by(|a, b| far(a).total_cmp(&far(b)));
+    nearest.or_else(farthest).unwrap_or(v)
+}
+
+/// The Bernstein coefficients of v . d - g on the parts of an edge of Gamma_C, where they are verified, and the margin by which they
+/// are to be negative.
+struct Over {
+    coefficients: Vec<f64>,
+    margin: f64,
+}
+
+/// The Bernstein coefficients of v . d - g on the part of an edge from s to t, for v and g by their own on the whole edge; of degree 3,
+/// or of degree 2 where d does not turn.
+fn coefficients(
+    v: &[Vector2<f64>; 3],
+    d: &[Vector2<f64>; 2],
+    g: &[f64; 3],
+    [s, t]: [f64; 2],
+) -> Vec<f64> {
+    // Each argument of the blossom takes one step of de Casteljau's.
+    let weights = |a: f64, b: f64| [(1.0 - a) * (1.0 - b), (1.0 - a) * b + a * (1.0 - b), a * b];
+    let v =
+        |a: f64, b: f64| -> Vector2<f64> { v.iter().zip(weights(a, b)).map(|(v, w)| *v * w).sum() };
+    let g = |a: f64, b: f64| g.iter().zip(weights(a, b)).map(|(g, w)| g * w).sum::<f64>();
+    if d[0] == d[1] {
+        return [(s, s), (s, t), (t, t)].map(|(a, b)| v(a, b).dot(&d[0]) - g(a, b)).to_vec();
+    }
+    let d = |a: f64| d[0] * (1.0 - a) + d[1] * a;
+    let ends = |a: f64| v(a, a).dot(&d(a)) - g(a, a);
+    let inner = |a: f64, b: f64| {
+        (2.0 * v(a, b).dot(&d(a)) + v(a, a).dot(&d(b)) - g(a, a) - 2.0 * g(a, b)) / 3.0
+    };
+    vec![ends(s), inner(s, t), inner(t, s), ends(t)]
+}
+
+impl Over {
+    fn new(
+        edge: &Contact,
+        (v, bulge): ([Vector2<f64>; 2], Vector2<f64>),
+        (size, further): (f64, f64),
+    ) -> Over {
+        let (d, [g, h]) = (edge.directions, edge.gap);
+        let middle = (v[0] + v[1]) / 2.0 + bulge * 2.0;
+        let gap = [g, (g + h) / 2.0 + 2.0 * edge.gap_bulge, h];
+        let of_part = |part| coefficients(&[v[0], middle, v[1]], &d, &gap, part);
+        let tilted = if is_tilted(d[0]) || is_tilted(d[1]) { size } else { 0.0 };
+        let largest = v[0].dot(&d[0]).abs() + v[1].dot(&d[1]).abs() + bulge.dot(&d[0]).abs();
+        let scale = largest + tilted + g.abs() + h.abs() + edge.gap_bulge.abs();
+        Over {
+            coefficients: edge.parts.iter().map(|part| part.ends).flat_map(of_part).collect(),
+            margin: 64.0 * f64::EPSILON * scale + further,
+        }
+    }
+
+    /// The least multiple of a change of v with these coefficients that makes all negative where the change is not 0.
+    fn step(&self, edge: &Contact, change: &[Vector2<f64>; 3]) -> f64 {
+        let of_part = |part| coefficients(change, &edge.directions, &[0.0; 3], part);
+        let effects = edge.parts.iter().map(|part| part.ends).flat_map(of_part);
+        let all = self.coefficients.iter().zip(effects);
+        let steps = all.filter(|(_, effect)| *effect > 1e-6);
+        steps.fold(0.0, |step: f64, (c, effect)| step.max((c + 2.0 * self.margin) / effect))
+    }
+
+    /// The change of the bulge, along the mean of the directions.
+    fn between(&self, edge: &Contact) -> f64 {
+        let mean = (edge.directions[0] + edge.directions[1]) / 2.0;
+        self.step(edge, &[Vector2::zeros(), mean * 2.0, Vector2::zeros()])
+    }
+
+    /// The end of the edge at which v had better be pushed out, and how far: where contact ends near it, v goes through the obstacle
+    /// behind it by far less than its slope is off, to which a bulge would have to answer. A bulge b costs an energy of some
+    /// 16 mu b^2 / 3, a shift by b some mu b^2, and the work of the force there.
+    fn at_an_end(&self, edge: &Contact, modulus: f64, free: [bool; 2]) -> Option<(usize, f64)> {
+        let by_bulge = self.between(edge);
+        let shift = |k: usize| {
+            let d = edge.directions[k];
+            let change = if k == 0 {
+                [d, d / 2.0, Vector2::zeros()]
+            } else {
+                [Vector2::zeros(), d / 2.0, d]
+            };
+            let step = self.step(edge, &change);
+            let force = length(edge.on_edge(0)[k]);
+            (k, step, modulus * step * step + 4.0 * force * step)
+        };
+        let most = 16.0 / 3.0 * modulus * by_bulge * by_bulge;
+        let better = (0..2)
+            .filter(|&k| free[k])
+            .map(shift)
+            .filter(|(_, step, cost)| *cost < most && *step > 0.0);
+        better.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(k, step, _)| (k, step))
+    }
+}

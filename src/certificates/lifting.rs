@@ -1,0 +1,406 @@
+//! Displacements w for `certificates::forces`: of least energy among those that do on the boundary what is asked of them. Where
+//! the body is far off the obstacle, w is free: it costs the square of the bound there, not its first power.
+//!
+//! One matrix serves all: that of a(.,.) with the body held on Gamma_D, and on Gamma_C along the direction of contact.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector2;
+
+use super::SWEEPS_FOR_FORCES;
+use super::build::{Built, build};
+use super::certificate::{Certificate, Cut, Role, is_oblique};
+use super::contact::Contact;
+use super::field::Field;
+use super::forces::{ForceTarget, Lifting, Motion};
+use super::parts::{Boundary, OnLine, ProblemParts};
+use super::sweeps::improve;
+use crate::contact::residual::add_internal_forces;
+use crate::held::rigid::{Parts, free_motions, pins};
+use crate::linear::factor::Factor;
+use crate::linear::matrix::{LowerTriangle, Neighbours, Numbering};
+use crate::linear::ordering::nested_dissection;
+use crate::model::mesh::length;
+use crate::model::{BoundaryEdge, Degree, Problem, Space};
+use crate::solve::SolveError;
+
+/// w . direction is prescribed at a node, because of an edge of this boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Prescription {
+    direction: Vector2<f64>,
+    boundary: usize,
+    contact: bool,
+    /// The part of the jump that is the own of one of two bodies, with its sign; 1 elsewhere.
+    share: f64,
+}
+
+/// An edge of Gamma_C.
+struct OnContact {
+    edge: BoundaryEdge,
+    boundary: usize,
+    /// As [`Prescription::share`].
+    share: f64,
+    /// The direction of contact at its start, its end and in its middle.
+    directions: [Vector2<f64>; 3],
+}
+
+/// The edges of Gamma_C that have a contact which is `wanted`. Of two bodies the softer one moves more, so that both together have
+/// about the least energy.
+fn on_contact(
+    parts: &ProblemParts,
+    names: &[String],
+    wanted: impl Fn(usize) -> bool,
+) -> Vec<OnContact> {
+    let modulus = |contact: &Contact, i: usize| parts.material(contact.sides[i].edge.triangle).mu();
+    let mut shares: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
+    for contact in parts.contact.iter().filter(|contact| contact.is_pair()) {
+        let [first, second] = [0, 1].map(|i| modulus(contact, i));
+        let own = second / (first + second);
+        shares.entry(&contact.boundary).or_insert([own, own - 1.0]);
+    }
+    let of_line = |line: &OnLine| {
+        let wanted: OnLine = line.iter().copied().filter(|&(k, _)| wanted(k)).collect();
+        let &(k, i) = wanted.first()?;
+        let (contact, edge) = (&parts.contact[k], parts.contact[k].sides[i].edge);
+        let boundary = names.iter().position(|name| **name == *contact.boundary)?;
+        let direction = |x: f64| {
+            let beyond = |&(k, i): &(usize, usize)| {
+                let s = parts.contact[k].sides[i].within(x);
+                (s - s.clamp(0.0, 1.0)).abs()
+            };
+            let nearest = wanted.iter().min_by(|a, b| beyond(a).total_cmp(&beyond(b)));
+            let &(k, i) = nearest.unwrap_or(&(k, i));
+            let (s, [d, e]) = (parts.contact[k].sides[i].within(x), parts.contact[k].directions);
+            match s {
+                s if s <= 0.0 || d == e => d,
+                s if s >= 1.0 => e,
+                s => d * (1.0 - s) + e * s,
+            }
+        };
+        let share = shares.get(&*contact.boundary).map_or(1.0, |shares| shares[i]);
+        Some(OnContact { edge, boundary, share, directions: [0.0, 1.0, 0.5].map(direction) })
+    };
+    parts.lines.iter().filter_map(of_line).collect()
+}
+
+/// Makes displacements w.
+pub(super) struct Lifter<'a> {
+    parts: &'a ProblemParts<'a>,
+    names: &'a [String],
+    space: Space<'a>,
+    /// At each node; those of Gamma_D first.
+    demands: BTreeMap<usize, Vec<Prescription>>,
+    numbering: Numbering,
+    factor: Factor,
+}
+
+/// Two directions with a sine below this are parallel.
+const PARALLEL: f64 = 1e-8;
+
+/// Two values at a node that differ by more, beside 1, contradict one another.
+const AGREEMENT: f64 = 1e-9;
+
+/// The first of the demands that are independent.
+fn independent(demands: &[Prescription]) -> (Option<Prescription>, Option<Prescription>) {
+    let Some(&first) = demands.first() else { return (None, None) };
+    let across = |d: &&Prescription| first.direction.perp(&d.direction).abs() > PARALLEL;
+    (Some(first), demands.iter().find(across).copied())
+}
+
+impl<'a> Lifter<'a> {
+    /// For the boundaries with these `names`; `open` tells of the edges of Gamma_C, by their place in `parts.contact`, where
+    /// w is free.
+    pub fn new(
+        parts: &'a ProblemParts<'a>,
+        degree: Degree,
+        names: &'a [String],
+        open: &[bool],
+    ) -> Result<Self, String> {
+        let space = Space::new(parts.mesh, degree);
+        let mut demands: BTreeMap<usize, Vec<Prescription>> = BTreeMap::new();
+        let mut add = |edge: BoundaryEdge,
+                       boundary: usize,
+                       (contact, share),
+                       of: &dyn Fn(usize) -> Vec<Vector2<f64>>| {
+            for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
+                let at_node = demands.entry(node).or_default();
+                for direction in of(a) {
+                    let demand = Prescription { direction, boundary, contact, share };
+                    if !at_node.contains(&demand) {
+                        at_node.push(demand);
+                    }
+                }
+            }
+        };
+        for (boundary, name) in names.iter().enumerate() {
+            for &edge in parts.mesh.edges_of(name).unwrap_or_default() {
+                let e = parts.mesh.triangle_edges()[edge.triangle][edge.local];
+                match parts.boundary.get(&e) {
+                    Some(&Boundary::Held(held, _)) => {
+                        let axes = [Vector2::x(), Vector2::y()];
+                        let held: Vec<_> = (0..2).filter(|&c| held[c]).map(|c| axes[c]).collect();
+                        add(edge, boundary, (false, 1.0), &|_| held.clone());
+                    }
+                    Some(&Boundary::Supported(d, ..)) => {
+                        add(edge, boundary, (false, 1.0), &|_| vec![d.into()]);
+                    }
+                    _ => {}
+                }
+            }
+        }
+        for OnContact { edge, boundary, share, directions } in
+            on_contact(parts, names, |k| !open[k])
+        {
+            add(edge, boundary, (true, share), &|a| vec![directions[a]]);
+        }
+        let mut prescribed = vec![[None; 2]; space.nodes().len()];
+        let mut frames = BTreeMap::new();
+        for (&node, demands) in &demands {
+            prescribed[node] = match independent(demands) {
+                (Some(_), Some(_)) => [Some(0.0); 2],
+                (Some(one), None) => {
+                    let d = one.direction;
+                    if is_oblique(d.into()) {
+                        frames.insert(node, (d / length(d)).into());
+                        [Some(0.0), None]
+                    } else {
+                        [0, 1].map(|c| (d[c] != 0.0).then_some(0.0))
+                    }
+                }
+                _ => [None; 2],
+            };
+        }
+        // A motion that neither supports nor the directions of contact stop, as a part turns about its pin, changes no force.
+        let bodies = Parts::new(parts.mesh);
+        let held = |node: usize| {
+            demands.get(&node).into_iter().flatten().map(|demand| demand.direction.into())
+        };
+        let motions = free_motions(&bodies, &space, held, PARALLEL, false);
+        let fields: Vec<_> = motions.iter().map(|motion| motion.field(&bodies, &space)).collect();
+        for (node, c) in pins(&fields, |node, _| !demands.contains_key(&node)) {
+            prescribed[node][c] = Some(0.0);
+        }
+        let neighbours = Neighbours::new(&space);
+        let order = nested_dissection(space.nodes(), &neighbours);
+        let numbering = Numbering::in_frames(&order, &prescribed, frames);
+        let mut matrix = LowerTriangle::zero(&numbering, &neighbours);
+        let assembled = matrix.add_stiffness(&space, &parts.problem.material, &numbering);
+        let factor = assembled.map_err(SolveError::from).and_then(|()| Factor::new(&matrix));
+        let factor = factor.map_err(|error| {
+            format!("no displacement of least energy to prove forces with: {error}")
+        })?;
+        Ok(Lifter { parts, names, space, demands, numbering, factor })
+    }
+
+    /// The value that a demand asks for at a node; at a place where the boundaries contradict one another, with `strict` an
+    /// error.
+    fn value(&self, node: usize, demand: &Prescription, target: ForceTarget) -> f64 {
+        let x = self.space.nodes()[node];
+        if target.boundary.is_some_and(|boundary| boundary != demand.boundary) {
+            return 0.0;
+        }
+        let whole = match target.motion {
+            Motion::Along(ramp) if demand.contact => ramp.map_or(1.0, |ramp| ramp.at(x[ramp.axis])),
+            motion => motion.at(Vector2::from(x)).map_or(0.0, |r| r.dot(&demand.direction)),
+        };
+        whole * demand.share
+    }
+
+    /// w at the nodes, of least energy.
+    ///
+    /// # Errors
+    /// A place where two boundaries ask for what is not to be had together.
+    pub fn field(&self, target: ForceTarget) -> Result<Vec<[f64; 2]>, String> {
+        let mut field = vec![[0.0; 2]; self.space.nodes().len()];
+        for (&node, demands) in &self.demands {
+            let value = |demand: &Prescription| self.value(node, demand, target);
+            let w =
+                match independent(demands) {
+                    (Some(a), Some(b)) => {
+                        let (d, e) = (a.direction, b.direction);
+                        let turned = |d: Vector2<f64>| Vector2::new(d[1], -d[0]);
+                        let axes = |d: Vector2<f64>| !is_oblique(d.into());
+                        if axes(d) && axes(e) {
+                            // d or e has component c alone.
+                            Vector2::from([0, 1].map(|c| {
+                                if d[c] != 0.0 { d[c] * value(&a) } else { e[c] * value(&b) }
+                            }))
+                        } else {
+                            (turned(e) * value(&a) - turned(d) * value(&b)) / d.perp(&e)
+                        }
+                    }
+                    (Some(a), None) => a.direction * (value(&a) / a.direction.dot(&a.direction)),
+                    _ => continue,
+                };
+            // All contact boundaries together yield to what holds.
+            if target.boundary.is_some() {
+                let off = |demand: &&Prescription| {
+                    (w.dot(&demand.direction) - value(demand)).abs() > AGREEMENT * (1.0 + length(w))
+                };
+                if let Some(other) = demands.iter().find(off) {
+                    return Err(self.contradiction(node, demands, other));
+                }
+            }
+            field[node] = w.into();
+        }
+        // -K w on the free unknowns.
+        let mut right = vec![[0.0; 2]; field.len()];
+        add_internal_forces(&self.space, &self.parts.problem.material, &field, &mut right);
+        right.as_flattened_mut().iter_mut().for_each(|r| *r = -*r);
+        let prescribed = field.clone();
+        let mut x = self.numbering.gather(&right);
+        self.factor.forward(&mut x);
+        self.factor.backward(&mut x);
+        self.numbering.scatter(&x, &mut field);
+        // Turning a vector into a frame and back rounds what is prescribed.
+        for (&node, demands) in &self.demands {
+            if demands.iter().all(|demand| !is_oblique(demand.direction.into())) {
+                for c in (0..2).filter(|&c| demands.iter().any(|d| d.direction[c] != 0.0)) {
+                    field[node][c] = prescribed[node][c];
+                }
+            }
+        }
+        // w0 is 1 where w is free, too: it need not have the least energy.
+        if target.boundary.is_none() {
+            for OnContact { edge, share, directions, .. } in
+                on_contact(self.parts, self.names, |_| true)
+            {
+                for (a, node) in self.space.edge_nodes(edge).into_iter().enumerate() {
+                    let (d, w) = (directions[a], Vector2::from(field[node]));
+                    let along = match self.demands.get(&node) {
+                        None => d,
+                        // A body that another one holds may be held across contact there, and move the other way.
+                        Some(held) if share != 1.0 => match independent(held) {
+                            (Some(one), None) if !held.iter().any(|demand| demand.contact) => {
+                                Vector2::new(-one.direction[1], one.direction[0])
+                            }
+                            _ => continue,
+                        },
+                        Some(_) => continue,
+                    };
+                    let moved = along.dot(&d);
+                    if moved.abs() > 0.5 {
+                        field[node] = (w + along * ((share - w.dot(&d)) / moved)).into();
+                    }
+                }
+            }
+        }
+        Ok(field)
+    }
+
+    /// The dual pair of `certificates::dual`: a given w, and a stress rho in equilibrium near C eps of our own displacement for
+    /// the target, on the triangles of `built`; `open` tells of the edges of Gamma_C where rho has no traction, those where
+    /// our own displacement is free.
+    ///
+    /// # Errors
+    /// A place where boundaries contradict one another; contact along a direction that is not an axis.
+    pub fn pair(
+        &self,
+        (target, w): (ForceTarget, &[[f64; 2]]),
+        built: &Built,
+        open: &[bool],
+    ) -> Result<Certificate, String> {
+        let (parts, mesh) = (self.parts, self.parts.mesh);
+        let field = |w: &[[f64; 2]]| Field::new(mesh, w).map_err(|error| error.to_string());
+        let (near, mut w) = (field(&self.field(target)?)?, field(w)?);
+        let at_rest = |values: &[Option<f64>; 2]| values.map(|value| value.map(|_| 0.0));
+        let mut prescribed: Vec<[Option<f64>; 2]> = parts.prescribed.iter().map(at_rest).collect();
+        let mut boundary = BTreeMap::new();
+        for (&e, what) in &parts.boundary {
+            boundary.insert(
+                e,
+                match *what {
+                    Boundary::Held(held, _) => Boundary::Held(held, [0.0; 2]),
+                    Boundary::Supported(d, ..) => Boundary::Supported(d, 0.0, None),
+                    Boundary::Contact(line) if parts.lines[line].iter().any(|&(k, _)| !open[k]) => {
+                        let (k, _) = parts.lines[line][0];
+                        if parts.contact[k].is_pair() {
+                            return Err("the force is one between two bodies".to_owned());
+                        }
+                        let [d, e] = parts.contact[k].directions;
+                        if is_oblique(d.into()) || d != e {
+                            return Err("contact does not act along an axis".to_owned());
+                        }
+                        let held = [d[0] != 0.0, d[1] != 0.0];
+                        for vertex in mesh.ends(parts.contact[k].edge) {
+                            for c in (0..2).filter(|&c| held[c]) {
+                                prescribed[vertex][c] = Some(w.vertices[vertex][c]);
+                            }
+                        }
+                        Boundary::Held(held, [0.0; 2])
+                    }
+                    Boundary::Loaded(_) | Boundary::Free | Boundary::Contact(_) => Boundary::Free,
+                },
+            );
+        }
+        let problem = Problem::of(mesh.clone(), parts.problem.material.clone());
+        let cuts =
+            built.divisions.iter().map(|division| (division.base, division.places[1])).collect();
+        let frames = parts.frames.clone();
+        let dual = ProblemParts {
+            problem: &problem,
+            mesh,
+            contact: Vec::new(),
+            lines: Vec::new(),
+            prescribed,
+            frames,
+            boundary,
+            cuts,
+        };
+        if let Some(bulges) = &mut w.bulges {
+            dual.hold_between(bulges);
+        }
+        let mut pair = build(&dual, &near, &w).certificate;
+        // There is no load that could oscillate.
+        pair.pieces.iter_mut().for_each(|piece| piece.oscillation = 0.0);
+        improve(&mut pair, SWEEPS_FOR_FORCES, true).map_err(|error| error.to_string())?;
+        Ok(pair)
+    }
+
+    fn contradiction(&self, node: usize, demands: &[Prescription], other: &Prescription) -> String {
+        let [x, y] = self.space.nodes()[node];
+        let names = |demand: &Prescription| format!("'{}'", self.names[demand.boundary]);
+        let with = demands.iter().find(|demand| demand.boundary != other.boundary);
+        let with = with.map_or_else(String::new, |with| format!(" and {}", names(with)));
+        format!(
+            "at ({x}, {y}), where {}{with} meet, the force of one alone has no bound in the energy norm",
+            names(other)
+        )
+    }
+
+    /// w on the triangles of a certificate, what is exact on the boundary made so.
+    pub fn lifting(&self, target: ForceTarget, built: &Built) -> Result<Lifting, String> {
+        let field = self.field(target)?;
+        let certificate = &built.certificate;
+        let mesh = self.parts.mesh;
+        let shape = built.shape::<f64>(mesh, &field);
+        let vertices: Vec<[f64; 2]> =
+            shape.points[..mesh.vertices().len()].iter().map(|&w| w.into()).collect();
+        let Some(bulges) = shape.bulges else { return Ok(Lifting { vertices, beyond: None }) };
+        let mean = |cut: &Cut| {
+            let [a, b] = cut.ends.map(|end| Vector2::from(vertices[end]));
+            a + (b - a) * cut.at
+        };
+        let at_cuts = shape.points[vertices.len()..].iter().zip(&certificate.cuts);
+        let mut at_cuts: Vec<[f64; 2]> = at_cuts.map(|(w, cut)| (w - mean(cut)).into()).collect();
+        let mut bulges: Vec<[f64; 2]> = bulges.into_iter().map(Into::into).collect();
+        for (e, edge) in certificate.edges.iter().enumerate() {
+            // w is affine along what holds.
+            let across = match edge.role {
+                Role::Held(held, _) => held,
+                Role::Supported { along, .. } if is_oblique(along) => [true; 2],
+                Role::Supported { along, .. } => along.map(|d| d != 0.0),
+                _ => continue,
+            };
+            for c in (0..2).filter(|&c| across[c]) {
+                bulges[e][c] = 0.0;
+                for p in edge.ends {
+                    if let Some(cut) = p.checked_sub(vertices.len()) {
+                        at_cuts[cut][c] = 0.0;
+                    }
+                }
+            }
+        }
+        Ok(Lifting { vertices, beyond: Some([at_cuts, bulges]) })
+    }
+}

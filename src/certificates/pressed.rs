@@ -1,0 +1,183 @@
+//! The displacement y in V^h under the loads and the pressures p of a certificate: a(y, v) = L(v) + int p d . v for all v in V^h
+//! that vanish where the body is held.
+//!
+//! Tractions that are in equilibrium on every triangle follow from y around each vertex alone (`tractions`), whatever p is. The
+//! discrete solution u^h is not such a displacement: (8) has the moments of lambda^h, by the rule that it was integrated with,
+//! and Nitsche's terms; p is lambda^h but where that is not affine along an edge or its direction turns. y - u^h has the least
+//! energy of all that make up for the difference, and costs one factor of the body without contact. Carried from triangle to
+//! triangle, the difference would cost more the finer the mesh is.
+//!
+//! Where contact alone stops a motion, y is one up to that, and exists only if p balances the loads: each edge's pressure is
+//! multiplied by 1 + sum c_k m_k, m_k the mean of d . r_k on the edge with the weight p for the motions r_k.
+
+use nalgebra::Vector2;
+
+use super::contact::{Contact, Side};
+use super::data::Data;
+use super::errors::CertifyError;
+use super::parts::{Boundary, ProblemParts};
+use super::tractions::load;
+use crate::contact::residual::add_internal_forces;
+use crate::held::rigid::{FreeMotion, Parts, pins};
+use crate::linear::dense::{dot, inner, singular_vectors};
+use crate::linear::factor::Factor;
+use crate::linear::matrix::{LowerTriangle, Neighbours, Numbering};
+use crate::linear::ordering::nested_dissection;
+use crate::model::constraints::Constraints;
+use crate::model::{BoundaryEdge, Degree, Space};
+use crate::solve::SolveError;
+
+/// No pressure changes by more than this part of itself: it stays one.
+const MOST: f64 = 0.5;
+
+/// A motion along which the direction of contact has less than this part of what it has along others is one that nothing stops.
+const STOPPED: f64 = 1e-8;
+
+/// y at the nodes, from u^h, `near`, which has what is prescribed. Where contact alone holds the body, the pressures of `parts`
+/// are balanced first.
+///
+/// # Errors
+/// A body without a factor, and lack of memory.
+pub(super) fn displacement(
+    parts: &mut ProblemParts,
+    degree: Degree,
+    near: &[[f64; 2]],
+) -> Result<Vec<[f64; 2]>, CertifyError> {
+    let space = Space::new(parts.mesh, degree);
+    let constraints = Constraints::new(parts.problem, &space)?;
+    let (bodies, motions) = constraints.free_motions(&space);
+    let mut forces = loads(parts, &space);
+    let fields: Vec<_> = motions.iter().map(|motion| motion.field(&bodies, &space)).collect();
+    let driven: Vec<f64> = fields.iter().map(|field| inner(&forces, field)).collect();
+    balance(parts, (&bodies, &motions), &driven);
+    for edge in &parts.contact {
+        for (i, side) in edge.sides.iter().enumerate() {
+            add_on_edge(&space, side.edge, edge.on_edge(i), &mut forces);
+        }
+    }
+    let mut prescribed = constraints.values().to_vec();
+    let is_free = |node: usize, c: usize| {
+        constraints.values()[node][c].is_none() && !constraints.frames().contains_key(&node)
+    };
+    for (node, c) in pins(&fields, is_free) {
+        prescribed[node][c] = Some(0.0);
+    }
+    let neighbours = Neighbours::new(&space);
+    let order = nested_dissection(space.nodes(), &neighbours);
+    let numbering = Numbering::in_frames(&order, &prescribed, constraints.frames().clone());
+    let mut matrix = LowerTriangle::zero(&numbering, &neighbours);
+    let assembled = matrix.add_stiffness(&space, &parts.problem.material, &numbering);
+    let factor = assembled.map_err(SolveError::from).and_then(|()| Factor::new(&matrix));
+    let factor = factor.map_err(|error| {
+        CertifyError::Unsupported(format!("no displacement under the contact pressures: {error}"))
+    })?;
+    let mut y = near.to_vec();
+    // The second time for what the first one has rounded.
+    for _ in 0..2 {
+        let mut internal = vec![[0.0; 2]; y.len()];
+        add_internal_forces(&space, &parts.problem.material, &y, &mut internal);
+        let left: Vec<[f64; 2]> =
+            forces.iter().zip(internal).map(|(f, i)| [f[0] - i[0], f[1] - i[1]]).collect();
+        let mut x = numbering.gather(&left);
+        factor.solve(&mut x);
+        let mut moved = vec![[0.0; 2]; y.len()];
+        numbering.scatter(&x, &mut moved);
+        let all = y.as_flattened_mut().iter_mut().zip(moved.as_flattened());
+        all.for_each(|(y, moved)| *y += moved);
+    }
+    Ok(y)
+}
+
+/// L(v) for every basis function, of the loads as the certificate has them.
+fn loads(parts: &ProblemParts, space: &Space) -> Vec<[f64; 2]> {
+    let (mesh, data) = (parts.mesh, Data::new(parts.problem));
+    let mut forces = vec![[0.0; 2]; space.nodes().len()];
+    let mut add = |node: usize, force: Vector2<f64>| {
+        (0..2).for_each(|c| forces[node][c] += force[c]);
+    };
+    for (t, nodes) in space.elements().enumerate() {
+        let triangle = mesh.triangle(t);
+        let body = data.body_on(t, &triangle);
+        for (l, &node) in nodes[..3].iter().enumerate() {
+            add(node, load(&body, &triangle, l));
+        }
+        for (l, &middle) in nodes[3..].iter().enumerate() {
+            // int f 4 l_j l_k = |T| / 15 (f_i + 2 f_j + 2 f_k); half of it is taken from the hat functions of j and k.
+            let [j, k] = [(l + 1) % 3, (l + 2) % 3];
+            let force = (body[l] + body[j] * 2.0 + body[k] * 2.0) * (triangle.double_area() / 30.0);
+            add(middle, force);
+            add(nodes[j], force / -2.0);
+            add(nodes[k], force / -2.0);
+        }
+    }
+    for &edge in mesh.outline() {
+        let e = mesh.triangle_edges()[edge.triangle][edge.local];
+        let traction = match parts.boundary.get(&e) {
+            Some(Boundary::Loaded(traction) | Boundary::Supported(_, _, Some(traction))) => {
+                traction
+            }
+            _ => continue,
+        };
+        let ends = mesh.ends(edge).map(|vertex| mesh.vertices()[vertex]);
+        let [a, b] = traction.moments(ends, mesh.triangle(edge.triangle).scaled_normal(edge.local));
+        // Of an affine traction.
+        add_on_edge(space, edge, [a, b, (a + b) * (2.0 / 3.0)], &mut forces);
+    }
+    forces
+}
+
+/// Adds what has these moments with the hat functions of an edge's ends and with 4 s (1 - s).
+fn add_on_edge(
+    space: &Space,
+    edge: BoundaryEdge,
+    [a, b, bubble]: [Vector2<f64>; 3],
+    forces: &mut [[f64; 2]],
+) {
+    let nodes = space.edge_nodes(edge);
+    let moments = match nodes.len() {
+        2 => vec![a, b],
+        _ => vec![a - bubble / 2.0, b - bubble / 2.0, bubble],
+    };
+    for (node, moment) in nodes.into_iter().zip(moments) {
+        (0..2).for_each(|c| forces[node][c] += moment[c]);
+    }
+}
+
+/// Multiplies the pressures so that their work on the motions makes up for what the loads do.
+fn balance(parts: &mut ProblemParts, (bodies, motions): (&Parts, &[FreeMotion]), driven: &[f64]) {
+    let mesh = parts.mesh;
+    // The force of each edge, and its mean work on each motion.
+    let against = |edge: &Contact| -> (f64, Vec<f64>) {
+        let force = -edge.force();
+        let mean = |motion: &FreeMotion| {
+            let on_side = |(i, side): (usize, &Side)| {
+                if bodies.of_triangle()[side.edge.triangle] != motion.part || !(force > 0.0) {
+                    return 0.0;
+                }
+                let ends = mesh.ends(side.edge).map(|vertex| mesh.vertices()[vertex]);
+                -edge.against(i, ends.map(|x| motion.at(x).into())) / force
+            };
+            edge.sides.iter().enumerate().map(on_side).sum()
+        };
+        (force, motions.iter().map(mean).collect())
+    };
+    let edges: Vec<(f64, Vec<f64>)> = parts.contact.iter().map(against).collect();
+    let mut missing = driven.to_vec();
+    for (force, means) in &edges {
+        missing.iter_mut().zip(means).for_each(|(missing, mean)| *missing -= force * mean);
+    }
+    // sum force (c . mean) mean = missing
+    let rows: Vec<Vec<f64>> = (edges.iter())
+        .map(|(force, means)| means.iter().map(|mean| force.sqrt() * mean).collect())
+        .collect();
+    let values = singular_vectors(&rows, motions.len());
+    let largest = values.first().map_or(0.0, |(value, _)| *value);
+    let mut factors = vec![0.0; motions.len()];
+    for (value, vector) in values.iter().filter(|(value, _)| *value > STOPPED * largest) {
+        let along = dot(vector, &missing) / (value * value);
+        factors.iter_mut().zip(vector).for_each(|(factor, v)| *factor += along * v);
+    }
+    for (edge, (_, means)) in parts.contact.iter_mut().zip(&edges) {
+        edge.scale(1.0 + dot(means, &factors).clamp(-MOST, MOST));
+    }
+}

@@ -1,0 +1,22 @@
+//! The contact term of (8): pieces of Gamma_C with their direction, gap, gamma and law; kappa; pairs of deformable bodies; and the
+//! discretization that holds all of (8).
+
+pub mod contact_line;
+pub mod discretization;
+pub mod friction;
+pub mod law;
+#[doc(hidden)]
+pub mod moments;
+#[doc(hidden)]
+pub mod pairs;
+pub mod piece;
+#[doc(hidden)]
+pub mod residual;
+pub(crate) mod stress_points;
+
+pub use contact_line::ContactLine;
+pub use discretization::Discretization;
+pub use friction::Friction;
+pub use law::{EdgeRule, Law};
+pub use pairs::{Pair, PairError, PairPiece, PairSide};
+pub use piece::Piece;

@@ -1,0 +1,94 @@
+//! The loops of the residual of method (8),
+//!
+//! R(u; v) = A(u, v) + int (1/gamma) \[P(u)\]+ P0(v) - L(v),
+//!
+//! over any numbers, for every basis function v and straight from the definitions: stresses are integrated against strains,
+//! no matrix is involved. In doubles they are the solver's ([`Discretization::residual`]); in
+//! [double-doubles](crate::kernel::double_double) what is left of forces that cancel is known to the last bit of a double; balls
+//! bound the rounding; over rationals `props` compares them with the definitions.
+
+use nalgebra::Vector2;
+
+use super::discretization::Discretization;
+use super::piece::{Piece, Side, SideData, Stretch};
+use super::stress_points::each_stress;
+use crate::kernel::DoubleDouble;
+use crate::kernel::{Scalar, Triangle};
+use crate::model::material::Materials;
+use crate::model::space::Space;
+
+/// Adds a(u, v) for every basis function v.
+pub fn add_internal_forces<S: Scalar + From<f64>>(
+    space: &Space,
+    materials: &Materials,
+    u: &[[S; 2]],
+    forces: &mut [[S; 2]],
+) {
+    each_stress(space, materials, exactly, u, |point| {
+        point.each_force(|node, force, _| {
+            forces[node][0] += force[0];
+            forces[node][1] += force[1];
+        });
+    });
+}
+
+/// A(u, v) - L(v) for every basis function v, with these pieces of Gamma_C.
+pub fn linear_residual<S: Scalar + From<f64>>(
+    d: &Discretization,
+    pieces: &[Piece<S>],
+    u: &[[S; 2]],
+) -> Vec<[S; 2]> {
+    let minus = |l: f64| -<S as From<f64>>::from(l);
+    let mut forces: Vec<[S; 2]> = d.load.iter().map(|l| l.map(minus)).collect();
+    add_internal_forces(&d.space, &d.problem.material, u, &mut forces);
+    pieces.iter().for_each(|piece| piece.add_stresses(u, &mut forces));
+    forces
+}
+
+/// A(u, v) - L(v) for every basis function v, and the values of P(u) at the nodes of each piece, by double-doubles.
+pub fn evaluate(d: &Discretization, u: &[[DoubleDouble; 2]]) -> (Vec<[f64; 2]>, Vec<DoubleDouble>) {
+    let pieces: Vec<Piece<DoubleDouble>> = d.contact.iter().map(|e| exact_piece(d, e)).collect();
+    let forces = linear_residual(d, &pieces, u);
+    let p = pieces.iter().flat_map(|piece| piece.p(u)).collect();
+    (forces.into_iter().map(|f| f.map(DoubleDouble::head)).collect(), p)
+}
+
+/// The values of P(u) at the nodes of each piece, by double-doubles.
+pub fn p(d: &Discretization, u: &[[DoubleDouble; 2]]) -> impl Iterator<Item = DoubleDouble> {
+    d.contact.iter().flat_map(move |piece| exact_piece(d, piece).p(u))
+}
+
+/// A piece with the doubles that it has, in other numbers.
+pub fn exact_piece<S: Scalar + From<f64>>(d: &Discretization, piece: &Piece) -> Piece<S> {
+    let exact = <S as From<f64>>::from;
+    piece_with(d, piece, |side, _| (exact(side.length), side.normal.map(exact), exact(side.gamma)))
+}
+
+/// A piece whose sides have these lengths of their edges, normals and gammas.
+pub fn piece_with<S: Scalar + From<f64>>(
+    d: &Discretization,
+    piece: &Piece,
+    numbers: impl Fn(&Side, &Stretch) -> (S, Vector2<S>, S),
+) -> Piece<S> {
+    let data = |(side, stretch): (&Side, &Stretch)| {
+        let (length, normal, gamma) = numbers(side, stretch);
+        let t = stretch.edge.triangle;
+        let (doubles, material) = (d.space.mesh().triangle(t), d.problem.material.of(t));
+        let radii = material.radii(&doubles).map(|radii| radii.map(<S as From<f64>>::from));
+        let material = material.map(<S as From<f64>>::from);
+        SideData { triangle: exactly(doubles), material, length, normal, gamma, radii }
+    };
+    let sides: Vec<SideData<S>> =
+        piece.sides.iter().zip(&piece.geometry.stretches).map(data).collect();
+    Piece::new(&piece.geometry, &d.space, piece.start, &sides)
+}
+
+/// A triangle of doubles in other numbers, moved so that its first vertex is the origin: far from there sides lose digits.
+pub fn exactly<S: Scalar + From<f64>>(t: Triangle<f64>) -> Triangle<S> {
+    let first = t.vertices[0];
+    let moved = |x: f64, from: f64| {
+        let difference = DoubleDouble::sum(x, -from);
+        S::from(difference.head()) + S::from(difference.tail())
+    };
+    Triangle { vertices: t.vertices.map(|x| x.zip_map(&first, moved)) }
+}

@@ -1,0 +1,382 @@
+//! The matrix of A(u, v) = a(u, v) - int gamma sigma_n(u) sigma_n(v) on the free degrees of freedom, in a given order of
+//! elimination.
+//!
+//! Two numbers have an entry if their nodes share a triangle or a piece of Gamma_C. The places of all entries are read off the mesh first, node by
+//! node; then the element matrices are added into them, so that all matrices over the same numbers have one pattern. A list of
+//! all element entries, sorted by faer (`SymbolicSparseColMat::try_new_from_indices`), took two to four times as long.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, Matrix2};
+use thiserror::Error;
+
+use crate::contact::discretization::Discretization;
+use crate::contact::piece::Piece;
+use crate::kernel::axial;
+use crate::kernel::element::stiffness;
+use crate::kernel::{Element, Scalar};
+use crate::model::constraints::{Constraints, from_frame, in_frame};
+use crate::model::element::with_element;
+use crate::model::material::Materials;
+use crate::model::space::Space;
+
+/// The numbers of the free degrees of freedom in an order of elimination: node by node, component by component.
+#[derive(Clone, Debug)]
+pub struct Numbering {
+    /// The number of each node's components; `None` for a prescribed one.
+    pub of: Vec<[Option<usize>; 2]>,
+    /// The number of free ones.
+    pub count: usize,
+    /// The node to which each number belongs.
+    nodes: Vec<usize>,
+    /// The first axes of the frames that are not those of the coordinates, by node.
+    frames: BTreeMap<usize, [f64; 2]>,
+}
+
+impl Numbering {
+    /// Numbers the components that are not `prescribed`, the nodes taken in `order`, where each comes once.
+    pub fn new(order: &[usize], prescribed: &[[Option<f64>; 2]]) -> Self {
+        let mut of = vec![[None; 2]; prescribed.len()];
+        let mut nodes = Vec::new();
+        for &node in order {
+            for c in 0..2 {
+                if prescribed[node][c].is_none() {
+                    of[node][c] = Some(nodes.len());
+                    nodes.push(node);
+                }
+            }
+        }
+        let count = nodes.len();
+        Numbering { of, count, nodes, frames: BTreeMap::new() }
+    }
+
+    /// Numbers the components that are free under `constraints`, in the frames of their nodes.
+    pub fn under(order: &[usize], constraints: &Constraints) -> Self {
+        Numbering::in_frames(order, constraints.values(), constraints.frames().clone())
+    }
+
+    /// Numbers the components that are not `prescribed`, along the first axes in `frames` and across them at those nodes.
+    pub fn in_frames(
+        order: &[usize],
+        prescribed: &[[Option<f64>; 2]],
+        frames: BTreeMap<usize, [f64; 2]>,
+    ) -> Self {
+        Numbering { frames, ..Numbering::new(order, prescribed) }
+    }
+
+    /// A vector over the free degrees of freedom, from a field.
+    pub fn gather(&self, field: &[[f64; 2]]) -> Vec<f64> {
+        let mut vector = vec![0.0; self.count];
+        let mut put = |node: usize, value: [f64; 2]| {
+            for c in 0..2 {
+                if let Some(number) = self.of[node][c] {
+                    vector[number] = value[c];
+                }
+            }
+        };
+        for (node, &value) in field.iter().enumerate() {
+            put(node, value);
+        }
+        for (&node, &axis) in &self.frames {
+            put(node, in_frame(axis, field[node]));
+        }
+        vector
+    }
+
+    /// Writes a vector over the free degrees of freedom into a field.
+    pub fn scatter(&self, vector: &[f64], field: &mut [[f64; 2]]) {
+        for (&node, &axis) in &self.frames {
+            field[node] = in_frame(axis, field[node]);
+        }
+        for (numbers, value) in self.of.iter().zip(field.iter_mut()) {
+            for c in 0..2 {
+                if let Some(number) = numbers[c] {
+                    value[c] = vector[number];
+                }
+            }
+        }
+        for (&node, &axis) in &self.frames {
+            field[node] = from_frame(axis, field[node]);
+        }
+    }
+
+    /// A vector at a node, a pair of entries of a functional, in the node's frame.
+    pub fn in_frame<S: Scalar + From<f64>>(&self, node: usize, vector: [S; 2]) -> [S; 2] {
+        self.frames.get(&node).map_or(vector, |&axis| in_frame(axis, vector))
+    }
+
+    /// The number of the first free component of a node.
+    fn first(&self, node: usize) -> Option<usize> {
+        self.of[node][0].or(self.of[node][1])
+    }
+
+    /// R_i^T block R_j with the frames R of the nodes i and j.
+    fn turned_block(&self, [i, j]: [usize; 2], block: Matrix2<f64>) -> Matrix2<f64> {
+        let rows = [0, 1].map(|c| self.in_frame(j, [block[(c, 0)], block[(c, 1)]]));
+        let columns = [0, 1].map(|d| self.in_frame(i, [rows[0][d], rows[1][d]]));
+        Matrix2::from(columns)
+    }
+}
+
+/// An entry that has no place in the pattern of its matrix, or a functional that the elimination does not reach: a mistake of the
+/// program. Left out, the entry would make a wrong matrix.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[error(
+    "this program made a mistake: entry ({row}, {column}) of a matrix has no place in its pattern; please report the case"
+)]
+pub struct OutsidePattern {
+    /// The row.
+    pub row: usize,
+    /// The column.
+    pub column: usize,
+}
+
+/// The nodes around each node: those that share a triangle or a piece of Gamma_C with it, itself included.
+#[derive(Clone, Debug)]
+pub struct Neighbours {
+    of: Vec<Vec<usize>>,
+}
+
+impl Neighbours {
+    /// The neighbours in a space.
+    pub fn new(space: &Space) -> Self {
+        let of = (0..space.nodes().len()).map(|node| vec![node]).collect();
+        let mut neighbours = Neighbours { of };
+        space.elements().for_each(|nodes| neighbours.join(nodes));
+        neighbours
+    }
+
+    /// The neighbours in a space with these pieces of Gamma_C.
+    pub fn across(space: &Space, pieces: &[Piece]) -> Self {
+        let mut neighbours = Neighbours::new(space);
+        for piece in pieces.iter().filter(|piece| piece.sides.len() > 1) {
+            neighbours.join(&piece.nodes);
+        }
+        neighbours
+    }
+
+    fn join(&mut self, nodes: &[usize]) {
+        for &node in nodes {
+            for other in nodes {
+                if !self.of[node].contains(other) {
+                    self.of[node].push(*other);
+                }
+            }
+        }
+    }
+
+    /// The nodes around `node`, each once.
+    pub fn of(&self, node: usize) -> &[usize] {
+        &self.of[node]
+    }
+}
+
+/// The lower triangle of a sparse symmetric matrix, column by column, rows in increasing order, the diagonal first.
+#[derive(Clone, Debug)]
+pub struct LowerTriangle {
+    /// Where each column starts, and where the last one ends.
+    pub starts: Vec<usize>,
+    /// The row of each entry.
+    pub rows: Vec<usize>,
+    /// The entries.
+    pub values: Vec<f64>,
+}
+
+impl LowerTriangle {
+    /// All entries that a matrix over these unknowns can have, zero.
+    pub fn zero(numbering: &Numbering, neighbours: &Neighbours) -> Self {
+        let (mut starts, mut rows) = (vec![0], Vec::new());
+        for (column, &node) in numbering.nodes.iter().enumerate() {
+            let numbers = neighbours.of(node).iter().flat_map(|&other| numbering.of[other]);
+            let start = rows.len();
+            rows.extend(numbers.flatten().filter(|&row| row >= column));
+            rows[start..].sort_unstable();
+            starts.push(rows.len());
+        }
+        let values = vec![0.0; rows.len()];
+        LowerTriangle { starts, rows, values }
+    }
+
+    /// Adds the blocks of an element matrix: `block(i, j)` has the rows of `nodes[i]` and the columns of `nodes[j]`.
+    ///
+    /// # Errors
+    /// Nodes that are no neighbours.
+    pub fn add(
+        &mut self,
+        numbering: &Numbering,
+        nodes: &[usize],
+        block: impl Fn(usize, usize) -> Matrix2<f64>,
+    ) -> Result<(), OutsidePattern> {
+        let turned = nodes.iter().any(|node| numbering.frames.contains_key(node));
+        for (j, &column_node) in nodes.iter().enumerate() {
+            for (i, &row_node) in nodes.iter().enumerate() {
+                // The numbers of a node follow each other: the whole block is above the diagonal.
+                if numbering.first(row_node) < numbering.first(column_node) {
+                    continue;
+                }
+                let mut block = block(i, j);
+                if turned {
+                    block = numbering.turned_block([row_node, column_node], block);
+                }
+                for (d, column) in numbering.of[column_node].into_iter().enumerate() {
+                    if let Some(column) = column {
+                        self.add_to_column(column, numbering.of[row_node], block.column(d).into())?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds to the entries of a column in increasing rows; what is above the diagonal is left out.
+    fn add_to_column(
+        &mut self,
+        column: usize,
+        rows: [Option<usize>; 2],
+        entries: [f64; 2],
+    ) -> Result<(), OutsidePattern> {
+        let (mut place, end) = (self.starts[column], self.starts[column + 1]);
+        for (row, entry) in rows.into_iter().zip(entries) {
+            if let Some(row) = row
+                && row >= column
+            {
+                // A column has few rows: to look at one after the other is quicker than a binary search.
+                let step = self.rows[place..end].iter().position(|&other| other == row);
+                place += step.ok_or(OutsidePattern { row, column })?;
+                self.values[place] += entry;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The matrix of A over the free degrees of freedom in the order of `numbering`.
+///
+/// # Errors
+/// `neighbours` of another space, or without the pieces that join two bodies.
+pub fn assemble(
+    d: &Discretization,
+    numbering: &Numbering,
+    neighbours: &Neighbours,
+) -> Result<LowerTriangle, OutsidePattern> {
+    let mut matrix = assemble_stiffness(d, numbering, neighbours)?;
+    for piece in &d.contact {
+        matrix.add_contact_stress(numbering, piece)?;
+    }
+    Ok(matrix)
+}
+
+/// The matrix of a(.,.) likewise.
+///
+/// # Errors
+/// `neighbours` of another space.
+pub fn assemble_stiffness(
+    d: &Discretization,
+    numbering: &Numbering,
+    neighbours: &Neighbours,
+) -> Result<LowerTriangle, OutsidePattern> {
+    let mut matrix = LowerTriangle::zero(numbering, neighbours);
+    matrix.add_stiffness(&d.space, &d.problem.material, numbering)?;
+    Ok(matrix)
+}
+
+fn add_stiffness<E: Element<N, M>, const N: usize, const M: usize>(
+    matrix: &mut LowerTriangle,
+    space: &Space,
+    materials: &Materials,
+    numbering: &Numbering,
+) -> Result<(), OutsidePattern> {
+    for (t, (triangle, nodes)) in space.triangles::<N>().enumerate() {
+        let material = materials.of(t);
+        let k = match material.radii(&triangle) {
+            None => stiffness::<E, _, _, _>(&triangle, material),
+            Some(radii) => axial::stiffness::<E, _, _, _>(&triangle, radii, material),
+        };
+        matrix.add(numbering, nodes, |i, j| k[i][j])?;
+    }
+    Ok(())
+}
+
+impl LowerTriangle {
+    /// Adds a(.,.).
+    ///
+    /// # Errors
+    /// The pattern of another space.
+    pub(crate) fn add_stiffness(
+        &mut self,
+        space: &Space,
+        materials: &Materials,
+        numbering: &Numbering,
+    ) -> Result<(), OutsidePattern> {
+        with_element!(space.degree(), E => add_stiffness::<E, _, _>(self, space, materials, numbering))
+    }
+
+    /// Adds -int gamma sigma_n(.) sigma_n(.) on a piece.
+    ///
+    /// # Errors
+    /// A pattern that does not join the sides of the piece.
+    pub fn add_contact_stress(
+        &mut self,
+        numbering: &Numbering,
+        piece: &Piece,
+    ) -> Result<(), OutsidePattern> {
+        let weight = -(piece.gamma * piece.length);
+        self.add(numbering, &piece.nodes, |i, j| piece.stress_product(weight, i, j))
+    }
+
+    /// Adds P0^T h P0 of a piece: what is in contact holds the body.
+    ///
+    /// # Errors
+    /// A pattern that does not join the sides of the piece.
+    pub fn add_contact_springs(
+        &mut self,
+        numbering: &Numbering,
+        piece: &Piece,
+        h: &DMatrix<f64>,
+    ) -> Result<(), OutsidePattern> {
+        let p0 = &piece.p0;
+        self.add(numbering, &piece.nodes, |i, j| {
+            Matrix2::from_fn(|c, k| {
+                let mut sum = 0.0;
+                for a in 0..h.nrows() {
+                    for b in 0..h.ncols() {
+                        sum += p0[a][i][c] * h[(a, b)] * p0[b][j][k];
+                    }
+                }
+                sum
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Degree, Diagonal, Rectangle, Space};
+
+    /// A spring between two nodes of a square, added to the matrix of the square.
+    fn spring(between: [usize; 2], joined: bool) -> Result<Vec<f64>, OutsidePattern> {
+        let square = Rectangle { width: 1.0, height: 1.0, nx: 4, ny: 4, diagonal: Diagonal::Right };
+        let mesh = square.mesh().unwrap();
+        let space = Space::new(&mesh, Degree::One);
+        let nodes = space.nodes().len();
+        let numbering = Numbering::new(&(0..nodes).collect::<Vec<_>>(), &vec![[None; 2]; nodes]);
+        let mut neighbours = Neighbours::new(&space);
+        if joined {
+            neighbours.join(&between);
+        }
+        let mut matrix = LowerTriangle::zero(&numbering, &neighbours);
+        let block = |i: usize, j: usize| Matrix2::identity() * if i == j { 1.0 } else { -1.0 };
+        matrix.add(&numbering, &between, block)?;
+        Ok(matrix.values)
+    }
+
+    #[test]
+    fn an_entry_without_a_place_is_an_error() {
+        let whole = |values: Vec<f64>| values.iter().sum::<f64>();
+        // The corners share no triangle; four ones on the diagonal, two -1 below.
+        assert_eq!(spring([0, 24], false), Err(OutsidePattern { row: 48, column: 0 }));
+        assert_eq!(spring([0, 24], true).map(whole), Ok(2.0));
+        assert_eq!(spring([0, 1], false).map(whole), Ok(2.0));
+    }
+}

@@ -1,0 +1,13 @@
+//! Matrices: A and its pattern, the order of elimination, the factor, the compliance of contact edges, small dense algebra.
+
+#[doc(hidden)]
+pub mod compliance;
+#[doc(hidden)]
+pub mod dense;
+#[doc(hidden)]
+pub mod factor;
+pub mod matrix;
+#[doc(hidden)]
+pub mod ordering;
+#[doc(hidden)]
+pub mod system;

@@ -1,0 +1,179 @@
+//! The linear part of (8) as matrices over the free degrees of freedom: A in an order of elimination, the structure of its
+//! factor, and B, the values of P0 at the nodes of the pieces of Gamma_C. The tangent A + B^T Psi'' B has the pattern of A, which is
+//! joined over the triangles of each piece.
+
+use std::cell::Cell;
+use std::ops::Range;
+use std::sync::Arc;
+
+use nalgebra::DMatrix;
+
+use super::factor::{Factor, Structure};
+use super::ordering::nested_dissection;
+use crate::contact::Piece;
+use crate::contact::discretization::Discretization;
+use crate::kernel::ball::larger;
+use crate::linear::matrix;
+use crate::linear::matrix::{LowerTriangle, Neighbours, Numbering};
+use crate::model::material::least_eigenvalue;
+use crate::solve::SolveError;
+use crate::solve::course::{Course, Phase};
+
+/// The matrices of a discretization.
+pub struct System<'d, 'p> {
+    /// The discretization.
+    pub d: &'d Discretization<'p>,
+    /// The free degrees of freedom in the order of elimination.
+    pub numbering: Numbering,
+    /// A
+    pub matrix: LowerTriangle,
+    /// The structure of the factor of A and of every tangent.
+    pub structure: Arc<Structure>,
+    pub(crate) course: Course<'d>,
+    /// The Newton steps so far.
+    steps: Cell<usize>,
+}
+
+impl<'d, 'p> System<'d, 'p> {
+    /// The system of a discretization.
+    ///
+    /// # Errors
+    /// [`SolveError::OutOfMemory`], and [`SolveError::OutsidePattern`].
+    pub fn new(d: &'d Discretization<'p>) -> Result<Self, SolveError> {
+        System::on(d, Course::default())
+    }
+
+    /// The system of a discretization whose solve takes this course.
+    ///
+    /// # Errors
+    /// As [`System::new`].
+    pub fn on(d: &'d Discretization<'p>, course: Course<'d>) -> Result<Self, SolveError> {
+        course.enters(Phase::Order);
+        let neighbours = Neighbours::across(&d.space, &d.contact);
+        let order = nested_dissection(d.space.nodes(), &neighbours);
+        let numbering = Numbering::under(&order, &d.constraints);
+        let matrix = matrix::assemble(d, &numbering, &neighbours)?;
+        let structure = Arc::new(Structure::new(&matrix)?);
+        Ok(System { d, numbering, matrix, structure, course, steps: Cell::new(0) })
+    }
+
+    /// The same matrices for a discretization that differs in the laws of its pieces alone.
+    pub(crate) fn with_other_laws<'e>(
+        &self,
+        d: &'e Discretization<'p>,
+        course: Course<'e>,
+    ) -> System<'e, 'p> {
+        System {
+            d,
+            numbering: self.numbering.clone(),
+            matrix: self.matrix.clone(),
+            structure: Arc::clone(&self.structure),
+            course,
+            steps: Cell::new(self.steps.get()),
+        }
+    }
+
+    /// Reports that a Newton step begins.
+    pub(crate) fn enters_step(&self) {
+        self.steps.set(self.steps.get() + 1);
+        self.course.enters(Phase::Newton { step: self.steps.get() });
+    }
+
+    /// The number of functionals.
+    pub fn functionals(&self) -> usize {
+        self.d.contact.last().map_or(0, |piece| piece.functionals().end)
+    }
+
+    /// The free degrees of freedom on the triangles of piece `e`.
+    pub fn unknowns(&self, e: usize) -> Vec<usize> {
+        let nodes = self.d.contact[e].nodes.iter();
+        nodes.flat_map(|&node| self.numbering.of[node]).flatten().collect()
+    }
+
+    /// For each piece the numbers of its functionals and the free degrees of freedom on its triangles.
+    pub fn pieces(&self) -> Vec<(Range<usize>, Vec<usize>)> {
+        let of = |(e, piece): (usize, &Piece)| (piece.functionals(), self.unknowns(e));
+        self.d.contact.iter().enumerate().map(of).collect()
+    }
+
+    /// L of A + B^T h B, where `springs` are the blocks of h, one for each piece.
+    ///
+    /// # Errors
+    /// As [`Factor::with`].
+    pub(crate) fn factor(&self, springs: &[DMatrix<f64>]) -> Result<Arc<Factor>, SolveError> {
+        let mut tangent = self.matrix.clone();
+        for (piece, h) in self.d.contact.iter().zip(springs) {
+            tangent.add_contact_springs(&self.numbering, piece, h)?;
+        }
+        Factor::with(&self.structure, &tangent).map(Arc::new)
+    }
+
+    /// B: calls `f` with the unknown, the number of the functional and the entry.
+    pub fn each_functional(&self, mut f: impl FnMut(usize, usize, f64)) {
+        for piece in &self.d.contact {
+            for (i, functional) in piece.functionals().zip(&piece.p0) {
+                for (&node, &entries) in piece.nodes.iter().zip(functional) {
+                    let entries = self.numbering.in_frame(node, entries.into());
+                    for (number, entry) in self.numbering.of[node].iter().zip(entries) {
+                        if let Some(number) = *number {
+                            f(number, i, entry);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// r <- r + B^T w
+    pub(crate) fn add_forces(&self, w: &[f64], r: &mut [f64]) {
+        self.each_functional(|row, i, entry| r[row] += entry * w[i]);
+    }
+
+    /// The largest diagonal entry of A, infinite if one is no number. The largest eigenvalue is no smaller.
+    pub fn largest(&self) -> f64 {
+        self.diagonal().fold(0.0, larger)
+    }
+
+    /// The expected A(v, v) of a `v` with these magnitudes and independent components.
+    pub(crate) fn energy_of_unrelated(&self, v: &[[f64; 2]]) -> f64 {
+        let v = self.numbering.gather(v);
+        self.diagonal().zip(v).map(|(a, v)| a * v * v).sum()
+    }
+
+    /// The size that corrections of `u` are measured by while it is refined: |u|_a, which is `norm`. A body without loads that is
+    /// moved as a whole has no strain but that of rounding, which no correction betters: there the size is what the norm would
+    /// be if the components of u knew nothing of each other. What is proved is not relative to this.
+    pub fn size(&self, norm: f64, u: &[[f64; 2]]) -> f64 {
+        if self.d.load.as_flattened().iter().any(|&l| l != 0.0) {
+            return norm;
+        }
+        let most = self.energy_of_unrelated(u).sqrt();
+        // A strain of this size is that of rounding u.
+        if norm > f64::EPSILON * most { norm } else { most }
+    }
+
+    /// The energy norm that the body would have at least with a strain of the size of `u` over the longest side of its box, or of
+    /// 1 where that is smaller.
+    pub fn norm_if_strained(&self, u: &[[f64; 2]]) -> f64 {
+        let mesh = self.d.space.mesh();
+        let ends = |c: usize| {
+            let at = mesh.vertices().iter().map(|x| x[c]);
+            at.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)])
+        };
+        let side = [0, 1].map(ends).into_iter().fold(0.0, |most: f64, [a, b]| most.max(b - a));
+        let most = u.iter().fold(0.0, |most: f64, u| most.max(u[0].hypot(u[1])));
+        let energy_of_unit = |t: usize| {
+            let (triangle, material) = (mesh.triangle(t), self.d.problem.material.of(t));
+            // In a body of revolution integrals have the weight r.
+            let radius = material.radii(&triangle).map_or(1.0, |r| r.iter().sum::<f64>() / 3.0);
+            radius * triangle.double_area() / 2.0 * least_eigenvalue(material)
+        };
+        let square: f64 = (0..mesh.triangles().len()).map(energy_of_unit).sum();
+        (most / side).min(1.0) * square.sqrt()
+    }
+
+    fn diagonal(&self) -> impl Iterator<Item = f64> {
+        let LowerTriangle { starts, values, .. } = &self.matrix;
+        starts[..self.numbering.count].iter().map(|&k| values[k])
+    }
+}

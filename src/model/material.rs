@@ -1,0 +1,417 @@
+//! Materials that are stable: mu > 0 and 3 lambda + 2 mu > 0 for the three-dimensional body, that is E > 0 and
+//! -1 < nu < 1/2; tensors in the plane with positive eigenvalues. The kernel's constructors take what they are given, over any
+//! numbers; these check it.
+//!
+//! A body has one, or one for each part of it: a triangle has exactly one.
+//!
+//! The eigenvalues of A are those of its matrix in Mandel's form, with the root of 2 times 2 eps_xy and sigma_xy.
+
+use nalgebra::{Matrix2, Vector3};
+use thiserror::Error;
+
+use crate::held::rigid::NEGLIGIBLE;
+use crate::kernel::{Ball, Material, Plane, Stress};
+
+/// Why there is no such material.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
+pub enum MaterialError {
+    #[error("{name} is {value}; expected {expected}")]
+    Modulus { name: &'static str, value: f64, expected: &'static str },
+    #[error(
+        "in the plane lambda is {lambda} and mu is {mu}; expected finite moduli of a stable material: mu > 0 and 3 lambda + 2 mu > 0, that is Young's modulus > 0 and Poisson's ratio above -1 and below 0.5"
+    )]
+    Unstable { lambda: f64, mu: f64 },
+    #[error(
+        "the smallest eigenvalue of the stiffness [{}] is {eigenvalue}; expected an elliptic law: a positive one, at least 1e-10 of the largest",
+        stiffness.map(|c| c.to_string()).join(", ")
+    )]
+    NotElliptic { stiffness: [f64; 6], eigenvalue: f64 },
+    #[error("the stiffness across the plane is not finite")]
+    Across,
+}
+
+/// The material of each triangle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Materials {
+    distinct: Vec<Material<f64>>,
+    /// The material of each triangle by its place in `distinct`; empty where the whole body is made of the first.
+    of_triangle: Vec<usize>,
+}
+
+impl From<Material<f64>> for Materials {
+    /// One material for the whole body.
+    fn from(material: Material<f64>) -> Self {
+        Materials { distinct: vec![material], of_triangle: Vec::new() }
+    }
+}
+
+impl Materials {
+    /// The materials of a body of `triangles` triangles: `rest`, and on the triangles of each of `parts` that part's own.
+    /// Numbers beyond the last triangle are passed over.
+    pub fn in_parts<'a>(
+        rest: Material<f64>,
+        triangles: usize,
+        parts: impl IntoIterator<Item = (Material<f64>, &'a [usize])>,
+    ) -> Self {
+        let mut materials = Materials { distinct: vec![rest], of_triangle: vec![0; triangles] };
+        for (material, members) in parts {
+            for &t in members {
+                if let Some(of) = materials.of_triangle.get_mut(t) {
+                    *of = materials.distinct.len();
+                }
+            }
+            materials.distinct.push(material);
+        }
+        materials
+    }
+
+    /// Returns the material of triangle `t`.
+    pub fn of(&self, t: usize) -> &Material<f64> {
+        &self.distinct[self.of_triangle.get(t).copied().unwrap_or(0)]
+    }
+
+    /// The place of triangle `t`'s material among the materials: two triangles with the same place share theirs.
+    pub fn place_of(&self, t: usize) -> usize {
+        self.of_triangle.get(t).copied().unwrap_or(0)
+    }
+
+    /// Replaces every material by `f` of it.
+    #[must_use]
+    pub fn map(&self, f: impl FnMut(&Material<f64>) -> Material<f64>) -> Self {
+        let distinct = self.distinct.iter().map(f).collect();
+        Materials { distinct, of_triangle: self.of_triangle.clone() }
+    }
+
+    /// The materials on parts of these triangles: part i is one of triangle `origin[i]`.
+    #[must_use]
+    pub(crate) fn on_parts(&self, origin: &[usize]) -> Self {
+        let one = self.of_triangle.is_empty();
+        let of_triangle =
+            if one { Vec::new() } else { origin.iter().map(|&t| self.place_of(t)).collect() };
+        Materials { distinct: self.distinct.clone(), of_triangle }
+    }
+
+    /// Each material once, whether a triangle is made of it or not.
+    pub(crate) fn distinct(&self) -> &[Material<f64>] {
+        &self.distinct
+    }
+
+    /// Returns whether the body is one of revolution, of which the mesh is the meridian.
+    pub fn are_of_revolution(&self) -> bool {
+        self.distinct.first().is_some_and(|material| material.plane() == Plane::Axisymmetric)
+    }
+
+    /// The one material, if the whole body is made of it.
+    pub fn only(&self) -> Option<&Material<f64>> {
+        if self.of_triangle.is_empty() { self.distinct.first() } else { None }
+    }
+}
+
+/// Moduli along and across the axis of an orthotropic material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orthotropic {
+    /// Young's modulus along the axis.
+    pub e1: f64,
+    /// Young's modulus across it, in the plane.
+    pub e2: f64,
+    /// -eps_2 / eps_1 under a stress along the axis.
+    pub nu12: f64,
+    /// The shear modulus in the plane.
+    pub g12: f64,
+    /// From the x axis to that of the material, in degrees, to the left.
+    pub angle: f64,
+    /// The moduli across the plane, for a law of plane strain; `None` in plane stress.
+    pub across: Option<Across>,
+}
+
+/// The moduli of an orthotropic material across the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Across {
+    /// Young's modulus across the plane.
+    pub e3: f64,
+    /// -eps_3 / eps_1 under a stress along the axis.
+    pub nu13: f64,
+    /// -eps_3 / eps_2 under a stress across it, in the plane.
+    pub nu23: f64,
+}
+
+/// Makes a stable material of Lame's coefficients, as [`Material::lame`].
+///
+/// # Errors
+/// [`MaterialError`]: moduli that are not finite, mu <= 0, 3 lambda + 2 mu <= 0.
+pub fn stable_lame(lambda: f64, mu: f64, plane: Plane) -> Result<Material<f64>, MaterialError> {
+    let expected = "a positive number";
+    if !(mu > 0.0 && mu.is_finite()) {
+        return Err(MaterialError::Modulus { name: "the shear modulus mu", value: mu, expected });
+    }
+    if !(3.0 * lambda + 2.0 * mu > 0.0 && lambda.is_finite()) {
+        let (name, expected) = ("the first Lame coefficient lambda", "a number above -2/3 mu");
+        return Err(MaterialError::Modulus { name, value: lambda, expected });
+    }
+    stable(Material::lame(lambda, mu, plane))
+}
+
+/// Makes a stable material of Young's modulus and Poisson's ratio, as [`Material::young_poisson`].
+///
+/// # Errors
+/// [`MaterialError`]: a modulus that is not positive and finite, a ratio that is not between -1 and 1/2.
+pub fn stable_young_poisson(
+    young: f64,
+    poisson: f64,
+    plane: Plane,
+) -> Result<Material<f64>, MaterialError> {
+    if !(young > 0.0 && young.is_finite()) {
+        let (name, expected) = ("Young's modulus", "a positive number");
+        return Err(MaterialError::Modulus { name, value: young, expected });
+    }
+    if !(-1.0 < poisson && poisson < 0.5) {
+        let (name, expected) = ("Poisson's ratio", "a number above -1 and below 0.5");
+        return Err(MaterialError::Modulus { name, value: poisson, expected });
+    }
+    stable(Material::young_poisson(young, poisson, plane))
+}
+
+/// Makes a stable orthotropic material.
+///
+/// # Errors
+/// [`MaterialError`]: moduli that are not positive and finite, and ratios for which the law is not elliptic.
+pub fn stable_orthotropic(moduli: Orthotropic) -> Result<Material<f64>, MaterialError> {
+    let Orthotropic { e1, e2, nu12, g12, angle, across } = moduli;
+    let expected = "a positive number";
+    let e3 = across.map_or(1.0, |across| across.e3);
+    for (name, value) in [("e1", e1), ("e2", e2), ("g12", g12), ("e3", e3)] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(MaterialError::Modulus { name, value, expected });
+        }
+    }
+    // sigma_zz that keeps eps_3 = 0, and the strains in the plane of a stress there, with that.
+    let across = across.map(|Across { e3, nu13, nu23 }| [nu13 * (e3 / e1), nu23 * (e3 / e2)]);
+    let [along, aside] = across.unwrap_or_default();
+    let [xx, xy, yy] = match moduli.across {
+        None => [1.0 / e1, -nu12 / e1, 1.0 / e2],
+        Some(Across { nu13, nu23, .. }) => {
+            let [s13, s23] = [nu13 / e1, nu23 / e2];
+            [1.0 / e1 - s13 * along, -nu12 / e1 - s13 * aside, 1.0 / e2 - s23 * aside]
+        }
+    };
+    let determinant = xx * yy - xy * xy;
+    let c = [yy / determinant, -xy / determinant, 0.0, xx / determinant, 0.0, g12];
+    let material = Material::tensor(c, across.map(|[along, aside]| [along, aside, 0.0]));
+    let (sine, cosine) = sine_and_cosine(angle);
+    stable(stable(material)?.turned([cosine, sine]))
+}
+
+/// The sine and the cosine of an angle in degrees: exact for multiples of 90.
+fn sine_and_cosine(degrees: f64) -> (f64, f64) {
+    let quarters = (degrees / 90.0).round();
+    let (sine, cosine) = (degrees - 90.0 * quarters).to_radians().sin_cos();
+    match quarters.rem_euclid(4.0) {
+        0.0 => (sine, cosine),
+        1.0 => (cosine, -sine),
+        2.0 => (-sine, -cosine),
+        _ => (-cosine, sine),
+    }
+}
+
+/// The material, if it is stable.
+///
+/// # Errors
+/// [`MaterialError::Unstable`], [`MaterialError::NotElliptic`], [`MaterialError::Across`].
+pub fn stable(material: Material<f64>) -> Result<Material<f64>, MaterialError> {
+    if !material.is_isotropic() {
+        let (stiffness, [eigenvalue, largest]) = (material.stiffness(), eigenvalues(&material));
+        let finite = stiffness.iter().all(|c| c.is_finite());
+        if !(finite && eigenvalue > 0.0 && eigenvalue >= NEGLIGIBLE * largest) {
+            // Rounding leaves a dozen digits of it.
+            let eigenvalue = format!("{eigenvalue:.11e}").parse().unwrap_or(eigenvalue);
+            return Err(MaterialError::NotElliptic { stiffness, eigenvalue });
+        }
+        let across = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let zz = across.map(|stress| material.stress_zz(Stress::new(stress)));
+        if !zz.iter().all(|zz| zz.is_finite()) {
+            return Err(MaterialError::Across);
+        }
+        return match material.hoop_modulus() {
+            Some(value) if !(value > 0.0 && value.is_finite()) => {
+                let (name, expected) = ("Young's modulus along the hoops", "a positive number");
+                Err(MaterialError::Modulus { name, value, expected })
+            }
+            _ => Ok(material),
+        };
+    }
+    let (lambda, mu) = (material.lambda(), material.mu());
+    let bulk = match material.plane() {
+        Plane::Strain | Plane::Axisymmetric => 3.0 * lambda + 2.0 * mu,
+        // lambda* = 2 lambda mu / (lambda + 2 mu) grows with lambda, and is -mu where 3 lambda = -2 mu.
+        Plane::Stress => lambda + mu,
+    };
+    let finite = lambda.is_finite() && (lambda + 2.0 * mu).is_finite();
+    if finite && mu > 0.0 && bulk > 0.0 {
+        Ok(material)
+    } else {
+        Err(MaterialError::Unstable { lambda, mu })
+    }
+}
+
+/// eps_xx, eps_yy and 2 eps_xy under the stress sigma_xx, sigma_yy, sigma_xy in the plane, by Cramer's rule.
+pub fn strain(material: &Material<f64>, stress: [f64; 3]) -> [f64; 3] {
+    let [xx, xy, xz, yy, yz, zz] = material.stiffness();
+    let columns = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]].map(Vector3::from);
+    let [a, b, c] = columns;
+    let stress = Vector3::from(stress);
+    let volume = |a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>| a.dot(&b.cross(&c));
+    let whole = volume(a, b, c);
+    [volume(stress, b, c), volume(a, stress, c), volume(a, b, stress)].map(|part| part / whole)
+}
+
+/// The smallest and the largest eigenvalue of A.
+pub fn eigenvalues(material: &Material<f64>) -> [f64; 2] {
+    if material.is_isotropic() {
+        let (mu, bulk) = (material.mu(), material.lambda() + material.mu());
+        return [2.0 * mu.min(bulk), 2.0 * mu.max(bulk)];
+    }
+    let [xx, xy, xz, yy, yz, zz] = material.stiffness();
+    let root = 2.0_f64.sqrt();
+    let mut matrix = [[xx, xy, root * xz], [xy, yy, root * yz], [root * xz, root * yz, 2.0 * zz]];
+    // Jacobi's rotations: five rounds are more than doubles can tell.
+    for (p, q) in [(0, 1), (0, 2), (1, 2)].into_iter().cycle().take(15) {
+        if matrix[p][q] == 0.0 {
+            continue;
+        }
+        let theta = (matrix[q][q] - matrix[p][p]) / (2.0 * matrix[p][q]);
+        let tangent = theta.signum() / (theta.abs() + theta.hypot(1.0));
+        let cosine = 1.0 / tangent.hypot(1.0);
+        let sine = tangent * cosine;
+        for row in &mut matrix {
+            let (a, b) = (row[p], row[q]);
+            (row[p], row[q]) = (cosine * a - sine * b, sine * a + cosine * b);
+        }
+        let (a, b) = (matrix[p], matrix[q]);
+        matrix[p] = std::array::from_fn(|k| cosine * a[k] - sine * b[k]);
+        matrix[q] = std::array::from_fn(|k| sine * a[k] + cosine * b[k]);
+    }
+    let diagonal = [0, 1, 2].map(|i| matrix[i][i]);
+    let [least, most] = [f64::min, f64::max].map(|f| diagonal.into_iter().fold(diagonal[0], f));
+    // A NaN is passed over by both.
+    if diagonal.iter().all(|x| x.is_finite()) { [least, most] } else { [f64::NAN; 2] }
+}
+
+/// A number that A - it is elliptic with, as near to its smallest eigenvalue as rounding allows; 0 or less if there is none. In a body of
+/// revolution it is that of the law in three dimensions.
+pub fn least_eigenvalue(material: &Material<f64>) -> f64 {
+    let in_plane = least_in_plane(material);
+    if material.plane() != Plane::Axisymmetric {
+        return in_plane;
+    }
+    if material.is_isotropic() {
+        let (lambda, mu) = (Ball::point(material.lambda()), Ball::point(material.mu()));
+        return (Ball::from(2) * mu)
+            .lower()
+            .min((Ball::from(3) * lambda + Ball::from(2) * mu).lower());
+    }
+    // sigma:eps = A(eps + a h):(eps + a h) + e h^2, at least c (|eps| - |a| |h|)^2 + e h^2: a form of two numbers, whose smaller
+    // eigenvalue is above its determinant over its trace.
+    let young = material.hoop_modulus().unwrap_or_default();
+    let [a, b, c] = material.across().map(|factor| factor * factor);
+    let trace = in_plane * (1.0 + a + b + c / 2.0) + young;
+    (in_plane * young / trace) * (1.0 - 16.0 * f64::EPSILON)
+}
+
+/// [`least_eigenvalue`] of the law in the plane.
+fn least_in_plane(material: &Material<f64>) -> f64 {
+    if material.is_isotropic() {
+        let mu = Ball::point(material.mu());
+        return 2.0 * mu.lower().min((mu + Ball::point(material.lambda())).lower());
+    }
+    let least = eigenvalues(material)[0];
+    let is_less = |least: &f64| {
+        let [xx, xy, xz, yy, yz, zz] = material.stiffness().map(Ball::point);
+        let (whole, half) = (Ball::point(*least), Ball::point(least / 2.0));
+        let rest = Material::tensor([xx - whole, xy, xz, yy - whole, yz, zz - half], None);
+        rest.squares().pivots().iter().all(|pivot| pivot.lower() > 0.0)
+    };
+    let candidates = [1e-12, 1e-8, 1e-4, 0.5].map(|less| least * (1.0 - less));
+    candidates.into_iter().find(is_less).unwrap_or(0.0)
+}
+
+/// The largest eigenvalue of A, to rounding.
+pub(crate) fn largest_eigenvalue(material: &Material<f64>) -> f64 {
+    eigenvalues(material)[1]
+}
+
+/// A number that |C_ij| is at most.
+pub(crate) fn largest_entry(material: &Material<f64>) -> f64 {
+    if material.is_isotropic() {
+        return material.lambda().abs() + 2.0 * material.mu();
+    }
+    let in_plane = material.stiffness().into_iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+    let Some(young) = material.hoop_modulus() else { return in_plane };
+    let (stress, hoop) = material.stress_of_revolution(Matrix2::zeros(), 1.0);
+    let of_hoop = stress.components().into_iter().chain([hoop, young]);
+    of_hoop.fold(in_plane, |most: f64, c| most.max(c.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_triangle_has_the_material_of_its_part() {
+        let [a, b, c] = [1.0, 2.0, 3.0].map(|mu| Material::lame(1.0, mu, Plane::Strain));
+        let materials = Materials::in_parts(a, 5, [(b, &[0, 3][..]), (c, &[4])]);
+        assert_eq!([0, 1, 2, 3, 4].map(|t| materials.of(t).mu()), [2.0, 1.0, 1.0, 2.0, 3.0]);
+        assert_eq!(materials.only(), None);
+        assert_eq!(Materials::from(a).only(), Some(&a));
+        assert_eq!(Materials::from(a).of(17), &a);
+    }
+
+    #[test]
+    fn the_least_eigenvalue_of_a_body_of_revolution_is_that_of_the_law_in_three_dimensions() {
+        let of = |lambda, plane| least_eigenvalue(&Material::lame(lambda, 1.0, plane));
+        // min(2 mu, 3 lambda + 2 mu), in plane strain min(2 mu, 2 (lambda + mu)).
+        for (found, expected) in [
+            (of(-0.5, Plane::Axisymmetric), 0.5),
+            (of(-0.5, Plane::Strain), 1.0),
+            (of(3.0, Plane::Axisymmetric), 2.0),
+        ] {
+            assert!((found / expected - 1.0).abs() <= 1e-14, "{found}, {expected}");
+        }
+        // As a tensor, from below and within a factor of 2.
+        let (lambda, mu) = (1.0, 1.0);
+        let (nu, young) = (0.25, 2.5);
+        let c = [lambda + 2.0 * mu, lambda, 0.0, lambda + 2.0 * mu, 0.0, mu];
+        let tensor = Material::tensor(c, Some([nu, nu, 0.0])).of_revolution(young);
+        let least = least_eigenvalue(&tensor);
+        assert!((1.0..=2.0).contains(&least), "{least}");
+    }
+
+    #[test]
+    fn materials_that_are_not_stable_are_refused_with_the_reason() {
+        for (found, expected) in [
+            (
+                stable_lame(1.0, 0.0, Plane::Strain),
+                "the shear modulus mu is 0; expected a positive number",
+            ),
+            (
+                stable_lame(-0.7, 1.0, Plane::Stress),
+                "the first Lame coefficient lambda is -0.7; expected a number above -2/3 mu",
+            ),
+            (
+                stable_young_poisson(f64::NAN, 0.3, Plane::Strain),
+                "Young's modulus is NaN; expected a positive number",
+            ),
+            (
+                stable_young_poisson(1.0, 0.5, Plane::Stress),
+                "Poisson's ratio is 0.5; expected a number above -1 and below 0.5",
+            ),
+        ] {
+            assert_eq!(found.unwrap_err().to_string(), expected);
+        }
+        for (lambda, mu) in [(-0.7, 1.0), (1.0, -1.0), (f64::NAN, 1.0)] {
+            assert!(stable(Material::lame(lambda, mu, Plane::Strain)).is_err(), "{lambda} {mu}");
+        }
+        assert!(stable(Material::young_poisson(1.0, 0.5, Plane::Strain)).is_err());
+    }
+}

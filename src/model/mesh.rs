@@ -1,0 +1,575 @@
+//! The triangulation T^h and the parts of its boundary by name.
+//!
+//! ```text
+//!     6 --- 7 --- 8
+//!     |   / |   / |      Triangles list their vertices counter-clockwise; edge i of a triangle lies opposite its
+//!     | /   | /   |      vertex i; outward normals lie to the right of the counter-clockwise boundary; h_T is the
+//!     3 --- 4 --- 5      longest edge of T.
+//!     |   / |   / |
+//!     | /   | /   |      (2 x 2 cells with the diagonal "right")
+//!     0 --- 1 --- 2
+//! ```
+//!
+//! A [`Mesh`] that exists is valid: everything is checked when it is made, and nothing is checked again.
+
+pub mod bisection;
+mod edges;
+mod error;
+mod split;
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
+
+use super::tree::{Bounds, Tree};
+use crate::kernel::Triangle;
+use crate::memory::{self, bytes_of};
+use crate::quote;
+use edges::{MeshEdge, match_edges, name_boundaries};
+pub use error::MeshError;
+pub(super) use error::TOUCHING;
+use nalgebra::Vector2;
+pub use split::split_names;
+
+/// A conforming triangulation with named parts of its boundary.
+#[derive(Clone, Debug)]
+pub struct Mesh {
+    vertices: Vec<[f64; 2]>,
+    topology: Arc<MeshTopology>,
+    /// The boxes of the triangles, made when a point is first looked for.
+    boxes: OnceLock<Tree>,
+}
+
+/// Which triangles have which vertices and edges, and what they are called.
+#[derive(Clone, Debug)]
+struct MeshTopology {
+    triangles: Vec<[usize; 3]>,
+    triangle_edges: Vec<[usize; 3]>,
+    edge_count: usize,
+    outline: Vec<BoundaryEdge>,
+    boundaries: BTreeMap<String, Vec<BoundaryEdge>>,
+    /// Named curves that are no boundaries, as one has an edge inside the body, and why.
+    faults: BTreeMap<String, MeshError>,
+    /// Named curves beside the body, by the ends of their edges.
+    curves: BTreeMap<String, Vec<[[f64; 2]; 2]>>,
+    surfaces: BTreeMap<String, Vec<usize>>,
+    points: BTreeMap<String, Vec<usize>>,
+}
+
+/// An edge on the boundary, by the triangle that owns it: edge `local` lies opposite the triangle's vertex `local`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BoundaryEdge {
+    /// The number of the triangle.
+    pub triangle: usize,
+    /// 0, 1 or 2.
+    pub local: usize,
+}
+
+impl BoundaryEdge {
+    /// Values at the corners of its triangle as those at its start, at its end and opposite.
+    pub(crate) fn ends_first<T: Copy>(self, corners: [T; 3]) -> [T; 3] {
+        [1, 2, 0].map(|k| corners[(self.local + k) % 3])
+    }
+}
+
+impl Mesh {
+    /// The mesh of [`Mesh::new`], of which is checked all but how its triangles lie in the plane; `may_meet` says which vertices may
+    /// be in one place.
+    pub(crate) fn of_edges(
+        vertices: Vec<[f64; 2]>,
+        triangles: Vec<[usize; 3]>,
+        named: impl IntoIterator<Item = (String, Vec<[usize; 2]>)>,
+        may_meet: impl Fn(usize, usize) -> bool,
+    ) -> Result<Mesh, MeshError> {
+        if triangles.is_empty() {
+            return Err(MeshError::Empty);
+        }
+        memory::check(bytes_to_make(vertices.len(), triangles.len()))?;
+        check_vertices(&vertices, &triangles, may_meet)?;
+        check_triangles(&vertices, &triangles)?;
+        let (edges, triangle_edges) = match_edges(vertices.len(), &triangles)?;
+        let outline: Vec<BoundaryEdge> =
+            edges.edges.iter().filter(|e| !e.inner).map(|e| e.owner).collect();
+        let (boundaries, faults) = name_boundaries(&edges, &vertices, named)?;
+        let topology = MeshTopology {
+            triangles,
+            triangle_edges,
+            edge_count: edges.edges.len(),
+            outline,
+            boundaries,
+            faults,
+            curves: BTreeMap::new(),
+            surfaces: BTreeMap::new(),
+            points: BTreeMap::new(),
+        };
+        Ok(Mesh { vertices, topology: Arc::new(topology), boxes: OnceLock::new() })
+    }
+
+    /// Names parts of the body, as lists of triangles, and points, as lists of vertices. A triangle may have several names; which of
+    /// them matters is said by what uses them.
+    ///
+    /// # Errors
+    /// [`MeshError::Beyond`] for a number that no triangle or vertex has.
+    pub fn with_names(
+        mut self,
+        surfaces: BTreeMap<String, Vec<usize>>,
+        points: BTreeMap<String, Vec<usize>>,
+    ) -> Result<Mesh, MeshError> {
+        check_numbers(&surfaces, ["surface", "triangle", "triangles"], self.triangles().len())?;
+        check_numbers(&points, ["point", "vertex", "vertices"], self.vertices.len())?;
+        let topology = Arc::make_mut(&mut self.topology);
+        topology.surfaces = surfaces;
+        topology.points = points;
+        Ok(self)
+    }
+
+    /// Names curves that are no boundaries, and says why.
+    #[must_use]
+    pub(crate) fn with_faults(mut self, faults: BTreeMap<String, MeshError>) -> Mesh {
+        let topology = Arc::make_mut(&mut self.topology);
+        topology.boundaries.retain(|name, _| !faults.contains_key(name));
+        topology.faults.extend(faults);
+        self
+    }
+
+    /// Names curves beside the body, by the ends of their edges: a rigid obstacle may be one.
+    #[must_use]
+    pub(crate) fn with_curves(mut self, curves: BTreeMap<String, Vec<[[f64; 2]; 2]>>) -> Mesh {
+        Arc::make_mut(&mut self.topology).curves = curves;
+        self
+    }
+
+    /// The ends of the edges of a named curve beside the body.
+    ///
+    /// # Errors
+    /// [`MeshError::NoSuchCurve`], with the names that there are.
+    pub(crate) fn curve(&self, name: &str) -> Result<&[[[f64; 2]; 2]], MeshError> {
+        let curves = &self.topology.curves;
+        curves.get(name).map(Vec::as_slice).ok_or_else(|| MeshError::NoSuchCurve {
+            name: name.to_owned(),
+            known: listed(
+                curves.keys(),
+                "none (in Gmsh a Physical Curve that bounds no surface is one)",
+            ),
+        })
+    }
+
+    /// Names the edges of the boundary whose two ends are places where `holds`.
+    ///
+    /// # Errors
+    /// [`MeshError::NameTaken`] if the mesh has a boundary of this name, [`MeshError::Nowhere`] if there is no such edge.
+    pub fn with_boundary(
+        mut self,
+        name: &str,
+        holds: impl Fn([f64; 2]) -> bool,
+    ) -> Result<Mesh, MeshError> {
+        let topology = &self.topology;
+        if topology.boundaries.contains_key(name) || topology.faults.contains_key(name) {
+            return Err(MeshError::NameTaken { name: name.to_owned() });
+        }
+        let is_part = |&edge: &BoundaryEdge| self.places_of_ends(edge).into_iter().all(&holds);
+        let edges: Vec<BoundaryEdge> = self.outline().iter().copied().filter(is_part).collect();
+        if edges.is_empty() {
+            let Bounds { low, high } = Bounds::around(self.vertices.iter().copied());
+            return Err(MeshError::Nowhere { low, high });
+        }
+        Arc::make_mut(&mut self.topology).boundaries.insert(name.to_owned(), edges);
+        Ok(self)
+    }
+
+    /// The named parts of the body with their triangles, in alphabetical order.
+    pub fn surfaces(&self) -> &BTreeMap<String, Vec<usize>> {
+        &self.topology.surfaces
+    }
+
+    /// The triangles of a named part of the body.
+    ///
+    /// # Errors
+    /// [`MeshError::NoSuchSurface`], with the names that there are.
+    pub fn surface(&self, name: &str) -> Result<&[usize], MeshError> {
+        let surfaces = &self.topology.surfaces;
+        surfaces.get(name).map(Vec::as_slice).ok_or_else(|| {
+            let known = listed(surfaces.keys(), "none (in Gmsh a Physical Surface is one)");
+            MeshError::NoSuchSurface { name: name.to_owned(), known }
+        })
+    }
+
+    /// The vertex of a named point.
+    ///
+    /// # Errors
+    /// [`MeshError::NoSuchPoint`], with the names that there are; [`MeshError::NotOnePoint`] where several vertices, or none, have
+    /// the name.
+    pub fn point(&self, name: &str) -> Result<usize, MeshError> {
+        let points = &self.topology.points;
+        match points.get(name).map(Vec::as_slice) {
+            Some(&[vertex]) => Ok(vertex),
+            Some(several) => {
+                Err(MeshError::NotOnePoint { name: name.to_owned(), count: several.len() })
+            }
+            None => {
+                let known = listed(points.keys(), "none (in Gmsh a Physical Point is one)");
+                Err(MeshError::NoSuchPoint { name: name.to_owned(), known })
+            }
+        }
+    }
+
+    /// The names of points, in alphabetical order.
+    pub fn point_names(&self) -> impl Iterator<Item = &str> {
+        self.topology.points.keys().map(String::as_str)
+    }
+
+    /// Moves the vertices for which `to` says so, and returns how many there were.
+    pub(super) fn move_vertices(&mut self, to: impl Fn([f64; 2]) -> Option<[f64; 2]>) -> usize {
+        let mut moved = 0;
+        for vertex in &mut self.vertices {
+            if let Some(place) = to(*vertex) {
+                (*vertex, moved) = (place, moved + 1);
+            }
+        }
+        self.boxes = OnceLock::new();
+        moved
+    }
+
+    /// The vertices.
+    pub fn vertices(&self) -> &[[f64; 2]] {
+        &self.vertices
+    }
+
+    /// The vertices of each triangle, counter-clockwise.
+    pub fn triangles(&self) -> &[[usize; 3]] {
+        &self.topology.triangles
+    }
+
+    /// The number of each triangle's edge i, opposite vertex i; the edges of the mesh are counted from 0.
+    pub fn triangle_edges(&self) -> &[[usize; 3]] {
+        &self.topology.triangle_edges
+    }
+
+    /// The number of edges.
+    pub fn edge_count(&self) -> usize {
+        self.topology.edge_count
+    }
+
+    /// The whole boundary, named or not.
+    pub fn outline(&self) -> &[BoundaryEdge] {
+        &self.topology.outline
+    }
+
+    /// The names of the boundary parts, in alphabetical order.
+    pub fn boundary_names(&self) -> impl Iterator<Item = &str> {
+        self.topology.boundaries.keys().map(String::as_str)
+    }
+
+    /// The edges of a named boundary part.
+    ///
+    /// # Errors
+    /// [`MeshError::NoSuchBoundary`], with the names that there are; [`MeshError::InnerEdge`] for a named curve inside the
+    /// body, [`MeshError::NoSuchEdge`] for one that no triangle has an edge on.
+    pub fn edges_of(&self, boundary: &str) -> Result<&[BoundaryEdge], MeshError> {
+        if let Some(fault) = self.topology.faults.get(boundary) {
+            return Err(fault.clone());
+        }
+        let boundaries = &self.topology.boundaries;
+        boundaries.get(boundary).map(Vec::as_slice).ok_or_else(|| {
+            let none = "none (in Gmsh a Physical Curve is one, in a case file where = \"abs(y) < 1e-9\" makes one)";
+            let known = listed(boundaries.keys(), none);
+            MeshError::NoSuchBoundary { name: boundary.to_owned(), known }
+        })
+    }
+
+    /// Checks that no edge has two of these names: an edge that has two may be used by one of them.
+    ///
+    /// # Errors
+    /// [`MeshError::NamedTwice`]; as [`Mesh::edges_of`].
+    pub fn check_apart<'n>(
+        &self,
+        names: impl IntoIterator<Item = &'n str>,
+    ) -> Result<(), MeshError> {
+        let mut name_of: BTreeMap<usize, &str> = BTreeMap::new();
+        for name in names {
+            for &edge in self.edges_of(name)? {
+                let number = self.topology.triangle_edges[edge.triangle][edge.local];
+                if let Some(first) = name_of.insert(number, name) {
+                    let names = [first, name].map(str::to_owned);
+                    return Err(MeshError::NamedTwice { ends: self.places_of_ends(edge), names });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Triangle `t` with its coordinates.
+    pub fn triangle(&self, t: usize) -> Triangle<f64> {
+        Triangle { vertices: self.topology.triangles[t].map(|v| self.vertices[v].into()) }
+    }
+
+    /// h_T of (7): the diameter of triangle `t`, which is its longest edge.
+    pub fn diameter(&self, t: usize) -> f64 {
+        diameter(&self.triangle(t))
+    }
+
+    /// The vertices at the start and at the end of a boundary edge, the body on its left.
+    pub fn ends(&self, edge: BoundaryEdge) -> [usize; 2] {
+        let t = self.topology.triangles[edge.triangle];
+        [t[(edge.local + 1) % 3], t[(edge.local + 2) % 3]]
+    }
+
+    /// The places of the [`ends`](Mesh::ends) of a boundary edge.
+    pub(crate) fn places_of_ends(&self, edge: BoundaryEdge) -> [[f64; 2]; 2] {
+        self.ends(edge).map(|vertex| self.vertices[vertex])
+    }
+
+    /// The length of a boundary edge and its unit outward normal.
+    pub fn length_and_normal(&self, edge: BoundaryEdge) -> (f64, Vector2<f64>) {
+        let normal = self.triangle(edge.triangle).scaled_normal(edge.local);
+        let length = length(normal);
+        (length, normal / length)
+    }
+
+    /// The amount by which the normals of these boundary edges may be off because the ends are rounded to doubles; 0 for none.
+    pub(crate) fn turned_by_rounding(&self, edges: impl IntoIterator<Item = BoundaryEdge>) -> f64 {
+        let of = |edge: BoundaryEdge| {
+            let ends = self.places_of_ends(edge);
+            let far = ends.as_flattened().iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+            // A unit in the last place of four coordinates, at two nodes that are compared.
+            8.0 * f64::EPSILON * far / self.length_and_normal(edge).0
+        };
+        edges.into_iter().map(of).fold(0.0, f64::max)
+    }
+
+    /// The first triangle that contains the point `x`, with its barycentric coordinates there; `None` outside the body.
+    pub fn locate(&self, x: [f64; 2]) -> Option<(usize, [f64; 3])> {
+        let boxes = self.boxes.get_or_init(|| {
+            let corners = |t: &[usize; 3]| t.map(|v| self.vertices[v]);
+            let boxed = |t: [[f64; 2]; 3]| {
+                Bounds::around(t).widened(4.0 * ROUNDED * Bounds::around(t).size())
+            };
+            Tree::new(self.topology.triangles.iter().map(corners).map(boxed).collect())
+        });
+        let mut near = Vec::new();
+        boxes.meeting(Bounds::around([x]), |t| near.push(t));
+        near.sort_unstable();
+        let x = Vector2::from(x);
+        near.into_iter().find_map(|t| {
+            let triangle = self.triangle(t);
+            let gradients = triangle.barycentric_gradients();
+            // Each coordinate is measured from a vertex where it is zero: a vertex of the mesh finds itself exactly.
+            let l = [0, 1, 2].map(|i| gradients[i].dot(&(x - triangle.vertices[(i + 1) % 3])));
+            l.iter().all(|&l| l >= -ROUNDED).then_some((t, l))
+        })
+    }
+}
+
+/// A share below this may be rounding, some thousand roundings of doubles: a triangle with less area beside h_T^2 is flat, as its
+/// gradients would have lost all but a few digits; a point this far outside a triangle, in units of its heights, still belongs to
+/// it; prescribed values that differ by less, beside the largest, agree, as expressions that mean the same may differ; so do
+/// the constants of equal edges; a place this near to the end of a piece of quadrature is its end;
+/// and contact that leaves less of the displacement without it leaves nothing that can be seen.
+pub(crate) const ROUNDED: f64 = 1e-12;
+
+/// An angle below this, in radians, is none: a hundred thousand rounding errors of a facet a thousandth of the body long.
+/// Two directions that are held are independent, a boundary bends and a motion leaves an obstacle by more only.
+pub(crate) const NO_ANGLE: f64 = 1e-8;
+
+/// |v|, without the overflow and underflow of a sum of squares.
+pub(crate) fn length(v: Vector2<f64>) -> f64 {
+    v.x.hypot(v.y)
+}
+
+fn diameter(triangle: &Triangle<f64>) -> f64 {
+    [0, 1, 2].map(|i| length(triangle.edge(i))).into_iter().fold(0.0, f64::max)
+}
+
+/// The bytes that making a mesh takes beside its vertices and triangles: its edges, of which there are at most three to a
+/// triangle and in a list that grows up to twice that, and what is kept of them.
+pub(super) fn bytes_to_make(vertices: usize, triangles: usize) -> u64 {
+    let per_vertex = bytes_of::<[usize; 4]>(vertices);
+    let edges = (triangles.saturating_mul(3) / 2).saturating_add(vertices);
+    [per_vertex, bytes_of::<[usize; 3]>(triangles), bytes_of::<MeshEdge>(edges)]
+        .into_iter()
+        .fold(0, u64::saturating_add)
+}
+
+fn check_vertices(
+    vertices: &[[f64; 2]],
+    triangles: &[[usize; 3]],
+    may_meet: impl Fn(usize, usize) -> bool,
+) -> Result<(), MeshError> {
+    for (vertex, &[x, y]) in vertices.iter().enumerate() {
+        if !(x.is_finite() && y.is_finite()) {
+            return Err(MeshError::NotFinite { vertex, x, y });
+        }
+    }
+    let mut used = vec![false; vertices.len()];
+    for (triangle, corners) in triangles.iter().enumerate() {
+        for &vertex in corners {
+            match used.get_mut(vertex) {
+                Some(used) => *used = true,
+                None => {
+                    let count = vertices.len();
+                    return Err(MeshError::NoSuchVertex { triangle, vertex, count });
+                }
+            }
+        }
+    }
+    let mut order: Vec<usize> = (0..vertices.len()).collect();
+    // Adding 0.0 makes -0 and 0 the same place.
+    let place = |v: usize| vertices[v].map(|c| c + 0.0);
+    order.sort_unstable_by(|&a, &b| {
+        let ([ax, ay], [bx, by]) = (place(a), place(b));
+        ax.total_cmp(&bx).then(ay.total_cmp(&by)).then(a.cmp(&b))
+    });
+    for together in order.chunk_by(|&a, &b| place(a) == place(b)) {
+        for (i, &a) in together.iter().enumerate() {
+            if let Some(&b) = together[i + 1..].iter().find(|&&b| !may_meet(a, b)) {
+                let [x, y] = place(a);
+                return Err(MeshError::Duplicate { vertices: [a, b], x, y });
+            }
+        }
+    }
+    match used.iter().position(|&used| !used) {
+        Some(vertex) => {
+            let [x, y] = vertices[vertex];
+            Err(MeshError::Unused { vertex, x, y })
+        }
+        None => Ok(()),
+    }
+}
+
+fn check_triangles(vertices: &[[f64; 2]], triangles: &[[usize; 3]]) -> Result<(), MeshError> {
+    for (triangle, &corners) in triangles.iter().enumerate() {
+        let t = Triangle { vertices: corners.map(|v| vertices[v].into()) };
+        let (area, diameter) = (t.double_area() / 2.0, diameter(&t));
+        let flat = ROUNDED * diameter * diameter;
+        if area < -flat {
+            return Err(MeshError::Clockwise { triangle, vertices: corners, area });
+        }
+        if !(area > flat) {
+            // Adding 0.0 spares the reader an area of -0.
+            return Err(MeshError::Flat {
+                triangle,
+                vertices: corners,
+                area: area + 0.0,
+                diameter,
+            });
+        }
+    }
+    Ok(())
+}
+
+fn check_numbers(
+    named: &BTreeMap<String, Vec<usize>>,
+    [kind, member, members]: [&'static str; 3],
+    count: usize,
+) -> Result<(), MeshError> {
+    let mut all = named.iter().flat_map(|(name, numbers)| numbers.iter().map(move |&n| (name, n)));
+    match all.find(|(_, number)| *number >= count) {
+        None => Ok(()),
+        Some((name, number)) => {
+            let of = [kind, member, members];
+            Err(MeshError::Beyond { of, name: name.clone(), number, count })
+        }
+    }
+}
+
+fn listed<'a>(names: impl Iterator<Item = &'a String>, none: &str) -> String {
+    let mut names = names.map(String::as_str).peekable();
+    if names.peek().is_none() { none.to_owned() } else { quote::names(names) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+
+    fn mesh(vertices: &[[f64; 2]], triangles: &[[usize; 3]]) -> Result<Mesh, MeshError> {
+        Mesh::new(vertices.to_vec(), triangles.to_vec(), [])
+    }
+
+    fn named(parts: &[(&str, &[[usize; 2]])]) -> Result<Mesh, MeshError> {
+        let parts = parts.iter().map(|(name, edges)| ((*name).to_owned(), edges.to_vec()));
+        Mesh::new(SQUARE.to_vec(), vec![[0, 1, 2], [0, 2, 3]], parts)
+    }
+
+    fn message(result: Result<Mesh, MeshError>) -> String {
+        result.unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_square_of_two_triangles_has_five_edges_four_of_them_outside() {
+        let m = mesh(&SQUARE, &[[0, 1, 2], [0, 2, 3]]).unwrap();
+        assert_eq!(m.edge_count(), 5);
+        assert_eq!(m.outline().len(), 4);
+        assert_eq!(m.triangle_edges()[0][1], m.triangle_edges()[1][2], "the diagonal is shared");
+        assert_eq!(m.diameter(0), 2.0_f64.sqrt());
+    }
+
+    #[test]
+    fn outward_normals_weighted_by_length_add_up_to_zero() {
+        let m = mesh(&SQUARE, &[[0, 1, 2], [0, 2, 3]]).unwrap();
+        let mut sum = [0.0; 2];
+        for &e in m.outline() {
+            let (length, n) = m.length_and_normal(e);
+            sum = [sum[0] + length * n[0], sum[1] + length * n[1]];
+        }
+        assert_eq!(sum, [0.0; 2]);
+    }
+
+    #[test]
+    fn boundary_parts_are_found_by_name_in_either_direction() {
+        let m = named(&[("floor", &[[1, 0]]), ("sides", &[[1, 2], [0, 3]])]).unwrap();
+        let floor = m.edges_of("floor").unwrap();
+        assert_eq!(m.ends(floor[0]), [0, 1]);
+        assert_eq!(m.length_and_normal(floor[0]), (1.0, Vector2::new(0.0, -1.0)));
+        assert_eq!(m.edges_of("sides").unwrap().len(), 2);
+    }
+
+    #[test]
+    fn a_mesh_without_named_boundaries_says_so() {
+        let e = named(&[]).unwrap().edges_of("a").unwrap_err().to_string();
+        assert_eq!(
+            e,
+            "no boundary named 'a'; this mesh has: none (in Gmsh a Physical Curve is one, in a case file where = \"abs(y) < 1e-9\" makes one)"
+        );
+    }
+
+    #[test]
+    fn vertices_that_are_not_there_or_not_needed_are_refused_by_number() {
+        assert_eq!(
+            message(mesh(&SQUARE, &[[0, 1, 2], [0, 2, 7]])),
+            "triangle 1 names vertex 7; expected one of the 4 vertices of this mesh"
+        );
+        let twice = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [-0.0, 0.0], [0.0, 1.0]];
+        assert_eq!(
+            message(mesh(&twice, &[[0, 1, 2], [3, 2, 4]])),
+            "vertices 0 and 3 are both at (0, 0); expected one vertex there (mesh.merge makes them one), or two bodies that are a [[pair]]"
+        );
+        assert_eq!(
+            message(mesh(&SQUARE, &[[0, 1, 2]])),
+            "vertex 3 at (0, 1) belongs to no triangle"
+        );
+    }
+
+    #[test]
+    fn overlapping_and_hanging_triangles_are_refused() {
+        let v = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 3.0]];
+        assert_eq!(
+            message(mesh(&v, &[[0, 1, 2], [0, 1, 3]])),
+            "triangles 0 and 1 overlap: both lie on the same side of the edge from vertex 0 to vertex 1"
+        );
+        let v = [[0.0, 0.0], [2.0, 0.0], [0.0, 2.0], [1.0, 1.0], [2.0, 2.0]];
+        assert_eq!(
+            message(mesh(&v, &[[0, 1, 2], [1, 4, 3], [3, 4, 2]])),
+            "vertex 3 at (1, 1) hangs inside the edge between vertices 1 and 2 of triangle 0: neighbours must share whole edges"
+        );
+    }
+
+    #[test]
+    fn boundary_edges_inside_the_body_are_refused() {
+        let cut = named(&[("cut", &[[0, 2]])]).unwrap();
+        assert_eq!(
+            cut.edges_of("cut").unwrap_err().to_string(),
+            "boundary 'cut': its edge from (0, 0) to (1, 1) lies inside the body, between two triangles; nothing can be prescribed there"
+        );
+    }
+}

@@ -1,0 +1,599 @@
+//! How far the computed displacement u~ is from the exact solution u^h of (8), whatever Newton's method, the factorisation and
+//! rounding did: an enclosure of u^h and of what is reported of it. docs/theory.md, 7.5, has the proofs.
+//!
+//! The problem (8) that is meant has these data: the vertices, the Lame coefficients as they act in the plane, gamma on each
+//! contact edge, the gap at the nodes, the prescribed components, the directions of contact where they are not the normal, the
+//! points of a Gauss rule, and for the loads the forces that the quadrature has at its points, weight times value: all of them
+//! doubles, taken for the real numbers that they are. Lengths, normals, areas, stresses and integrals are the exact ones.
+//!
+//! 1. kappa < 1, rounded up: (8) has exactly one solution, and A(v, v) >= (1 - kappa) a(v, v).
+//! 2. The residual r of (8) at u~, and any z that nearly solves A z = r, as the factor at hand gives it:
+//!    |r|_A* <= (z.A z)^{1/2} + |r - A z|_A*, where the last residual is turned into a dual norm by
+//!    [Korn's inequality](crate::proof::korn) at each node, crudely. Both residuals are evaluated in
+//!    [doubles](crate::proof::rounded_stress) with a bound of their rounding, and where that proves too little in
+//!    [balls](crate::kernel::ball).
+//! 3. (C2): with rho = |r|_A*, |u~ - u^h|_a <= rho (1 - kappa)^{-1/2}, |gamma^{1/2}(lambda~ - lambda^h)| <= rho / 2.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+use std::time::Duration;
+
+use nalgebra::DMatrix;
+use thiserror::Error;
+
+use super::balls::{field, free, kappa, length, pieces, root};
+use super::intervals::{Arithmetic, EnclosedResidual, Intervals};
+use super::isolated::{self, Isolated};
+use super::pressed::{self, Pressed, SHARES};
+use crate::contact::{Discretization, Piece, residual};
+use crate::held::rigid::NEGLIGIBLE;
+use crate::held::solvability::Slides;
+use crate::kernel::DoubleDouble;
+use crate::kernel::ball::{PreciseBall, up};
+use crate::linear::factor::Factor;
+use crate::linear::system::System;
+use crate::proof::korn::Korn;
+use crate::solve::SolveError;
+use crate::solve::newton::SLIGHT;
+use crate::solve::times::Stopwatch;
+
+/// Where u^h is, and what is known of it.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Enclosure {
+    /// kappa of (11), rounded up.
+    pub kappa: f64,
+    /// |u~ - u^h|_a at most.
+    pub radius: f64,
+    /// The radius over |u~|_a; `None` for a body that hardly strains.
+    pub relative: Option<f64>,
+    /// The strains are surely below 1e-10 of the displacement over the size of the body: what there is of them is rounding.
+    pub hardly_strains: bool,
+    /// The energy norm of the body if it strained by its displacement over its size, or by 1 where that is less.
+    pub if_strained: f64,
+    /// The norm of gamma^{1/2} (lambda~ - lambda^h) on Gamma_C at most.
+    pub pressure: f64,
+    /// The length of u~ - u^h at each node at most.
+    pub nodes: Vec<f64>,
+    /// Intervals of the reported quantities.
+    pub intervals: Intervals,
+    /// With Coulomb's friction: near which there is no other solution; without it there is exactly one anywhere.
+    pub isolation: Option<Isolation>,
+}
+
+/// The distance within which the discrete equations with Coulomb's friction have exactly one solution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Isolation {
+    /// There is exactly one whose difference from the displacement has no larger energy norm; `None` if that is known in another norm
+    /// only, that of 13.6 with springs, as where friction alone holds the body.
+    pub within: Option<f64>,
+    /// That over |u~|_a; `None` for a body without strain, too.
+    pub relative: Option<f64>,
+    /// There is no other anywhere.
+    pub everywhere: bool,
+    /// Two lower bounds of the coefficient below which there is exactly one for all loads, by 13.3 and by 13.3a; 0 where none is known.
+    pub limits: [f64; 2],
+}
+
+/// Why nothing is proved.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "the message of each variant says what it is")]
+#[non_exhaustive]
+pub enum Unproved {
+    #[error(
+        "the body is held by contact alone, and the edges that are surely pressed hardly hold it"
+    )]
+    HeldByContact,
+    #[error("Newton's method did not end")]
+    NotReached,
+    #[error("kappa = {kappa} is not below 1: (8) may have several solutions, or none")]
+    NotCoercive { kappa: f64 },
+    #[error("displacement boundaries hardly hold a part of the body")]
+    NotHeld,
+    #[error("A has no Cholesky factor in the precision of the solve")]
+    NoFactor,
+    #[error(
+        "kappa is 1 or more when its rounding is counted: it over- or underflows double precision, or is next to 1"
+    )]
+    NoKappa,
+    #[error(
+        "Coulomb's friction: no distance is proved within which this solution is the only one; where a stretch is just at the limit of sliding or of pressing there need not be one"
+    )]
+    NotIsolated,
+    #[error(
+        "Coulomb's friction: the proof is for up to 2000 contact functionals and 2e8 entries of their compliance; there are {count} functionals"
+    )]
+    TooManyFunctionals { count: usize },
+    #[error("the bound over- or underflows double precision")]
+    OutOfRange,
+    #[error("out of memory")]
+    OutOfMemory,
+}
+
+impl Unproved {
+    /// Returns whether a displacement that is nearer, or better arithmetic, may tell more.
+    pub(crate) fn may_be_rounding(&self) -> bool {
+        !matches!(
+            self,
+            Unproved::NotCoercive { .. }
+                | Unproved::NoKappa
+                | Unproved::NotHeld
+                | Unproved::TooManyFunctionals { .. }
+        )
+    }
+
+    /// Returns whether (8) is known to have exactly one solution all the same.
+    pub fn is_unique(&self) -> bool {
+        let by_friction =
+            matches!(self, Unproved::NotIsolated | Unproved::TooManyFunctionals { .. });
+        let by_contact = matches!(self, Unproved::HeldByContact | Unproved::NotCoercive { .. });
+        !(by_friction || by_contact || *self == Unproved::NoKappa)
+    }
+}
+
+/// A body whose energy norm is below this is at rest: the energies that [`solve`](crate::solve::solve) does not refuse are above 1e-270, and
+/// a slender body may have as little of it as this.
+const LEAST_NORM: f64 = 1e-150;
+
+/// Encloses the solution of (8) around the displacement `u`, in balls throughout: as [`Verifier::enclose`]. A factor of A that is
+/// at hand saves making one; nothing depends on its being right.
+///
+/// # Errors
+/// Why nothing can be proved.
+pub fn enclose(
+    system: &System,
+    u: &[[f64; 2]],
+    near: Option<&[[DoubleDouble; 2]]>,
+    of_a: Option<Arc<Factor>>,
+) -> Result<Enclosure, Unproved> {
+    Verifier::new(system, of_a).enclose(u, near, Arithmetic::Balls)
+}
+
+/// Encloses the solution of (8) around one displacement after the other: what does not depend on them is done once.
+pub struct Verifier<'s, 'd, 'p> {
+    system: &'s System<'d, 'p>,
+    load: &'s [[PreciseBall; 2]],
+    lines: Vec<Piece<PreciseBall>>,
+    kappa: f64,
+    /// The relative radius that is asked for: a bound that is far below is not sharpened.
+    proof: f64,
+    /// L of A, if it is at hand.
+    of_a: Option<Arc<Factor>>,
+    /// For what is pressed: the bounds at the nodes, and the factor, once it is needed.
+    held: Option<HeldByContact>,
+    /// What the proof with Coulomb's friction knows of A.
+    known: Option<isolated::Known>,
+    /// The sum of the magnitudes of the residual where it was last evaluated.
+    pub unbalanced: f64,
+    /// The time that it has taken.
+    pub time: Duration,
+}
+
+/// The data of pressed edges with these springs.
+struct HeldByContact {
+    springs: Vec<DMatrix<f64>>,
+    korn: Option<Korn>,
+    factor: Option<Arc<Factor>>,
+}
+
+impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
+    /// The verifier of a system, with its own loads.
+    pub fn new(system: &'s System<'d, 'p>, of_a: Option<Arc<Factor>>) -> Self {
+        Verifier::with_load(system, of_a, &system.d.enclosed_load)
+    }
+
+    /// The verifier of a system with a given load: L(v) for every basis function.
+    pub fn with_load(
+        system: &'s System<'d, 'p>,
+        of_a: Option<Arc<Factor>>,
+        load: &'s [[PreciseBall; 2]],
+    ) -> Self {
+        let mut watch = Stopwatch::start();
+        let lines = pieces(system.d);
+        let kappa = kappa(system.d, &lines);
+        let time = watch.lap();
+        let proof = 0.0;
+        Verifier {
+            system,
+            load,
+            lines,
+            kappa,
+            proof,
+            of_a,
+            held: None,
+            known: None,
+            unbalanced: f64::INFINITY,
+            time,
+        }
+    }
+
+    /// A radius of a hundredth of `proof`, relative, need not be smaller.
+    #[must_use]
+    pub(crate) fn for_proof(self, proof: f64) -> Self {
+        Verifier { proof, ..self }
+    }
+
+    /// Takes the factor of A that a route has made, if it has.
+    pub(crate) fn use_factor(&mut self, of_a: Option<Arc<Factor>>) {
+        self.of_a = of_a.or(self.of_a.take());
+    }
+
+    /// Encloses the solution around `u` by the residual there, or at a field `near` it that is known in double-doubles:
+    /// rounding a displacement to doubles moves it little, its forces more. Of a body that may slide, with these motions
+    /// still stopped at one component each, one of the solutions is enclosed around the displacement of least norm.
+    ///
+    /// # Errors
+    /// Why nothing can be proved.
+    pub fn enclose(
+        &mut self,
+        u: &[[f64; 2]],
+        near: Option<&[[DoubleDouble; 2]]>,
+        arithmetic: Arithmetic,
+    ) -> Result<Enclosure, Unproved> {
+        let mut watch = Stopwatch::start();
+        let enclosure = self.enclosed(u, near, arithmetic);
+        self.time += watch.lap();
+        enclosure
+    }
+
+    fn enclosed(
+        &mut self,
+        u: &[[f64; 2]],
+        near: Option<&[[DoubleDouble; 2]]>,
+        arithmetic: Arithmetic,
+    ) -> Result<Enclosure, Unproved> {
+        let d = self.system.d;
+        let known: Option<Vec<DoubleDouble>> = near.map(|near| residual::p(d, near).collect());
+        let Some(loose) = Slides::around(d, u, known.as_deref()) else {
+            return self.around(u, u, near, arithmetic);
+        };
+        let mut reported = u.to_vec();
+        loose.least_norm(&mut reported);
+        let stopped = d.slides.as_ref().map_or(0, |slides| slides.basis.len());
+        if loose.basis.len() <= stopped && loose.stopping.is_empty() {
+            return self.around(u, &reported, near, arithmetic);
+        }
+        // Motions that only edges stop which do not press: of all solutions one that is away from these.
+        let Some(inside) = loose.to_inside(u) else { return Err(Unproved::HeldByContact) };
+        let mut u = u.to_vec();
+        loose.move_by(&inside, &mut u);
+        let d = d.sliding(loose, &u);
+        let system = System::new(&d).map_err(|_| Unproved::OutOfMemory)?;
+        let mut other = Verifier::with_load(&system, None, self.load).for_proof(self.proof);
+        let enclosure = other.around(&u, &reported, None, arithmetic);
+        self.unbalanced = other.unbalanced;
+        enclosure
+    }
+
+    /// Encloses a solution around `u`, and what `reported` is, which differs from `u` by motions that slide.
+    fn around(
+        &mut self,
+        u: &[[f64; 2]],
+        reported: &[[f64; 2]],
+        near: Option<&[[DoubleDouble; 2]]>,
+        arithmetic: Arithmetic,
+    ) -> Result<Enclosure, Unproved> {
+        let (system, d, kappa) = (self.system, self.system.d, self.kappa);
+        if !(kappa < 1.0) {
+            let unknown = d.kappa() < 1.0 || !kappa.is_finite();
+            return Err(if unknown { Unproved::NoKappa } else { Unproved::NotCoercive { kappa } });
+        }
+        let at = EnclosedResidual::new(
+            system,
+            &self.lines,
+            (u, reported),
+            near,
+            (self.load, arithmetic),
+        );
+        let at = at.ok_or(Unproved::OutOfRange)?;
+        let r = free(system, &at.residual);
+        self.unbalanced = r.iter().map(|r| r.magnitude()).sum();
+        let fields = (u, reported);
+        let nowhere = Pressed::nowhere(self.lines.len());
+        if d.has_coulomb() {
+            let by_a = match d.slides {
+                None => self.held_by(&nowhere, &at, fields, (&r, arithmetic)),
+                Some(_) => Err(Unproved::HeldByContact),
+            };
+            return match by_a {
+                Err(Unproved::NotIsolated | Unproved::NoFactor | Unproved::HeldByContact) => {
+                    let pressed = Pressed::at(d, &self.lines, &at.u, 0.0);
+                    self.held_by(&pressed, &at, fields, (&r, arithmetic))
+                }
+                found => found,
+            };
+        }
+        if d.slides.is_none() {
+            let mut best = self.held_by(&nowhere, &at, fields, (&r, arithmetic));
+            // Of a slender body that lies on its obstacle A alone has no factor in doubles, or has one by luck.
+            let is_enough = |found: &Result<Enclosure, Unproved>, proof: f64| match found {
+                Ok(enclosure) => proof == 0.0 || enclosure.is_within(proof),
+                Err(why) => *why != Unproved::NoFactor,
+            };
+            for share in SHARES {
+                if is_enough(&best, self.proof) {
+                    break;
+                }
+                let pressed = Pressed::at(d, &self.lines, &at.u, share);
+                let next = self.held_by(&pressed, &at, fields, (&r, arithmetic));
+                let radius = |found: &Result<Enclosure, Unproved>| {
+                    found.as_ref().map_or(f64::INFINITY, |enclosure| enclosure.radius)
+                };
+                if radius(&next) < radius(&best) {
+                    best = next;
+                }
+            }
+            return best;
+        }
+        for share in SHARES {
+            let pressed = Pressed::at(d, &self.lines, &at.u, share);
+            let found = self.held_by(&pressed, &at, fields, (&r, arithmetic));
+            if found != Err(Unproved::HeldByContact) {
+                return found;
+            }
+        }
+        Err(Unproved::HeldByContact)
+    }
+
+    /// |v|_A^2 is at least this times |v|_a^2.
+    fn coercivity(&self) -> f64 {
+        (1.0 - self.kappa) * (1.0 - 4.0 * f64::EPSILON)
+    }
+
+    /// Encloses a solution by its evaluation at `u` and the residual there, where contact holds the body by what is `pressed`.
+    fn held_by(
+        &mut self,
+        pressed: &Pressed,
+        at: &EnclosedResidual,
+        (u, reported): (&[[f64; 2]], &[[f64; 2]]),
+        (r, arithmetic): (&[PreciseBall], Arithmetic),
+    ) -> Result<Enclosure, Unproved> {
+        let (system, d, kappa) = (self.system, self.system.d, self.kappa);
+        let coercivity = self.coercivity();
+        let springs = pressed.springs(&self.lines);
+        if self.held.as_ref().is_none_or(|held| held.springs != springs) {
+            let holds = pressed.holds(d, &self.lines);
+            let korn = Korn::new(&d.space, &d.problem.material, &d.constraints, &holds);
+            self.held = Some(HeldByContact { springs, korn, factor: None });
+        }
+        let Some(HeldByContact { korn: Some(korn), factor, springs }) = &mut self.held else {
+            let by_contact = d.slides.is_some();
+            return Err(if by_contact { Unproved::HeldByContact } else { Unproved::NotHeld });
+        };
+        let crude = crude_norms(system, korn, coercivity);
+        let up_to = up(at.off / coercivity.sqrt());
+        let norm = at.energy.lower().max(0.0).sqrt() * (1.0 - 2.0 * f64::EPSILON);
+        let if_strained = system.norm_if_strained(u);
+        let size = if norm > NEGLIGIBLE * if_strained { norm } else { if_strained };
+        let known = (at.moved.max(self.proof * size) * coercivity.sqrt()).max(up_to);
+        let negligible = SLIGHT * known;
+        let first = weighted(r, &crude);
+        let coulomb = d.has_coulomb();
+        let rho = if first <= negligible && !coulomb {
+            up(first + up_to)
+        } else {
+            let factor = match factor {
+                Some(factor) => factor,
+                None => factor.insert(match &self.of_a {
+                    Some(of_a) if !pressed.edges().any(|is| is) && d.slides.is_none() => {
+                        Arc::clone(of_a)
+                    }
+                    _ => system.factor(springs).map_err(|error| match error {
+                        SolveError::NotPositiveDefinite => Unproved::NoFactor,
+                        _ => Unproved::OutOfMemory,
+                    })?,
+                }),
+            };
+            let product = Product { system, lines: &self.lines, pressed, arithmetic };
+            up(dual_norm(&product, factor, r, &crude, coercivity, negligible) + up_to)
+        };
+        if !coulomb && !pressed.stay(rho) {
+            return Err(Unproved::HeldByContact);
+        }
+        let mut isolated = None;
+        if let (true, Some(factor)) = (coulomb, factor) {
+            let arithmetic = Arithmetic::Balls;
+            let product = Product { system, lines: &self.lines, pressed, arithmetic };
+            let times = |z: &[PreciseBall]| product.times(z);
+            let body = isolated::Body { system, factor, times: &times, crude: &crude, coercivity };
+            if pressed.is_nowhere() {
+                let known = match &mut self.known {
+                    Some(known) => known,
+                    none => none.insert(isolated::Known::new(&body, &self.lines, None)?),
+                };
+                let of = [rho, size];
+                isolated = Some(isolated::isolate(d, (known, None), &self.lines, &at.u, of)?);
+            } else {
+                let known = isolated::Known::new(&body, &self.lines, Some(springs))?;
+                let of = [rho, size];
+                let by_a = self.known.as_ref();
+                isolated = Some(isolated::isolate(d, (&known, by_a), &self.lines, &at.u, of)?);
+            }
+        }
+        let rho = isolated.map_or(rho, |isolated| isolated.rho);
+        let exact = up(rho / coercivity.sqrt());
+        let radius = up(exact + at.moved);
+        if !radius.is_finite() {
+            return Err(Unproved::OutOfRange);
+        }
+        let mut nodes: Vec<f64> = korn.nodes.iter().map(|n| up(n * exact)).collect();
+        if !stays_off(d, &self.lines, &at.u, (&nodes, exact)) {
+            return Err(Unproved::HeldByContact);
+        }
+        let exactly = match &d.slides {
+            Some(slides) => Cow::Owned(slid(at.u.clone(), reported, slides)),
+            None => Cow::Borrowed(&at.u),
+        };
+        for (node, (exactly, reported)) in nodes.iter_mut().zip(exactly.iter().zip(reported)) {
+            let off = [0, 1].map(|c| exactly[c] - PreciseBall::from(reported[c]));
+            *node = up(*node + length(off));
+        }
+        let pressure = match isolated {
+            Some(isolated) => isolated.pressure,
+            None if pressed.edges().any(|is| is) => rho,
+            None => rho / 2.0,
+        };
+        let intervals = at.intervals(d, &self.lines, (&exactly, &nodes), [rho, pressure], exact);
+        if !intervals.are_finite() {
+            return Err(Unproved::OutOfRange);
+        }
+        let hardly_strains = up(root(at.energy) + radius) <= NEGLIGIBLE * if_strained;
+        let is_measured = !hardly_strains && norm > 0.0;
+        let isolation = isolated.map(|Isolated { within, everywhere, limits, .. }| {
+            // From where the residual is known to the displacement that is reported.
+            let within = within.map(|within| (within - at.moved) * (1.0 - f64::EPSILON));
+            let within = within.filter(|within| radius <= *within);
+            let relative = |within: f64| within / up(root(at.energy)) * (1.0 - f64::EPSILON);
+            let relative = within.filter(|_| is_measured).map(relative);
+            Isolation { within, relative, everywhere, limits }
+        });
+        let relative = is_measured.then(|| up(radius / norm));
+        Ok(Enclosure {
+            kappa,
+            radius,
+            relative,
+            hardly_strains,
+            if_strained,
+            pressure,
+            nodes,
+            intervals,
+            isolation,
+        })
+    }
+}
+
+impl Enclosure {
+    /// The radius over |u~|_a or, for a body that hardly strains, over what that would be if it did; infinite where neither is known. A
+    /// body at rest has no energy to compare with: a radius of rounding alone is none.
+    pub fn in_parts(&self) -> f64 {
+        if self.radius < LEAST_NORM {
+            0.0
+        } else if self.hardly_strains {
+            self.radius / self.if_strained
+        } else {
+            self.relative.unwrap_or(f64::INFINITY)
+        }
+    }
+
+    /// Returns whether the radius is at most this part.
+    pub(crate) fn is_within(&self, proof: f64) -> bool {
+        self.in_parts() <= proof
+    }
+}
+
+/// u moved along the motions that slide, to where `reported` is.
+fn slid(
+    mut u: Vec<[PreciseBall; 2]>,
+    reported: &[[f64; 2]],
+    slides: &Slides,
+) -> Vec<[PreciseBall; 2]> {
+    for slide in &slides.basis {
+        let off = u.iter().zip(reported).zip(slide);
+        let weight: f64 =
+            off.map(|((u, r), s)| (0..2).map(|c| (r[c] - u[c].head()) * s[c]).sum::<f64>()).sum();
+        for (u, s) in u.iter_mut().zip(slide) {
+            *u = [0, 1].map(|c| u[c] + PreciseBall::from(weight) * PreciseBall::from(s[c]));
+        }
+    }
+    u
+}
+
+/// Returns whether the edges that could stop a motion that slides have P <= 0 for all fields that differ from u by as much as
+/// `nodes` say, and by `radius` in the norm of A_S: then the motion changes nothing.
+fn stays_off(
+    d: &Discretization,
+    lines: &[Piece<PreciseBall>],
+    u: &[[PreciseBall; 2]],
+    (nodes, radius): (&[f64], f64),
+) -> bool {
+    let stopping = d.slides.as_ref().map_or(&[][..], |slides| &slides.stopping);
+    stopping.iter().map(|&e| &lines[e]).all(|line| {
+        let far = line.farthest(|node| nodes[node]);
+        pressed::greatest(line.degree, line.along(&line.p(u))) + pressed::change(line, far, radius)
+            <= 0.0
+    })
+}
+
+/// A, with the springs where it is `pressed`.
+struct Product<'a, 'd, 'p> {
+    system: &'a System<'d, 'p>,
+    lines: &'a [Piece<PreciseBall>],
+    pressed: &'a Pressed,
+    arithmetic: Arithmetic,
+}
+
+impl Product<'_, '_, '_> {
+    /// A(v, .) at the free unknowns for the field v with the components `z`, off by a functional r with |r(w)| <= b |w|_a for
+    /// the b that comes with it.
+    fn times(&self, z: &[PreciseBall]) -> (Vec<PreciseBall>, f64) {
+        let v = field(self.system, |number, _, _| z[number], |_, _| 0.0);
+        let mut forces = vec![[PreciseBall::from(0); 2]; v.len()];
+        let off = self.arithmetic.add_small_forces(self.system.d, &v, &mut forces);
+        for line in self.lines {
+            line.add_stresses(&v, &mut forces);
+        }
+        self.pressed.add_springs(self.lines, &v, &mut forces);
+        (free(self.system, &forces), off)
+    }
+}
+
+/// |t|_A* <= sum of these times |t_i|: k_i (1 - kappa)^{-1/2} with the factor k_i of the node of unknown i.
+fn crude_norms(system: &System, korn: &Korn, coercivity: f64) -> Vec<f64> {
+    let mut crude = vec![0.0; system.numbering.count];
+    for (numbers, factor) in system.numbering.of.iter().zip(&korn.nodes) {
+        for number in numbers.iter().flatten() {
+            crude[*number] = up(factor / coercivity.sqrt());
+        }
+    }
+    crude
+}
+
+/// |r|_A* at most, where |t|_A* <= sum of `crude`_i |t_i| for every t, and |v|_a^2 <= |v|_A^2 / `coercivity`. What is
+/// `negligible` need not be known better.
+fn dual_norm(
+    a: &Product,
+    factor: &Factor,
+    r: &[PreciseBall],
+    crude: &[f64],
+    coercivity: f64,
+    negligible: f64,
+) -> f64 {
+    let mut z = vec![PreciseBall::from(0); r.len()];
+    let mut left = Cow::Borrowed(r);
+    let mut best = f64::INFINITY;
+    loop {
+        let mut correction: Vec<f64> = left.iter().map(|t| t.head()).collect();
+        factor.solve(&mut correction);
+        for (z, c) in z.iter_mut().zip(&correction) {
+            *z = PreciseBall::point((*z + PreciseBall::from(*c)).centre());
+        }
+        let (mut az, off) = a.times(&z);
+        let off = up(off / coercivity.sqrt());
+        let mut square = PreciseBall::from(0);
+        for (az, (&z, &r)) in az.iter_mut().zip(z.iter().zip(r)) {
+            square += z * *az;
+            *az = r - *az;
+        }
+        // x^2 = z . A z is off q = z . az by off x at most, so x <= off + q^(1/2).
+        let energy = up(off + root(square));
+        left = Cow::Owned(az);
+        let rest = up(weighted(&left, crude) + off);
+        let bound = up(energy + rest);
+        if !(rest > (SLIGHT * energy).max(negligible)) {
+            return bound.min(best);
+        }
+        if !(bound < best / 2.0) {
+            return bound.min(best);
+        }
+        best = bound;
+    }
+}
+
+/// The sum of the magnitudes, each times its weight, at most.
+fn weighted(v: &[PreciseBall], weights: &[f64]) -> f64 {
+    let sum: f64 = v.iter().zip(weights).map(|(v, weight)| v.magnitude() * weight).sum();
+    // As many roundings as terms; a product may underflow.
+    let underflown = f64::MIN_POSITIVE * v.len() as f64;
+    sum * (1.0 + f64::EPSILON * (v.len() + 16) as f64) + underflown
+}

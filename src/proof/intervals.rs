@@ -1,0 +1,286 @@
+//! (8) at a displacement, in balls, and the intervals of what is reported of its solution near there.
+
+use std::collections::BTreeMap;
+
+#[cfg(feature = "files")]
+use serde::{Deserialize, Serialize};
+
+use super::balls::{field, length, product, root, strain_energy};
+use crate::contact::{Discretization, Piece, residual};
+use crate::kernel::ball::{PreciseBall, up};
+use crate::kernel::{DoubleDouble, Response};
+use crate::linear::system::System;
+use crate::proof::rounded_stress;
+
+/// An interval `[low, high]`.
+pub type Range = [f64; 2];
+
+/// Intervals that contain what the exact solution of (8) has.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[non_exhaustive]
+pub struct Intervals {
+    /// a(u, u)
+    #[cfg_attr(feature = "files", serde(rename = "a_uu", alias = "energy"))]
+    pub energy: Range,
+    /// The largest length of u at a node.
+    pub max_displacement: Range,
+    /// Intervals of each contact boundary's quantities.
+    pub contact: Vec<ContactIntervals>,
+    /// The force of each displacement boundary on the body.
+    /// Empty where there are more than 64 displacement boundaries.
+    pub reactions: BTreeMap<String, [Range; 2]>,
+}
+
+impl Intervals {
+    pub(super) fn are_finite(&self) -> bool {
+        let contact = self.contact.iter().flat_map(|c| [c.force, c.resultant[0], c.resultant[1]]);
+        let all = contact.chain(self.reactions.values().copied().flatten());
+        let all = all.chain([self.energy, self.max_displacement]);
+        all.flatten().all(f64::is_finite)
+    }
+}
+
+/// Intervals of a contact boundary's quantities.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[non_exhaustive]
+pub struct ContactIntervals {
+    /// Its name.
+    pub boundary: String,
+    /// The name of the boundary of the other body, if there is one.
+    #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub partner: Option<String>,
+    /// -int lambda^h
+    pub force: Range,
+    /// int lambda^h n~: the force on the body
+    pub resultant: [Range; 2],
+}
+
+/// The arithmetic of the stresses of the body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arithmetic {
+    /// Doubles: what they are off by is bounded as a whole.
+    Doubles,
+    /// Balls, of some 106 bits each.
+    Balls,
+}
+
+impl Arithmetic {
+    /// Adds a(u, v) for every basis function v, off by a functional r with |r(v)| <= b |v|_a for the b that is returned.
+    fn add_forces(
+        self,
+        d: &Discretization,
+        u: &[[PreciseBall; 2]],
+        forces: &mut [[PreciseBall; 2]],
+    ) -> f64 {
+        match self {
+            Arithmetic::Doubles => rounded_stress::add_forces(d, u, forces),
+            Arithmetic::Balls => {
+                residual::add_internal_forces(&d.space, &d.problem.material, u, forces);
+                0.0
+            }
+        }
+    }
+
+    /// Adds them for a displacement that is next to nothing, where sums in doubles do.
+    pub(super) fn add_small_forces(
+        self,
+        d: &Discretization,
+        u: &[[PreciseBall; 2]],
+        forces: &mut [[PreciseBall; 2]],
+    ) -> f64 {
+        match self {
+            Arithmetic::Doubles => rounded_stress::add_small_forces(d, u, forces),
+            Arithmetic::Balls => self.add_forces(d, u, forces),
+        }
+    }
+
+    /// |v|_a at most.
+    fn energy_norm(self, d: &Discretization, v: &[[PreciseBall; 2]]) -> f64 {
+        match self {
+            Arithmetic::Doubles => rounded_stress::energy_norm_at_most(d, v),
+            Arithmetic::Balls => root(strain_energy(d, v)),
+        }
+    }
+}
+
+/// (8) at u~, or near it.
+pub(super) struct EnclosedResidual {
+    /// The residual at every basis function.
+    pub residual: Vec<[PreciseBall; 2]>,
+    /// u~, or the field near it, with its prescribed components where they should be.
+    pub u: Vec<[PreciseBall; 2]>,
+    /// The energy norm of what that is off the displacement that is reported, at most.
+    pub moved: f64,
+    /// a(u~, u~)
+    pub energy: PreciseBall,
+    /// The residual is off by no more than a functional r with |r(v)| <= this times |v|_a.
+    pub off: f64,
+    /// int \[P\]+ N_a / gamma on each piece.
+    pressures: Vec<Vec<PreciseBall>>,
+    arithmetic: Arithmetic,
+}
+
+impl EnclosedResidual {
+    /// None if it over- or underflows double precision.
+    pub fn new(
+        system: &System,
+        lines: &[Piece<PreciseBall>],
+        (u, reported): (&[[f64; 2]], &[[f64; 2]]),
+        near: Option<&[[DoubleDouble; 2]]>,
+        (load, arithmetic): (&[[PreciseBall; 2]], Arithmetic),
+    ) -> Option<Self> {
+        let d = system.d;
+        let frames = d.constraints.frames();
+        let at = |node: usize| match near {
+            Some(near) => near[node].map(PreciseBall::from),
+            None => u[node].map(PreciseBall::from),
+        };
+        let component = |_, node: usize, c: usize| match frames.get(&node) {
+            Some(&axis) => {
+                PreciseBall::point(crate::model::constraints::in_frame(axis, at(node))[c].centre())
+            }
+            None => at(node)[c],
+        };
+        let prescribed =
+            |node: usize, c: usize| d.constraints.values()[node][c].unwrap_or_default();
+        let exact = field(system, component, prescribed);
+        let off: Vec<[PreciseBall; 2]> = exact
+            .iter()
+            .zip(reported)
+            .map(|(exact, u)| [0, 1].map(|c| exact[c] - PreciseBall::from(u[c])))
+            .collect();
+        let mut residual = vec![[PreciseBall::from(0); 2]; u.len()];
+        let moved = arithmetic.energy_norm(d, &off);
+        let off = arithmetic.add_forces(d, &exact, &mut residual);
+        // x^2 = a(u~, u~) is off q = u~ . forces by off x at most, so x <= off + q^(1/2).
+        let energy = product(&exact, &residual);
+        let energy = energy.widened(up(off * (off + root(energy))));
+        let mut pressures = Vec::with_capacity(lines.len());
+        for line in lines {
+            line.add_stresses(&exact, &mut residual);
+            let pressure = line.force(&d.rule, &line.p(&exact));
+            line.add_contact(&pressure, &mut residual);
+            pressures.push(pressure);
+        }
+        for (r, &l) in residual.iter_mut().zip(load) {
+            *r = [r[0] - l[0], r[1] - l[1]];
+        }
+        let all = residual.iter().chain(&exact).flatten();
+        let lengths_are_finite = exact.iter().all(|&u| length(u).is_finite());
+        if !(lengths_are_finite && all.chain([&energy]).all(|b| b.is_finite())) {
+            return None;
+        }
+        Some(EnclosedResidual { residual, u: exact, moved, energy, off, pressures, arithmetic })
+    }
+
+    /// Encloses the reported quantities, with |u~ - u^h|_A <= `rho`, |u~ - u^h|_a <= `radius`, the norm of gamma^{1/2}
+    /// (lambda~ - lambda^h) at most
+    /// `pressure`, and displacements at the nodes with their bounds.
+    pub fn intervals(
+        &self,
+        d: &Discretization,
+        lines: &[Piece<PreciseBall>],
+        (u, nodes): (&[[PreciseBall; 2]], &[f64]),
+        [rho, pressure]: [f64; 2],
+        radius: f64,
+    ) -> Intervals {
+        // |u^h|_a is within the radius of |u~|_a.
+        let low = self.energy.lower().max(0.0).sqrt() * (1.0 - 2.0 * f64::EPSILON);
+        let low = ((low - radius) * (1.0 - 2.0 * f64::EPSILON)).max(0.0);
+        let high = up(root(self.energy) + radius);
+        let energy = [low * low * (1.0 - 2.0 * f64::EPSILON), up(high * high)];
+
+        let mut max_displacement = [0.0_f64; 2];
+        for (u, by) in u.iter().zip(nodes) {
+            let [a, b] = u.map(PreciseBall::least_magnitude);
+            let low = (a * a + b * b).sqrt() * (1.0 - 16.0 * f64::EPSILON);
+            let low = (low - by) * (1.0 - 2.0 * f64::EPSILON);
+            let high = up(length(*u) + by);
+            max_displacement = [max_displacement[0].max(low), max_displacement[1].max(high)];
+        }
+
+        let mut contact: Vec<(&Piece<PreciseBall>, [PreciseBall; 3], PreciseBall)> = Vec::new();
+        for (line, pressure) in lines.iter().zip(&self.pressures) {
+            let zero = PreciseBall::from(0);
+            let along = line.along(pressure).len();
+            let of = pressure.iter().enumerate().fold([zero; 3], |sum, (i, &p)| {
+                let n = line.direction_of(i);
+                let force = if i < along { sum[0] + p } else { sum[0] };
+                [force, sum[1] - p * n[0], sum[2] - p * n[1]]
+            });
+            let weight = line.whole_weight();
+            match contact.iter_mut().find(|(first, ..)| first.is_of_same_boundary(line)) {
+                Some((_, sum, weights)) => {
+                    *sum = [0, 1, 2].map(|i| sum[i] + of[i]);
+                    *weights += weight;
+                }
+                None => contact.push((line, of, weight)),
+            }
+        }
+        let contact = contact
+            .into_iter()
+            .map(|(piece, sums, weight)| {
+                // |int mu n~_c| <= (int 1/gamma)^{1/2} |gamma^{1/2} mu|
+                let off = up(root(weight) * pressure);
+                let [force, x, y] = sums.map(|sum| range(sum.widened(off)));
+                // Without tension lambda^h <= 0.
+                let pushes = piece.responses().all(|(r, _)| r == Response::Unilateral);
+                let force = if pushes { [force[0].max(0.0), force[1]] } else { force };
+                ContactIntervals {
+                    boundary: piece.boundary().to_string(),
+                    partner: piece.partner().map(|name| name.to_string()),
+                    force,
+                    resultant: [x, y],
+                }
+            })
+            .collect();
+        let reactions = self.reactions(d, lines, [rho, pressure]);
+        Intervals { energy, max_displacement, contact, reactions }
+    }
+
+    /// The residual at the held directions, and how far that of u^h can be from it.
+    fn reactions(
+        &self,
+        d: &Discretization,
+        lines: &[Piece<PreciseBall>],
+        [rho, pressure]: [f64; 2],
+    ) -> BTreeMap<String, [Range; 2]> {
+        let of = |(boundary, held): (&String, &Vec<crate::model::constraints::Held>)| {
+            let ranges = [0, 1].map(|c| {
+                // The reaction is the residual at this field.
+                let zero = PreciseBall::from(0);
+                let (mut test, mut reaction) = (vec![[zero; 2]; self.u.len()], zero);
+                for held in held {
+                    let direction = PreciseBall::from(held.direction[c]);
+                    for k in 0..2 {
+                        let part = direction * PreciseBall::from(held.dual[k]);
+                        test[held.node][k] += part;
+                        reaction += part * self.residual[held.node][k];
+                    }
+                }
+                let by_body = self.arithmetic.energy_norm(d, &test);
+                let by_contact = lines.iter().fold(PreciseBall::from(0), |sum, line| {
+                    let most = line.p0(&test).iter().fold(0.0, |sum, p| up(sum + p.magnitude()));
+                    sum + line.whole_weight() * PreciseBall::from(most) * PreciseBall::from(most)
+                });
+                let by_contact = root(by_contact);
+                range(reaction.widened(up((rho + self.off) * by_body + pressure * by_contact)))
+            });
+            (boundary.clone(), ranges)
+        };
+        let holders = d.constraints.holders();
+        if holders.len() > MOST_REACTIONS {
+            return BTreeMap::new();
+        }
+        holders.iter().map(of).collect()
+    }
+}
+
+/// Each reaction takes a pass over the body: with more displacement boundaries than these none is enclosed.
+const MOST_REACTIONS: usize = 64;
+
+fn range(ball: PreciseBall) -> Range {
+    [ball.lower(), ball.upper()]
+}

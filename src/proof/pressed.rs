@@ -1,0 +1,405 @@
+//! Strong contact: the pieces of Gamma_C that are surely pressed around the computed displacement, and the matrix A_S of (8)
+//! there. Where contact alone stops a rigid motion of the body, A is singular; A_S = A + the springs of those pieces S is not,
+//! and on a ball around the displacement in which they stay pressed (8) is strongly monotone in its norm. docs/theory.md, 7.5,
+//! has the proofs.
+//!
+//! |v|_S^2 = A(v, v) + int over S of P0(v)^2 / gamma
+//!
+//! The exact integral has the stretches of an edge between the roots of P for pieces, a Gauss rule its points.
+
+use std::ops::Range;
+
+use nalgebra::DMatrix;
+
+use crate::contact::law::Law;
+use crate::contact::piece::Stretch;
+use crate::contact::{Discretization, EdgeRule, Piece};
+use crate::kernel::Response;
+use crate::kernel::ball::{PreciseBall, up};
+use crate::kernel::edge_integral;
+use crate::model::Degree;
+use crate::proof::korn::{Hold, Term};
+
+/// A piece is taken for pressed where P is at least this share of the most that it is all along some piece; where that proves
+/// nothing, the next one: with all pieces that are pressed more holds the body, with fewer these stay pressed on a larger ball. With
+/// the first alone twelve of 2,000 bodies at random have no enclosure, with the first two nine, with all five.
+pub const SHARES: [f64; 3] = [0.0, 1.0 / 256.0, 1.0 / 16.0];
+
+/// This share of a stretch is left out at a root of P, where P is too small to stay positive: with none, stretches that end at a
+/// root hold nothing.
+const INSET: f64 = 1.0 / 64.0;
+
+/// Covers the rounding of a few sums, products and roots of positive doubles.
+const SAFETY: f64 = 1.001;
+
+/// r at the start and at the end of an edge, in a body of revolution: the weight of its integrals.
+type Radii = Option<[PreciseBall; 2]>;
+
+/// A weight times r at a place of an edge.
+fn weighted(radii: Radii, place: PreciseBall, weight: PreciseBall) -> PreciseBall {
+    radii.map_or(weight, |radii| weight * edge_integral::radius(radii, place))
+}
+
+/// The most that the square of a polynomial with `count` coefficients is on \[0, 1\] whose square has the integral 1 with the weight r:
+/// count^2 over the smaller r; or, as r is at least its larger value times the distance from the other end, count^2 (count + 1)^2 / 2
+/// over that (docs/theory.md, 11.5).
+fn most_in_revolution(count: usize, radii: [PreciseBall; 2]) -> f64 {
+    let [least, most] = [f64::min, f64::max].map(|of| of(radii[0].lower(), radii[1].lower()));
+    let (square, next) = ((count * count) as f64, ((count + 1) * (count + 1)) as f64);
+    let by_least = if least > 0.0 { square / least } else { f64::INFINITY };
+    up(by_least.min(square * next / 2.0 / most))
+}
+
+/// Values at the nodes of an edge, or what is multiplied by them.
+pub(super) type Row = Vec<PreciseBall>;
+
+/// A piece of an edge.
+pub(super) struct EdgePiece {
+    /// Where it starts and ends; a point does both at once.
+    ends: [f64; 2],
+    /// The coefficients on it, of a polynomial with given values at the nodes, that enclose the polynomial there (Bernstein's):
+    /// first its values at the ends.
+    coefficients: Vec<Row>,
+    /// The most that the square of a polynomial is on it whose square has the integral 1 over it; attained at the ends.
+    square: PreciseBall,
+    /// The integrals of N_a N_b over it.
+    pub(super) mass: Vec<Row>,
+    /// Its share of the edge: its length, or the weight of the point.
+    pub(super) share: PreciseBall,
+}
+
+/// What is pressed of one component on a piece of Gamma_C, or stuck: P is surely where it is integrated itself.
+struct PressedPart {
+    /// The piece.
+    edge: usize,
+    /// The numbers of the component's values among those of the piece.
+    values: Range<usize>,
+    /// Where the stretches start and end.
+    pieces: Vec<[f64; 2]>,
+    /// For each stretch the least that P is on it at the displacement, or is within the bound of friction, and the most that P0(v) is
+    /// beside |v|_S.
+    bounds: Vec<[f64; 2]>,
+    /// The shape functions of the piece at the ends of the stretches, and the most that P0(v) is there, beside |v|_S.
+    places: Vec<(Row, f64)>,
+    /// The integrals of N_a N_b over them.
+    mass: Vec<Row>,
+}
+
+/// S
+pub struct Pressed {
+    /// The number of pieces of Gamma_C.
+    count: usize,
+    /// What is in S.
+    parts: Vec<PressedPart>,
+}
+
+/// A stretch with the least that P is on it, or is within the bound of friction.
+type Measured = (f64, EdgePiece);
+
+/// What may be in S of one component on a piece: the piece, the numbers of the component's values, and stretches of it.
+type Found = (usize, Range<usize>, Vec<Measured>);
+
+impl EdgePiece {
+    /// The pieces of an edge on which all of these polynomials are positive; `inset` is the share of a stretch that is left out at a
+    /// root or a further cut.
+    pub(super) fn positive(
+        (degree, rule): (Degree, &EdgeRule),
+        radii: Radii,
+        all: &[Row],
+        (inset, cuts): (f64, &[f64]),
+    ) -> Vec<Self> {
+        let EdgeRule::Gauss(points) = rule else {
+            return Self::between_roots(degree, radii, all, (inset, cuts));
+        };
+        let at = |&(s, weight): &(f64, f64)| {
+            let (shapes, weight) = (
+                degree.edge_values(PreciseBall::from(s)),
+                weighted(radii, s.into(), weight.into()),
+            );
+            let mass = products(weight, &shapes);
+            EdgePiece {
+                ends: [s, s],
+                coefficients: vec![shapes],
+                square: PreciseBall::from(1) / weight,
+                mass,
+                share: weight,
+            }
+        };
+        points.iter().map(at).filter(|piece| piece.least(all) > 0.0).collect()
+    }
+
+    /// Those in the stretches between their roots and the further `cuts`.
+    fn between_roots(
+        degree: Degree,
+        radii: Radii,
+        all: &[Row],
+        (inset, cuts): (f64, &[f64]),
+    ) -> Vec<Self> {
+        let roots = |p: &Row| degree.roots(&p.iter().map(|p| p.head()).collect::<Vec<_>>());
+        let mut cuts: Vec<f64> = all.iter().flat_map(roots).chain(cuts.iter().copied()).collect();
+        cuts.extend([0.0, 1.0]);
+        cuts.sort_unstable_by(f64::total_cmp);
+        let stretch = |cut: &[f64]| {
+            let inset = inset * (cut[1] - cut[0]);
+            let start = if cut[0] > 0.0 { cut[0] + inset } else { 0.0 };
+            let end = if cut[1] < 1.0 { cut[1] - inset } else { 1.0 };
+            Self::between(degree, radii, [start, end])
+        };
+        let stretches = cuts.windows(2).filter(|cut| cut[0] < cut[1]);
+        stretches.map(stretch).filter(|piece| piece.least(all) > 0.0).collect()
+    }
+
+    /// The piece of an edge with these ends. Boole's rule is exact for the products. The square is at most the sum of 2 k + 1
+    /// over the length, for k up to the degree p: that is (p + 1)^2, as Legendre's polynomials are at most 1.
+    fn between(degree: Degree, radii: Radii, ends: [f64; 2]) -> Self {
+        let start = PreciseBall::from(ends[0]);
+        let length = PreciseBall::from(ends[1]) - start;
+        let place = |i: i32| start + PreciseBall::from(i) / PreciseBall::from(4) * length;
+        let at = |i: i32| degree.edge_values(place(i));
+        let coefficients = match degree {
+            Degree::One => vec![at(0), at(4)],
+            Degree::Two => {
+                let [two, half] = [2.0, 0.5].map(PreciseBall::from);
+                let ends = at(0).into_iter().zip(at(4));
+                let bend = at(2).into_iter().zip(ends).map(|(m, (a, b))| two * m - half * (a + b));
+                vec![at(0), at(4), bend.collect()]
+            }
+        };
+        let count = degree.nodes_per_edge();
+        let square = match radii {
+            None => PreciseBall::from((count * count) as i32) / length,
+            Some(_) => {
+                let radius = |i: i32| weighted(radii, place(i), PreciseBall::from(1));
+                PreciseBall::from(most_in_revolution(count, [radius(0), radius(4)])) / length
+            }
+        };
+        let mut mass = vec![vec![PreciseBall::from(0); count]; count];
+        for (i, weight) in [(0, 7), (1, 32), (2, 12), (3, 32), (4, 7)] {
+            let weight = length * PreciseBall::from(weight) / PreciseBall::from(90);
+            add(&mut mass, &products(weighted(radii, place(i), weight), &at(i)));
+        }
+        EdgePiece { ends, coefficients, square, mass, share: length }
+    }
+
+    /// The least coefficient of these polynomials, or less.
+    fn least(&self, all: &[Row]) -> f64 {
+        let of = |p: &Row| {
+            self.coefficients.iter().map(|c| dot(c, p).lower()).fold(f64::INFINITY, f64::min)
+        };
+        all.iter().map(of).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// What must be positive where a piece sticks: what P_t is within the bound on both sides. Nothing is said of what never sticks.
+fn stuck(line: &Piece<PreciseBall>, p: &[PreciseBall]) -> Option<[Row; 2]> {
+    let Law::Friction(bound) = line.geometry.law else { return None };
+    let bound = bound.at_nodes(line.gamma, line.along(p));
+    let pairs = || bound.iter().zip(line.across(p));
+    Some([pairs().map(|(&m, &p)| m - p).collect(), pairs().map(|(&m, &p)| m + p).collect()])
+}
+
+impl PressedPart {
+    /// The part of the piece `line`, of number `edge`, in these stretches, each with the least that P is there. `None` where there
+    /// are none.
+    fn new(
+        (edge, line): (usize, &Piece<PreciseBall>),
+        values: Range<usize>,
+        stretches: &[&Measured],
+    ) -> Option<Self> {
+        let mut mass = vec![vec![PreciseBall::from(0); values.len()]; values.len()];
+        stretches.iter().for_each(|(_, piece)| add(&mut mass, &piece.mass));
+        let most = |piece: &EdgePiece| SAFETY * root_of(line) * piece.square.upper().sqrt();
+        let bounds = stretches.iter().map(|(least, piece)| [*least, most(piece)]).collect();
+        // In the plane the most of the square of P0 is above that of the stress, which is affine.
+        let of_stress = SAFETY * root_of(line) * line.radii.map_or(0.0, |_| stress_factor(line));
+        let at_ends = |(_, piece): &&Measured| {
+            let (ends, most) = (piece.coefficients.iter().take(2), most(piece).max(of_stress));
+            ends.map(|shapes| (shapes.clone(), most)).collect::<Vec<_>>()
+        };
+        let places = stretches.iter().flat_map(at_ends).collect();
+        let pieces: Vec<[f64; 2]> = stretches.iter().map(|(_, piece)| piece.ends).collect();
+        let part = PressedPart { edge, values, pieces, bounds, places, mass };
+        (!part.pieces.is_empty()).then_some(part)
+    }
+}
+
+impl Pressed {
+    /// Nothing: |v|_S = |v|_A.
+    pub fn nowhere(count: usize) -> Self {
+        Pressed { count, parts: Vec::new() }
+    }
+
+    /// Finds the stretches that are surely pressed at the displacement `u`, those that have their `share` of the pressure; what pulls
+    /// as well as it pushes is pressed whatever P is. And those that surely stick, of which the least distance to the bound has its
+    /// share likewise. Coulomb's bound moves with P_n: whether S stays so is then not for [`Pressed::stay`] to say.
+    pub fn at(
+        d: &Discretization,
+        lines: &[Piece<PreciseBall>],
+        u: &[[PreciseBall; 2]],
+        share: f64,
+    ) -> Self {
+        let degree = d.space.degree();
+        let positive = |line: &Piece<PreciseBall>, all: &[Row]| -> Vec<Measured> {
+            let pieces = EdgePiece::positive((degree, &d.rule), line.radii, all, (INSET, &[]));
+            pieces.into_iter().map(|piece| (piece.least(all), piece)).collect()
+        };
+        let [mut pressed, mut sticking]: [Vec<Found>; 2] = Default::default();
+        for (edge, line) in lines.iter().enumerate() {
+            let p = line.p(u);
+            for (response, values) in line.responses() {
+                let pieces = match response {
+                    Response::Bilateral => {
+                        vec![(f64::INFINITY, EdgePiece::between(degree, line.radii, [0.0, 1.0]))]
+                    }
+                    Response::Unilateral => positive(line, &[p[values.clone()].to_vec()]),
+                };
+                pressed.push((edge, values, pieces));
+            }
+            if let Some(within) = stuck(line, &p) {
+                sticking.push((edge, degree.nodes_per_edge()..p.len(), positive(line, &within)));
+            }
+        }
+        let parts_of = |all: &[Found]| -> Vec<PressedPart> {
+            let leasts = all.iter().flat_map(|(.., pieces)| pieces).map(|(least, _)| *least);
+            let enough = share * leasts.filter(|least| least.is_finite()).fold(0.0, f64::max);
+            let part = |(edge, values, pieces): &Found| {
+                let taken = pieces.iter().filter(|(least, _)| *least >= enough);
+                PressedPart::new((*edge, &lines[*edge]), values.clone(), &taken.collect::<Vec<_>>())
+            };
+            all.iter().filter_map(part).collect()
+        };
+        let mut parts = parts_of(&pressed);
+        parts.extend(parts_of(&sticking));
+        Pressed { count: lines.len(), parts }
+    }
+
+    /// For each piece of Gamma_C whether something of it is in S.
+    pub fn edges(&self) -> impl Iterator<Item = bool> {
+        (0..self.count).map(|e| self.parts.iter().any(|part| part.edge == e))
+    }
+
+    /// The stretches of piece `e` that are pressed in S, where they start and end on \[0, 1\].
+    pub fn pieces(&self, e: usize) -> &[[f64; 2]] {
+        let is_pressed = |part: &&PressedPart| part.edge == e && part.values.start == 0;
+        self.parts.iter().find(is_pressed).map_or(&[], |part| &part.pieces)
+    }
+
+    /// Returns whether it is empty.
+    pub fn is_nowhere(&self) -> bool {
+        self.parts.is_empty()
+    }
+
+    /// Returns whether all of S stays pressed on a ball of radius `rho` and a little more.
+    pub fn stay(&self, rho: f64) -> bool {
+        let mut all = self.parts.iter().flat_map(|part| &part.bounds);
+        all.all(|[least, most]| *least > SAFETY * most * rho)
+    }
+
+    /// The holds of S: sums of n~ . v, or across n~ where it sticks, at the places of its nodes, less those on the other side, each
+    /// times its shape function at a place of the piece: the jump is P0(v) + gamma s(v), for |v|_S (1 - kappa)^{-1/2} <= 1 at most what
+    /// P0(v) is beside |v|_S.
+    pub fn holds(&self, d: &Discretization, lines: &[Piece<PreciseBall>]) -> Vec<Hold> {
+        let mut holds = Vec::new();
+        for part in &self.parts {
+            let line = &lines[part.edge];
+            for (shapes, most) in &part.places {
+                let mut terms = Vec::new();
+                for (side, stretch) in line.geometry.stretches.iter().enumerate() {
+                    for (i, &shape) in part.values.clone().zip(shapes) {
+                        let at = place_in_balls(d, stretch, i % line.degree.nodes_per_edge());
+                        let direction: [PreciseBall; 2] = line.direction_of(i).into();
+                        let along = direction.map(|n| (shape * n).rounded());
+                        let along = if side == 0 { along } else { along.map(|n| -n) };
+                        let triangle = stretch.edge.triangle;
+                        terms.push(Term { triangle, at: at.map(PreciseBall::rounded), along });
+                    }
+                }
+                holds.push(Hold { terms, most: *most });
+            }
+        }
+        holds
+    }
+
+    /// For each piece of Gamma_C the matrix of its springs, in doubles.
+    pub fn springs(&self, lines: &[Piece<PreciseBall>]) -> Vec<DMatrix<f64>> {
+        let nothing = |line: &Piece<PreciseBall>| DMatrix::zeros(line.p0.len(), line.p0.len());
+        let mut springs: Vec<DMatrix<f64>> = lines.iter().map(nothing).collect();
+        for part in &self.parts {
+            let weight = lines[part.edge].weight().head();
+            for (i, row) in part.values.clone().zip(&part.mass) {
+                for (j, mass) in part.values.clone().zip(row) {
+                    springs[part.edge][(i, j)] = weight * mass.head();
+                }
+            }
+        }
+        springs
+    }
+
+    /// Adds what the springs of S do against v, the integral over S of P0(v) P0(w) / gamma for every basis function w.
+    pub fn add_springs(
+        &self,
+        lines: &[Piece<PreciseBall>],
+        v: &[[PreciseBall; 2]],
+        forces: &mut [[PreciseBall; 2]],
+    ) {
+        for part in &self.parts {
+            let line = &lines[part.edge];
+            let (weight, p0) = (line.weight(), line.p0(v)[part.values.clone()].to_vec());
+            let springs: Row = part.mass.iter().map(|row| weight * dot(row, &p0)).collect();
+            line.each_force(&line.p0[part.values.clone()], &springs, |node, f| {
+                forces[node] = [forces[node][0] + f[0], forces[node][1] + f[1]];
+            });
+        }
+    }
+}
+
+/// The place of a node of a piece on an edge: vertices are exact.
+fn place_in_balls(d: &Discretization, stretch: &Stretch, a: usize) -> [PreciseBall; 2] {
+    let mesh = d.space.mesh();
+    let [start, end] = mesh.ends(stretch.edge).map(|v| mesh.vertices()[v].map(PreciseBall::from));
+    let s = stretch.positions[a];
+    match s {
+        0.0 => start,
+        1.0 => end,
+        0.5 => [0, 1].map(|c| (start[c] + end[c]) * PreciseBall::from(0.5)),
+        _ => [0, 1].map(|c| start[c] + (end[c] - start[c]) * PreciseBall::from(s)),
+    }
+}
+
+fn dot(a: &Row, b: &Row) -> PreciseBall {
+    a.iter().zip(b).fold(PreciseBall::from(0), |sum, (&a, &b)| sum + a * b)
+}
+
+fn add(sum: &mut [Row], other: &[Row]) {
+    for (sum, &other) in sum.iter_mut().flatten().zip(other.iter().flatten()) {
+        *sum += other;
+    }
+}
+
+/// weight a b for all values a and b.
+fn products(weight: PreciseBall, values: &[PreciseBall]) -> Vec<Row> {
+    values.iter().map(|&a| values.iter().map(|&b| weight * a * b).collect()).collect()
+}
+
+/// (gamma / |E|)^{1/2}
+fn root_of(line: &Piece<PreciseBall>) -> f64 {
+    up((line.gamma / line.length).upper().sqrt())
+}
+
+/// An upper bound of a polynomial on an edge by its Bernstein coefficients, from its values at the nodes.
+pub fn greatest(degree: Degree, p: &[PreciseBall]) -> f64 {
+    degree.bernstein(p).iter().map(|p| p.upper()).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// How much P0(v) is along a piece at most where |v| is at most `far` at the nodes of its edges, added up over its sides, and
+/// `radius` in the energy norm a: gamma |s(v)| is at most 2 (gamma / |E|)^{1/2} |v|_a in the plane, and n~ . v at most 5/4 of the largest nodal
+/// value; where the nodes of the piece are not those of the edge, that twice.
+pub fn change(line: &Piece<PreciseBall>, far: f64, radius: f64) -> f64 {
+    let spread = if line.sides.len() == 1 { 1.25 } else { 1.25 * 1.25 };
+    up(SAFETY * (spread * far + stress_factor(line) * root_of(line) * radius))
+}
+
+/// The most that an affine function is on an edge whose square has the integral 1 over \[0, 1\], with the weight.
+fn stress_factor(line: &Piece<PreciseBall>) -> f64 {
+    line.radii.map_or(2.0, |radii| up(most_in_revolution(2, radii).sqrt()))
+}

@@ -1,0 +1,436 @@
+//! Forces of a displacement from stresses in doubles, off by no more than a proved norm: docs/theory.md, 7.5. They take a
+//! fraction of the time of [`add_internal_forces`](crate::contact::residual::add_internal_forces) in balls.
+
+use nalgebra::{Matrix2, Vector2, Vector3};
+
+use crate::contact::discretization::Discretization;
+use crate::contact::residual::exactly;
+use crate::kernel::axial;
+use crate::kernel::ball::up;
+use crate::kernel::double_double::{DoubleDouble, Multiplier};
+use crate::kernel::element::displacement_gradient;
+use crate::kernel::{Element, Material, PreciseBall, Stress, Triangle};
+use crate::model::element::with_element;
+use crate::model::material::{Materials, largest_entry, least_eigenvalue};
+
+/// Adds int s:eps(v) for every basis function v, where s is the stress of `u` that doubles give. Returns a b with
+/// |int (s - sigma(u)):eps(v)| <= b |v|_a for all v: docs/theory.md, 7.5. Infinite or NaN where there is none.
+pub fn add_forces(
+    d: &Discretization,
+    u: &[[PreciseBall; 2]],
+    forces: &mut [[PreciseBall; 2]],
+) -> f64 {
+    each_force(d, u, |node, part| {
+        let (stress, normal) = match part {
+            Part::Meridian { stress, normal } => (stress, normal),
+            Part::Hoop { stress, area } => {
+                forces[node][0] += PreciseBall::from(stress) * area;
+                return;
+            }
+        };
+        let [xx, yy, xy] = stress.map(|s| Multiplier::from(DoubleDouble::from(s)));
+        let [x, y] = normal.map(Multiplier::from);
+        for (force, products) in
+            forces[node].iter_mut().zip([[(xx, x), (xy, y)], [(xy, x), (yy, y)]])
+        {
+            let (sum, error) = force.centre().rounded_sum_with_products(products);
+            *force = PreciseBall::around(sum, up(force.radius() + error));
+        }
+    })
+}
+
+/// [`add_forces`] with sums in doubles, their rounding in the radii: for displacements that are next to nothing.
+pub fn add_small_forces(
+    d: &Discretization,
+    u: &[[PreciseBall; 2]],
+    forces: &mut [[PreciseBall; 2]],
+) -> f64 {
+    let mut sums = vec![[RoundedSum::default(); 2]; forces.len()];
+    let bound = each_force(d, u, |node, part| match part {
+        Part::Meridian { stress: [xx, yy, xy], normal } => {
+            let [x, y] = normal.map(DoubleDouble::head);
+            sums[node][0].add([xx * x, xy * y]);
+            sums[node][1].add([xy * x, yy * y]);
+        }
+        // The radius of an area is far below a unit of it.
+        Part::Hoop { stress, area } => sums[node][0].add([stress * area.head(), 0.0]),
+    });
+    for (force, sum) in forces.iter_mut().zip(&sums) {
+        *force = [0, 1].map(|c| force[c] + sum[c].enclosed());
+    }
+    bound
+}
+
+/// A sum of products of doubles, and what it is off by at most in units of roundoff.
+#[derive(Clone, Copy, Debug, Default)]
+struct RoundedSum {
+    value: f64,
+    error: f64,
+}
+
+impl RoundedSum {
+    /// Adds two products, of which one factor was rounded. Each is off by two units of itself, their sum by one of its own.
+    #[inline]
+    fn add(&mut self, products: [f64; 2]) {
+        self.value += products[0] + products[1];
+        self.error += self.value.abs() + 3.0 * (products[0].abs() + products[1].abs());
+    }
+
+    fn enclosed(self) -> PreciseBall {
+        let off = if self.error == 0.0 { 0.0 } else { UNIT * self.error + f64::MIN_POSITIVE };
+        PreciseBall::from(self.value).widened(SAFETY * off)
+    }
+}
+
+/// Half of the distance from 1 to the next double.
+const UNIT: f64 = f64::EPSILON / 2.0;
+
+/// A part of the force on a node.
+enum Part {
+    /// The components xx, yy, xy of a combination of the stresses on a triangle, exactly, and half of a normal of it, on which they
+    /// act.
+    Meridian { stress: [f64; 3], normal: [DoubleDouble; 2] },
+    /// A combination of hoop stresses, exactly, and the share of the triangle's area on which it acts, along r.
+    Hoop { stress: f64, area: PreciseBall },
+}
+
+/// Calls `add` with the parts of the forces of the stress s that doubles give for `u`. Returns the bound of [`add_forces`].
+fn each_force(d: &Discretization, u: &[[PreciseBall; 2]], add: impl FnMut(usize, Part)) -> f64 {
+    with_element!(d.space.degree(), E => each_force_of::<E, _, _>(d, u, add))
+}
+
+fn each_force_of<E: Element<N, M>, const N: usize, const M: usize>(
+    d: &Discretization,
+    u: &[[PreciseBall; 2]],
+    mut add: impl FnMut(usize, Part),
+) -> f64 {
+    let mut points = Vec::new();
+    E::at_stiffness_points(|l: [f64; 3], weight: f64| points.push((l, weight)));
+    let terms = Term::all::<E, M>(&points);
+    let moduli = Moduli::of_each(&d.problem.material);
+    let hoop_terms = HoopTerm::all::<E, N, M>();
+    let mut stresses = [[0.0; 3]; N];
+    let mut square = 0.0;
+    for (t, (triangle, nodes)) in d.space.triangles::<N>().enumerate() {
+        let material = d.problem.material.of(t);
+        let radii = material.radii(&triangle);
+        let is_still = |node: &usize| u[*node][0].magnitude() == 0.0;
+        if moves_as_a_whole(nodes, u) && (radii.is_none() || nodes.iter().all(is_still)) {
+            continue;
+        }
+        let nodal = nodes.map(|node| u[node]);
+        let rounded = RoundedStrain::new::<E, M>(Gradients::new(&triangle), nodal);
+        let moduli = &moduli[d.problem.material.place_of(t)];
+        if let Some(radii) = radii {
+            let hoop = RoundedHoop::new::<E, N, M>(radii, nodal);
+            square += rounded.error_squared_of_revolution(&hoop, moduli);
+            let mut states = [(Stress::new([0.0; 3]), 0.0); 3];
+            for (a, &(l, _)) in points.iter().enumerate() {
+                let gradient = rounded.gradient::<E, M>(l);
+                states[a] = material.stress_of_revolution(gradient, hoop.strains[a]);
+            }
+            for (b, at) in stresses.iter_mut().enumerate().take(points.len()) {
+                *at = axial::weighted(&hoop.mass, &states, b, points.len()).components();
+            }
+            let mut hoops = [states.map(|(_, hoop)| hoop)];
+            if points.len() > 1 {
+                make_sums_exact(&mut hoops);
+            }
+            let double_area = exactly::<PreciseBall>(triangle).double_area();
+            for HoopTerm { node, share, coefficients } in &hoop_terms {
+                let pairs = coefficients.iter().zip(hoops[0]);
+                let stress = pairs.fold(0.0, |sum, (share, stress)| sum + share * stress);
+                add(nodes[*node], Part::Hoop { stress, area: double_area * *share });
+            }
+        } else {
+            square += rounded.stress_error_squared(moduli);
+            for (&(l, weight), at) in points.iter().zip(&mut stresses) {
+                *at = rounded.stress::<E, M>(material, l).components().map(|s| weight * s);
+            }
+        }
+        if points.len() > 1 {
+            make_sums_exact(&mut stresses);
+        }
+        // The area times the gradient of a barycentric coordinate is half a normal.
+        let normals = [0, 1, 2].map(|i| {
+            let [from, to] = [1, 2].map(|k| triangle.vertices[(i + k) % 3] * 0.5);
+            [DoubleDouble::sum(from[1], -to[1]), DoubleDouble::sum(to[0], -from[0])]
+        });
+        for Term { node, side, coefficients } in &terms {
+            let mut sum = [0.0; 3];
+            for (coefficient, stress) in coefficients.iter().zip(&stresses).take(points.len()) {
+                for (sum, s) in sum.iter_mut().zip(stress) {
+                    *sum += coefficient * s;
+                }
+            }
+            add(nodes[*node], Part::Meridian { stress: sum, normal: normals[*side] });
+        }
+    }
+    SAFETY * square.sqrt()
+}
+
+/// The part of the force at a node of a triangle that has the direction of one of its sides: the stresses at the points of the
+/// rule, each times its coefficient, on half the normal there.
+struct Term<const N: usize> {
+    node: usize,
+    side: usize,
+    coefficients: [f64; N],
+}
+
+impl<const N: usize> Term<N> {
+    /// Those that are not zero. At the points of the rules the gradients of the shape functions are sums of those of the
+    /// barycentric coordinates, each once or twice, with either sign.
+    fn all<E: Element<N, M>, const M: usize>(points: &[([f64; 3], f64)]) -> Vec<Term<N>> {
+        let unit = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let at: Vec<[Vector3<f64>; N]> =
+            points.iter().map(|&(l, _)| E::gradients(l, unit)).collect();
+        let term = |node: usize, side: usize| {
+            let mut coefficients = [0.0; N];
+            for (coefficient, gradients) in coefficients.iter_mut().zip(&at) {
+                *coefficient = gradients[node][side];
+            }
+            Term { node, side, coefficients }
+        };
+        let all = (0..N).flat_map(|node| (0..3).map(move |side| term(node, side)));
+        all.filter(|term| term.coefficients != [0.0; N]).collect()
+    }
+}
+
+/// The part of the force at a node of a triangle that its hoop stresses make: these at the points of the rule, each times its
+/// coefficient, on a share of twice the area.
+struct HoopTerm {
+    node: usize,
+    share: PreciseBall,
+    coefficients: [f64; 3],
+}
+
+impl HoopTerm {
+    /// Those of all nodes. The [shares](axial::shares) of a node are small multiples of one of them.
+    fn all<E: Element<N, M>, const N: usize, const M: usize>() -> Vec<Self> {
+        let shares = axial::shares::<E, N, M>();
+        let term = |node: usize| {
+            let of = shares.map(|row| row[node]);
+            let unit = of.into_iter().filter(|share| *share != 0).map(i32::abs).min().unwrap_or(1);
+            let share = PreciseBall::from(unit) / PreciseBall::from(60);
+            HoopTerm { node, share, coefficients: of.map(|share| f64::from(share / unit)) }
+        };
+        (0..N).map(term).collect()
+    }
+}
+
+/// Rounds numbers to multiples of one power of two, by no more than 2^-50 of the largest: their sums are then exact, while these
+/// are less than eight times the largest.
+fn make_sums_exact<const N: usize>(numbers: &mut [[f64; 3]; N]) {
+    let largest = numbers.iter().flatten().fold(0.0, |m: f64, s| m.max(s.abs()));
+    // The power of two just below.
+    let power = f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits());
+    let shift = 12.0 * power;
+    numbers.iter_mut().flatten().for_each(|s| *s = (*s + shift) - shift);
+}
+
+/// |v|_a at most, from the magnitudes of the nodal values: sigma:eps is at most |sigma| |eps|. For fields that are next to nothing, or
+/// vanish but near a boundary.
+pub(crate) fn energy_norm_at_most(d: &Discretization, v: &[[PreciseBall; 2]]) -> f64 {
+    with_element!(d.space.degree(), E => energy_norm_of::<E, _, _>(d, v))
+}
+
+fn energy_norm_of<E: Element<N, M>, const N: usize, const M: usize>(
+    d: &Discretization,
+    v: &[[PreciseBall; 2]],
+) -> f64 {
+    let moduli = Moduli::of_each(&d.problem.material);
+    let mut square = 0.0;
+    for (t, (triangle, nodes)) in d.space.triangles::<N>().enumerate() {
+        let size: f64 = nodes.iter().flat_map(|&node| v[node]).map(PreciseBall::magnitude).sum();
+        if size != 0.0 {
+            let gradients = Gradients::new(&triangle);
+            let mut strain = E::DEGREE as f64 * gradients.slope * size;
+            let mut weight = gradients.area;
+            if let Some([a, b, c]) = d.problem.material.of(t).radii(&triangle) {
+                strain += 7.0 * size / (a + b + c);
+                weight *= a + b + c;
+            }
+            let most = moduli[d.problem.material.place_of(t)].most;
+            square += most * strain * strain * weight + f64::MIN_POSITIVE;
+            square += if gradients.skew.is_finite() { 0.0 } else { f64::INFINITY };
+        }
+    }
+    SAFETY * square.sqrt()
+}
+
+/// Returns whether all nodes have the same value, and that is known.
+#[inline]
+fn moves_as_a_whole<const N: usize>(nodes: &[usize; N], u: &[[PreciseBall; 2]]) -> bool {
+    let first = u[nodes[0]];
+    first.iter().all(|c| c.radius() == 0.0) && nodes[1..].iter().all(|&node| u[node] == first)
+}
+
+/// Covers the rounding of sums and products of positive numbers, some million of them, and areas that are off by a thousandth.
+const SAFETY: f64 = 1.01;
+
+/// A triangle is too flat for doubles where the products that its area is the difference of are larger beside it: a hypothesis of the
+/// analysis, which leaves such triangles to balls.
+const FLAT: f64 = (1_u64 << 40) as f64;
+
+/// Bounds of the law of a material.
+struct Moduli {
+    /// |A m|_F is at most this times the sum of the magnitudes of the entries of m.
+    most: f64,
+    /// A - this is elliptic.
+    least: f64,
+}
+
+impl Moduli {
+    fn of_each(materials: &Materials) -> Vec<Self> {
+        materials.distinct().iter().map(Moduli::new).collect()
+    }
+
+    fn new(material: &Material<f64>) -> Self {
+        let most = if material.is_isotropic() {
+            2.0 * (material.lambda().abs() + material.mu())
+        } else {
+            4.0 * largest_entry(material)
+        };
+        Moduli { most, least: least_eigenvalue(material) }
+    }
+}
+
+/// The gradients of the barycentric coordinates of a triangle, in doubles.
+#[derive(Clone, Copy)]
+struct Gradients {
+    barycentric: [Vector2<f64>; 3],
+    area: f64,
+    /// The products that the area is the difference of, beside it; infinite for a triangle that is too flat for doubles.
+    skew: f64,
+    /// The sum of the magnitudes of the gradients.
+    slope: f64,
+}
+
+impl Gradients {
+    fn new(triangle: &Triangle<f64>) -> Self {
+        let [a, b] = [1, 2].map(|i| triangle.edge(i));
+        let double_area = triangle.double_area();
+        let products = (a[0] * b[1]).abs() + (a[1] * b[0]).abs();
+        let inverse = 1.0 / double_area;
+        let skew = products * inverse;
+        let barycentric = [0, 1, 2].map(|i| triangle.scaled_normal(i) * -inverse);
+        let slope = barycentric.iter().flatten().map(|g| g.abs()).sum::<f64>();
+        let sound = double_area > 1e-200 && skew <= FLAT;
+        let skew = if sound { skew } else { f64::INFINITY };
+        Gradients { barycentric, area: double_area / 2.0, skew, slope }
+    }
+}
+
+/// The hoop strain on a triangle in doubles, with what bounds its rounding.
+struct RoundedHoop {
+    /// At the points of the rule.
+    strains: [f64; 3],
+    /// The [mass](axial::mass) of its weight.
+    mass: [[f64; 3]; 3],
+    /// The sum of the radii, which bounds the weight.
+    radii: f64,
+    /// A bound of the error of the strain.
+    error: f64,
+}
+
+impl RoundedHoop {
+    fn new<E: Element<N, M>, const N: usize, const M: usize>(
+        radii: [f64; 3],
+        nodal: [[PreciseBall; 2]; N],
+    ) -> Self {
+        let radial = nodal.map(|u| u[0].head());
+        let mass = axial::mass::<E, _, _, _>(radii);
+        let means = axial::means::<E, _, _, _>(&radial);
+        let strains = axial::projected(&mass, means, E::POINTS);
+        let points = strains.iter().take(E::POINTS);
+        let left = (0..E::POINTS).map(|a| {
+            let product = (0..E::POINTS).fold(-means[a], |sum, b| sum + mass[a][b] * strains[b]);
+            product.abs()
+        });
+        let (left, largest): (f64, f64) =
+            (left.sum(), points.fold(0.0, |m, s| f64::max(m, s.abs())));
+        let radii = radii.iter().sum::<f64>();
+        let sizes: f64 = radial.iter().map(|u| u.abs()).sum();
+        let off: f64 = nodal.iter().map(|u| u[0].radius() + u[0].centre().tail().abs()).sum();
+        let rounding = 8.0 * f64::EPSILON * (radii * largest + sizes);
+        // The least eigenvalue of the mass.
+        let least = if E::POINTS == 1 { radii / 3.0 } else { radii / 20.0 };
+        let error = (left + rounding + off + f64::MIN_POSITIVE) / least;
+        RoundedHoop { strains, mass, radii, error: error + f64::EPSILON * largest }
+    }
+
+    /// The largest magnitude of the strain.
+    fn largest(&self) -> f64 {
+        self.strains.iter().fold(0.0, |most: f64, strain| most.max(strain.abs()))
+    }
+}
+
+/// The differences of nodal values on a triangle in doubles, with what bounds their rounding.
+struct RoundedStrain<const N: usize> {
+    /// Nodal values less the first one.
+    differences: [Vector2<f64>; N],
+    gradients: Gradients,
+    /// A bound of the sum of the magnitudes of its entries.
+    size: f64,
+    /// A bound of the error of the strain, the rounding of the stress beside it included; infinite for a flat triangle.
+    error: f64,
+}
+
+impl<const N: usize> RoundedStrain<N> {
+    fn new<E: Element<N, M>, const M: usize>(
+        gradients: Gradients,
+        nodal: [[PreciseBall; 2]; N],
+    ) -> Self {
+        let first = nodal[0];
+        let difference = |u: [PreciseBall; 2], c: usize| {
+            (u[c].head() - first[c].head()) + (u[c].centre().tail() - first[c].centre().tail())
+        };
+        let differences = nodal.map(|u| Vector2::new(difference(u, 0), difference(u, 1)));
+        // What the differences are off by, beside what is relative to them.
+        let off: f64 = nodal
+            .iter()
+            .flat_map(|u| u.iter().zip(&first))
+            .map(|(u, first)| {
+                let tails = u.centre().tail().abs() + first.centre().tail().abs();
+                2.0 * f64::EPSILON * tails + u.radius() + first.radius()
+            })
+            .sum();
+        let slope = E::DEGREE as f64 * gradients.slope;
+        let sizes: f64 = differences.iter().flatten().map(|d| d.abs()).sum();
+        let roundings = (N + 7 * E::DEGREE - 3) as f64 + 4.0 * gradients.skew;
+        let error = slope * (f64::EPSILON * roundings * sizes + off + f64::MIN_POSITIVE);
+        let error = if gradients.skew.is_finite() { error } else { f64::INFINITY };
+        RoundedStrain { differences, gradients, size: slope * sizes, error }
+    }
+
+    /// An upper bound of the square of the stress error in the norm dual to |v|_a on the triangle: |sigma:eps| is at most
+    /// |sigma| |eps|, and the least eigenvalue of A times |eps|^2 at most sigma(v):eps(v). The rounding of the three products of an entry of
+    /// sigma is no more than that of the strain.
+    fn stress_error_squared(&self, moduli: &Moduli) -> f64 {
+        let off = moduli.most * self.error + f64::MIN_POSITIVE;
+        off * off * (self.gradients.area / moduli.least) + f64::MIN_POSITIVE
+    }
+
+    /// [`RoundedStrain::stress_error_squared`] in a body of revolution: the hoop strain, the weights and the roundings to multiples of
+    /// a power of two have their own errors, all of them relative to the largest stress (docs/theory.md, 11.5).
+    fn error_squared_of_revolution(&self, hoop: &RoundedHoop, moduli: &Moduli) -> f64 {
+        let rounding = 64.0 * f64::EPSILON * (self.size + hoop.largest());
+        let off = moduli.most * (self.error + hoop.error + rounding) + f64::MIN_POSITIVE;
+        off * off * (self.gradients.area * hoop.radii / moduli.least) + f64::MIN_POSITIVE
+    }
+
+    /// The displacement gradient at the point with the barycentric coordinates `l`.
+    fn gradient<E: Element<N, M>, const M: usize>(&self, l: [f64; 3]) -> Matrix2<f64> {
+        let gradients = E::gradients(l, self.gradients.barycentric);
+        displacement_gradient(&self.differences, &gradients)
+    }
+
+    /// The stress there.
+    fn stress<E: Element<N, M>, const M: usize>(
+        &self,
+        material: &Material<f64>,
+        l: [f64; 3],
+    ) -> Stress<f64> {
+        material.stress(self.gradient::<E, M>(l))
+    }
+}

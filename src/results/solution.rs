@@ -1,0 +1,530 @@
+//! A discrete solution: stresses, the contact line, resultants and reactions.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+#[cfg(feature = "files")]
+use serde::{Deserialize, Serialize};
+
+use super::answers::{self, ContactBoundary, EnergyBalance};
+use super::whole::of_the_whole;
+use super::{MethodReport, NewtonReport, Report, Verdict};
+use crate::contact::Piece;
+use crate::contact::contact_line::{Coercivity, Gamma};
+use crate::contact::discretization::Discretization;
+use crate::contact::piece::PieceNode;
+use crate::held::solvability::Play;
+use crate::kernel::DoubleDouble;
+use crate::kernel::Stress;
+use crate::kernel::contact::pressure;
+use crate::linear::dense::inner;
+use crate::model::Degree;
+use crate::proof::enclosure::{Enclosure, Unproved};
+use crate::proof::intervals::{Intervals, Range};
+use crate::solve::iterate::Evaluated;
+
+/// The solution of method (8), independent of the element that it was computed with.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Solution {
+    /// The polynomial degree.
+    pub degree: Degree,
+    /// The places of the nodes: the vertices of the mesh first.
+    pub nodes: Vec<[f64; 2]>,
+    /// The nodes of the triangles, `nodes_per_triangle` for each, in the order of [`Element`](crate::kernel::Element).
+    pub elements: Vec<usize>,
+    /// 3 or 6.
+    pub nodes_per_triangle: usize,
+    /// u^h at the nodes.
+    pub displacement: Vec<[f64; 2]>,
+    /// The mean stress on each triangle, with sigma_zz; in a body of revolution the stress in the meridian, with the hoop stress.
+    pub stress: Vec<(Stress<f64>, f64)>,
+    /// The von Mises stress of the mean stress on each triangle.
+    pub von_mises: Vec<f64>,
+    /// The edges of Gamma_C that face obstacles, chained along the boundary.
+    pub contact: Vec<ContactEdgeValues>,
+    /// The pieces of Gamma_C between two bodies, along the boundaries of the first ones.
+    pub between: Vec<PieceValues>,
+    /// The pieces of Gamma_C with what method (8) has on them.
+    pub pieces: Vec<Piece>,
+    /// gamma0, kappa and where the limit comes from.
+    pub gamma: GammaReport,
+    /// How Newton's method went.
+    pub newton: NewtonReport,
+    /// By which route, and how accurately.
+    pub method: MethodReport,
+    /// How far the body may still move where contact holds it: the motions that neither supports nor what presses stops.
+    pub plays: Vec<Play>,
+    /// Where the exact solution of (8) is, or why nothing is proved of it.
+    pub enclosure: Result<Enclosure, Unproved>,
+    /// *Proved* if the distance from it is proved to be as small as asked for.
+    pub verdict: Verdict,
+    /// Energies, forces, lengths.
+    pub quantities: Quantities,
+    /// The quantities of each part of Gamma_C.
+    pub boundaries: Vec<ContactBoundary>,
+    /// Where the energy comes from.
+    pub balance: EnergyBalance,
+    /// The largest principal strain, in magnitude, of the mean strain on a triangle.
+    pub largest_strain: f64,
+    /// Where that is: the middle of the triangle, in the undeformed body.
+    pub largest_strain_at: [f64; 2],
+}
+
+/// gamma0 and the coercivity number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct GammaReport {
+    /// gamma along Gamma_C.
+    pub gamma: Gamma,
+    /// gamma0 of (7), or the smallest where each triangle has its own, in 1 / stress.
+    pub gamma0: f64,
+    /// kappa = gamma0 C_h.
+    pub kappa: f64,
+    /// C_h and the edge that sets it.
+    pub coercivity: Coercivity,
+}
+
+/// One edge of Gamma_C: its nodes and the values there, in order along the edge.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ContactEdgeValues {
+    /// The triangle that owns the edge.
+    pub triangle: usize,
+    /// The name of its boundary.
+    pub boundary: Arc<str>,
+    /// The unit outward normal n.
+    pub normal: [f64; 2],
+    /// The nodes in order along the edge (for P2 with the midpoint in the middle).
+    pub points: Vec<ContactValues>,
+}
+
+/// The values at a node of a contact edge, as its edge has them: sigma_n jumps from edge to edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ContactValues {
+    /// The node.
+    pub node: usize,
+    /// n~, the direction of contact.
+    pub direction: [f64; 2],
+    /// Arc length along the boundary from the start of its first edge.
+    pub arc: f64,
+    /// u_n = u . n~
+    pub u_n: f64,
+    /// g
+    pub gap: f64,
+    /// n~ . sigma(u^h) n
+    pub sigma_n: f64,
+    /// lambda^h = -(1/gamma) \[P(u^h)\]+
+    pub lambda: f64,
+    /// The recovered pressure ([`super::answers`]), the one to report.
+    pub pressure: f64,
+    /// u_t = u . t, t being n~ turned to the left.
+    pub u_t: f64,
+    /// The shear stress of friction along t.
+    pub shear: f64,
+}
+
+/// A piece of Gamma_C between two bodies.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct PieceValues {
+    /// The names of the two boundaries.
+    pub boundaries: [Arc<str>; 2],
+    /// The nodes in order along the first one (for P2 with the middle in the middle).
+    pub points: Vec<PieceNodeValues>,
+}
+
+/// The values at a node of a piece between two bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct PieceNodeValues {
+    /// The places on the edges of the two bodies, undeformed.
+    pub at: [[f64; 2]; 2],
+    /// u^h there, of each body.
+    pub displacement: [[f64; 2]; 2],
+    /// n~, the direction of contact, from the first body to the second.
+    pub direction: [f64; 2],
+    /// Arc length along the pieces of the pair from the start of the first one.
+    pub arc: f64,
+    /// The jump of u . n~
+    pub u_n: f64,
+    /// g
+    pub gap: f64,
+    /// The mean of n~ . sigma(u^h) n on the two sides that (8) has.
+    pub sigma_n: f64,
+    /// lambda^h
+    pub lambda: f64,
+    /// The recovered pressure ([`super::answers`]), the one to report.
+    pub pressure: f64,
+    /// u_t, the jump of u . t, t being n~ turned to the left.
+    pub u_t: f64,
+    /// The shear stress of friction on the first body along t.
+    pub shear: f64,
+}
+
+/// A point of a contact boundary, of an edge that faces an obstacle or of a side of a pair of bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ContactPoint<'s> {
+    /// The name of the boundary.
+    pub boundary: &'s str,
+    /// The node, if it is one.
+    pub node: Option<usize>,
+    /// Arc length along the boundary, or along the pieces of the pair.
+    pub arc: f64,
+    /// The place in the undeformed body.
+    pub place: [f64; 2],
+    /// u^h there.
+    pub displacement: [f64; 2],
+    /// n~, the direction of contact, out of the body.
+    pub direction: [f64; 2],
+    /// u . n~, or the jump of that.
+    pub u_n: f64,
+    /// g
+    pub gap: f64,
+    /// n~ . sigma(u^h) n, or the mean of it that (8) has.
+    pub sigma_n: f64,
+    /// lambda^h
+    pub lambda: f64,
+    /// The recovered pressure.
+    pub pressure: f64,
+    /// u . t, or the jump of that, t being n~ turned to the left.
+    pub u_t: f64,
+    /// The shear stress of friction along t.
+    pub shear: f64,
+}
+
+/// Scalars of a solution, in the units of the case.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
+#[non_exhaustive]
+pub struct Quantities {
+    /// a(u, u), twice the elastic energy.
+    #[cfg_attr(feature = "files", serde(rename = "a_uu", alias = "energy"))]
+    pub energy: f64,
+    /// The elastic energy, a(u, u) / 2; 0 in a result that does not say so.
+    #[cfg_attr(feature = "files", serde(default))]
+    pub elastic_energy: f64,
+    /// L(u)
+    pub work: f64,
+    /// The largest Euclidean norm of u over the nodes.
+    pub max_displacement: f64,
+    /// -int lambda^h over all of Gamma_C, pairs of bodies included: a sum of magnitudes, whatever their directions
+    pub contact_force: f64,
+    /// int lambda^h n~: the force of all obstacles on the body
+    pub contact_resultant: [f64; 2],
+    /// The measure of {P > 0}.
+    pub contact_length: f64,
+    /// max -lambda^h over Gamma_C
+    pub peak_pressure: f64,
+    /// The force of each displacement boundary on the body.
+    pub reactions: BTreeMap<String, [f64; 2]>,
+    /// The moment of each of these about the origin, counter-clockwise.
+    #[cfg_attr(feature = "files", serde(skip))]
+    pub reaction_moments: BTreeMap<String, f64>,
+}
+
+/// A contact force below this share of all forces is rounding.
+const NO_FORCE: f64 = 1e-10;
+
+impl Quantities {
+    /// The sum of the magnitudes of the reactions and of the forces on all parts of Gamma_C.
+    pub(crate) fn all_forces(&self, boundaries: &[ContactBoundary]) -> f64 {
+        let contact: f64 = boundaries.iter().map(|part| part.force.abs()).sum();
+        let reactions = self.reactions.values().map(|[x, y]| x.hypot(*y));
+        contact.max(self.contact_force.abs()) + reactions.sum::<f64>()
+    }
+
+    /// Returns whether one of the parts of Gamma_C carries more than rounding.
+    pub(crate) fn presses(&self, part: &ContactBoundary, boundaries: &[ContactBoundary]) -> bool {
+        part.force > NO_FORCE * self.all_forces(boundaries)
+    }
+}
+
+impl Solution {
+    /// Evaluates all reported quantities of a displacement.
+    pub fn new(d: &Discretization, evaluated: Evaluated, report: Report) -> Self {
+        let stress = mean_stresses(d, &evaluated.u);
+        let of_revolution = d.problem.material.are_of_revolution();
+        let mut quantities = quantities(d, &evaluated);
+        let Evaluated { u, p, residual } = evaluated;
+        let recovered = answers::recovered_pressure(d, &p);
+        let (largest_strain, largest_strain_at) = answers::largest_strain(d, &u);
+        let balance = answers::energy_balance(d, &u, &p, &residual, quantities.energy);
+        let mut boundaries = answers::contact_boundaries(d, &u, &p, &recovered);
+        if let Ok(enclosure) = &report.enclosure {
+            put_between(&enclosure.intervals, &mut quantities, &mut boundaries);
+        }
+        let solution = Solution {
+            degree: d.space.degree(),
+            nodes: d.space.nodes().to_vec(),
+            elements: d.space.connectivity().to_vec(),
+            nodes_per_triangle: d.space.degree().nodes_per_triangle(),
+            von_mises: stress.iter().map(|(s, zz)| s.von_mises_squared(*zz).sqrt()).collect(),
+            stress,
+            contact: contact_values(d, &u, &p, &recovered),
+            between: piece_values(d, &u, &p, &recovered),
+            boundaries,
+            largest_strain,
+            largest_strain_at,
+            balance,
+            pieces: d.contact.clone(),
+            gamma: GammaReport::new(d),
+            newton: report.newton,
+            method: report.method,
+            plays: report.plays,
+            enclosure: report.enclosure,
+            verdict: report.verdict,
+            quantities,
+            displacement: u,
+        };
+        if of_revolution { of_the_whole(solution) } else { solution }
+    }
+
+    /// The points of all contact boundaries, edge by edge in order along each, for sigma_n and lambda^h jump from edge to edge; of a
+    /// pair of bodies the first side and then the second, which has the same numbers at places of its own.
+    pub fn contact_points(&self) -> Vec<Vec<ContactPoint<'_>>> {
+        let obstacles = self.contact.iter().map(|edge| {
+            let point = |p: &ContactValues| ContactPoint {
+                boundary: &edge.boundary,
+                node: Some(p.node),
+                arc: p.arc,
+                place: self.nodes[p.node],
+                displacement: self.displacement[p.node],
+                direction: p.direction,
+                u_n: p.u_n,
+                gap: p.gap,
+                sigma_n: p.sigma_n,
+                lambda: p.lambda,
+                pressure: p.pressure,
+                u_t: p.u_t,
+                shear: p.shear,
+            };
+            edge.points.iter().map(point).collect()
+        });
+        let pairs = self.between.chunk_by(|a, b| a.boundaries == b.boundaries);
+        let sides = pairs.flat_map(|pair| [0, 1].map(|i| (pair, i))).flat_map(|(pair, i)| {
+            pair.iter().map(move |piece| {
+                let point = |p: &PieceNodeValues| ContactPoint {
+                    boundary: &piece.boundaries[i],
+                    node: None,
+                    arc: p.arc,
+                    place: p.at[i],
+                    displacement: p.displacement[i],
+                    direction: if i == 0 { p.direction } else { p.direction.map(|c| -c) },
+                    u_n: p.u_n,
+                    gap: p.gap,
+                    sigma_n: p.sigma_n,
+                    lambda: p.lambda,
+                    pressure: p.pressure,
+                    u_t: p.u_t,
+                    shear: p.shear,
+                };
+                piece.points.iter().map(point).collect()
+            })
+        });
+        obstacles.chain(sides).collect()
+    }
+
+    /// u^h at the point with the barycentric coordinates `l` of triangle `t`, as [`Mesh::locate`] finds them.
+    ///
+    /// [`Mesh::locate`]: crate::model::Mesh::locate
+    pub fn displacement_at(&self, t: usize, l: [f64; 3]) -> [f64; 2] {
+        let shapes = self.degree.values(l);
+        let nodes = &self.elements[t * self.nodes_per_triangle..][..self.nodes_per_triangle];
+        [0, 1].map(|c| nodes.iter().zip(&shapes).map(|(&j, n)| n * self.displacement[j][c]).sum())
+    }
+
+    /// How far the displacement at that point can be off where it is off by `nodes` at most at the nodes.
+    pub fn displacement_error_at(&self, nodes: &[f64], t: usize, l: [f64; 3]) -> f64 {
+        let shapes = self.degree.values(l);
+        let members = &self.elements[t * self.nodes_per_triangle..][..self.nodes_per_triangle];
+        let sum: f64 = members.iter().zip(shapes).map(|(&j, n)| n.abs() * nodes[j]).sum();
+        // The sum, the shape functions and the displacement there are rounded.
+        let size: f64 = members.iter().fold(0.0, |size: f64, &j| {
+            size.max(self.displacement[j][0].abs()).max(self.displacement[j][1].abs())
+        });
+        sum * (1.0 + 1e-14) + 1e-14 * size
+    }
+}
+
+/// Moves numbers that are outside their proved intervals by their own rounding, as the energy of a body that hardly strains is,
+/// to the nearer ends.
+fn put_between(
+    proved: &Intervals,
+    quantities: &mut Quantities,
+    boundaries: &mut [ContactBoundary],
+) {
+    let put = |value: &mut f64, [low, high]: Range| *value = value.max(low).min(high);
+    put(&mut quantities.energy, proved.energy);
+    put(&mut quantities.max_displacement, proved.max_displacement);
+    for (name, reaction) in &mut quantities.reactions {
+        let intervals = proved.reactions.get(name).into_iter().flatten();
+        reaction.iter_mut().zip(intervals).for_each(|(r, &range)| put(r, range));
+    }
+    for part in boundaries {
+        let Some(of) = proved
+            .contact
+            .iter()
+            .find(|of| of.boundary == part.boundary && of.partner == part.partner)
+        else {
+            continue;
+        };
+        put(&mut part.force, of.force);
+        part.resultant.iter_mut().zip(of.resultant).for_each(|(r, range)| put(r, range));
+    }
+}
+
+impl GammaReport {
+    /// Reports gamma, kappa and the limit of a discretization.
+    pub fn new(d: &Discretization) -> Self {
+        let (kappa, coercivity) = (d.kappa(), d.coercivity);
+        GammaReport { gamma: d.gamma, gamma0: d.gamma0, kappa, coercivity }
+    }
+}
+
+/// The mean of sigma(u) on each triangle, and the one across the plane.
+fn mean_stresses(d: &Discretization, u: &[[f64; 2]]) -> Vec<(Stress<f64>, f64)> {
+    let stress = |t| {
+        let material = d.problem.material.of(t);
+        material.state(d.space.mean_gradient(t, u), d.space.mean_hoop_strain(t, material, u))
+    };
+    (0..d.space.mesh().triangles().len()).map(stress).collect()
+}
+
+fn contact_values(
+    d: &Discretization,
+    u: &[[f64; 2]],
+    p: &[Vec<DoubleDouble>],
+    recovered: &[Vec<f64>],
+) -> Vec<ContactEdgeValues> {
+    let mut start = 0.0;
+    let mut line = Vec::with_capacity(d.contact.len());
+    for ((edge, p), recovered) in d.contact.iter().zip(p).zip(recovered) {
+        if edge.partner().is_some() {
+            continue;
+        }
+        if line.last().is_none_or(|last: &ContactEdgeValues| last.boundary != *edge.boundary()) {
+            start = 0.0;
+        }
+        let triangle = edge.edge().triangle;
+        let sigma_n = edge.sigma_n(u);
+        let nodes = d.space.edge_nodes(edge.edge());
+        let positions = d.space.degree().edge_positions();
+        let mut points: Vec<ContactValues> = (0..nodes.len())
+            .map(|a| {
+                let [x, y] = u[nodes[a]];
+                let PieceNode { direction, gap, .. } = edge.geometry.nodes[a];
+                ContactValues {
+                    node: nodes[a],
+                    direction: direction.into(),
+                    arc: start + positions[a] * edge.length,
+                    u_n: x * direction[0] + y * direction[1],
+                    gap,
+                    sigma_n: (1.0 - positions[a]) * sigma_n[0] + positions[a] * sigma_n[1],
+                    lambda: pressure(p[a].head(), edge.gamma) + 0.0,
+                    pressure: recovered[a],
+                    u_t: y * direction[0] - x * direction[1],
+                    shear: edge.shear_at(p, a) + 0.0,
+                }
+            })
+            .collect();
+        points.sort_by(|a, b| a.arc.total_cmp(&b.arc));
+        let (boundary, normal) = (Arc::clone(edge.boundary()), edge.normal().into());
+        line.push(ContactEdgeValues { triangle, boundary, normal, points });
+        start += edge.length;
+    }
+    line
+}
+
+fn piece_values(
+    d: &Discretization,
+    u: &[[f64; 2]],
+    p: &[Vec<DoubleDouble>],
+    recovered: &[Vec<f64>],
+) -> Vec<PieceValues> {
+    let mut start = 0.0;
+    let mut all: Vec<PieceValues> = Vec::new();
+    for ((piece, p), recovered) in d.contact.iter().zip(p).zip(recovered) {
+        let [first, second] = &piece.geometry.stretches[..] else { continue };
+        let boundaries = [first, second].map(|stretch| Arc::clone(&stretch.boundary));
+        if all.last().is_none_or(|last| last.boundaries != boundaries) {
+            start = 0.0;
+        }
+        let (sigma_n, jumps) = (piece.sigma_n(u), piece.jumps(u));
+        let response = piece.geometry.law.responses()[0];
+        let value = |(a, s): (usize, f64)| {
+            let PieceNode { direction, gap, .. } = piece.geometry.nodes[a];
+            let displacement = [first, second].map(|stretch| {
+                let nodes = d.space.edge_nodes(stretch.edge);
+                [0, 1].map(|c| {
+                    let values: Vec<f64> = nodes.iter().map(|&node| u[node][c]).collect();
+                    d.space.degree().value_at(&values, stretch.positions[a])
+                })
+            });
+            let [x, y] = [0, 1].map(|c| displacement[0][c] - displacement[1][c]);
+            PieceNodeValues {
+                at: [first, second].map(|stretch| stretch.place(d.space.mesh(), a)),
+                displacement,
+                direction: direction.into(),
+                arc: start + s * piece.length,
+                u_n: jumps[a],
+                gap,
+                sigma_n: (1.0 - s) * sigma_n[0] + s * sigma_n[1],
+                lambda: -(response.q(p[a].head()) / piece.gamma) + 0.0,
+                pressure: recovered[a],
+                u_t: y * direction[0] - x * direction[1],
+                shear: piece.shear_at(p, a) + 0.0,
+            }
+        };
+        let mut points: Vec<PieceNodeValues> =
+            d.space.degree().edge_positions().into_iter().enumerate().map(value).collect();
+        points.sort_by(|a, b| a.arc.total_cmp(&b.arc));
+        all.push(PieceValues { boundaries, points });
+        start += piece.length;
+    }
+    all
+}
+
+fn quantities(d: &Discretization, Evaluated { u, p, residual }: &Evaluated) -> Quantities {
+    let energy = d.strain_energy(u);
+    let mut q = Quantities {
+        energy,
+        elastic_energy: energy / 2.0,
+        work: inner(&d.load, u),
+        max_displacement: u.iter().fold(0.0, |max, v| f64::max(max, v[0].hypot(v[1]))),
+        contact_force: 0.0,
+        contact_resultant: [0.0; 2],
+        contact_length: 0.0,
+        peak_pressure: 0.0,
+        reactions: BTreeMap::new(),
+        reaction_moments: BTreeMap::new(),
+    };
+    for (edge, p) in d.contact.iter().zip(p) {
+        let contact = edge.contribution(&d.rule, p);
+        q.contact_force += contact.resultant;
+        for (i, force) in contact.force.iter().enumerate().filter(|_| edge.partner().is_none()) {
+            let n = edge.direction_of(i);
+            for c in 0..2 {
+                q.contact_resultant[c] -= force * n[c];
+            }
+        }
+        q.contact_length += contact.active;
+        let along = &p[..edge.degree.nodes_per_edge()];
+        let heads: Vec<f64> = along.iter().map(|p| p.head()).collect();
+        let peak = -pressure(edge.degree.maximum(&heads), edge.gamma);
+        q.peak_pressure = q.peak_pressure.max(peak);
+    }
+    for (boundary, held) in d.constraints.holders() {
+        let reaction = q.reactions.entry(boundary.clone()).or_default();
+        let moment = q.reaction_moments.entry(boundary.clone()).or_default();
+        for held in held {
+            let part = held.part_of(residual[held.node]);
+            let [x, y] = d.space.nodes()[held.node];
+            *reaction = [reaction[0] + part[0], reaction[1] + part[1]];
+            *moment += x * part[1] - y * part[0];
+        }
+    }
+    q
+}
