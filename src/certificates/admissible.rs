@@ -1,4 +1,4 @@
-//! v from a displacement: it gets the prescribed values, and is pushed out of the obstacle.
+//! v from a displacement: it gets the prescribed values, and is pushed out of the obstacle, two bodies out of each other.
 
 use std::collections::BTreeMap;
 

@@ -10,13 +10,13 @@ use nalgebra::Vector2;
 use super::SWEEPS_FOR_FORCES;
 use super::build::{Built, build};
 use super::certificate::{Certificate, Cut, Role, is_oblique};
-use super::contact::Contact;
 use super::field::Field;
 use super::forces::{ForceTarget, Lifting, Motion};
 use super::parts::{Boundary, OnLine, ProblemParts};
 use super::sweeps::improve;
 use crate::contact::residual::add_internal_forces;
 use crate::held::rigid::{Parts, free_motions, pins};
+use crate::linear::dense::inner;
 use crate::linear::factor::Factor;
 use crate::linear::matrix::{LowerTriangle, Neighbours, Numbering};
 use crate::linear::ordering::nested_dissection;
@@ -30,34 +30,26 @@ struct Prescription {
     direction: Vector2<f64>,
     boundary: usize,
     contact: bool,
-    /// The part of the jump that is the own of one of two bodies, with its sign; 1 elsewhere.
-    share: f64,
+    /// The side of the contact: 1 on the second of two bodies.
+    side: usize,
 }
 
 /// An edge of Gamma_C.
 struct OnContact {
     edge: BoundaryEdge,
     boundary: usize,
-    /// As [`Prescription::share`].
-    share: f64,
+    /// As [`Prescription::side`].
+    side: usize,
     /// The direction of contact at its start, its end and in its middle.
     directions: [Vector2<f64>; 3],
 }
 
-/// The edges of Gamma_C that have a contact which is `wanted`. Of two bodies the softer one moves more, so that both together have
-/// about the least energy.
+/// The edges of Gamma_C that have a contact which is `wanted`.
 fn on_contact(
     parts: &ProblemParts,
     names: &[String],
     wanted: impl Fn(usize) -> bool,
 ) -> Vec<OnContact> {
-    let modulus = |contact: &Contact, i: usize| parts.material(contact.sides[i].edge.triangle).mu();
-    let mut shares: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
-    for contact in parts.contact.iter().filter(|contact| contact.is_pair()) {
-        let [first, second] = [0, 1].map(|i| modulus(contact, i));
-        let own = second / (first + second);
-        shares.entry(&contact.boundary).or_insert([own, own - 1.0]);
-    }
     let of_line = |line: &OnLine| {
         let wanted: OnLine = line.iter().copied().filter(|&(k, _)| wanted(k)).collect();
         let &(k, i) = wanted.first()?;
@@ -77,8 +69,7 @@ fn on_contact(
                 s => d * (1.0 - s) + e * s,
             }
         };
-        let share = shares.get(&*contact.boundary).map_or(1.0, |shares| shares[i]);
-        Some(OnContact { edge, boundary, share, directions: [0.0, 1.0, 0.5].map(direction) })
+        Some(OnContact { edge, boundary, side: i, directions: [0.0, 1.0, 0.5].map(direction) })
     };
     parts.lines.iter().filter_map(of_line).collect()
 }
@@ -92,6 +83,8 @@ pub(super) struct Lifter<'a> {
     demands: BTreeMap<usize, Vec<Prescription>>,
     numbering: Numbering,
     factor: Factor,
+    /// The parts of the jump on each boundary that are the two bodies' own, with their signs.
+    shares: Vec<[f64; 2]>,
 }
 
 /// Two directions with a sine below this are parallel.
@@ -120,12 +113,12 @@ impl<'a> Lifter<'a> {
         let mut demands: BTreeMap<usize, Vec<Prescription>> = BTreeMap::new();
         let mut add = |edge: BoundaryEdge,
                        boundary: usize,
-                       (contact, share),
+                       (contact, side),
                        of: &dyn Fn(usize) -> Vec<Vector2<f64>>| {
             for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
                 let at_node = demands.entry(node).or_default();
                 for direction in of(a) {
-                    let demand = Prescription { direction, boundary, contact, share };
+                    let demand = Prescription { direction, boundary, contact, side };
                     if !at_node.contains(&demand) {
                         at_node.push(demand);
                     }
@@ -139,19 +132,18 @@ impl<'a> Lifter<'a> {
                     Some(&Boundary::Held(held, _)) => {
                         let axes = [Vector2::x(), Vector2::y()];
                         let held: Vec<_> = (0..2).filter(|&c| held[c]).map(|c| axes[c]).collect();
-                        add(edge, boundary, (false, 1.0), &|_| held.clone());
+                        add(edge, boundary, (false, 0), &|_| held.clone());
                     }
                     Some(&Boundary::Supported(d, ..)) => {
-                        add(edge, boundary, (false, 1.0), &|_| vec![d.into()]);
+                        add(edge, boundary, (false, 0), &|_| vec![d.into()]);
                     }
                     _ => {}
                 }
             }
         }
-        for OnContact { edge, boundary, share, directions } in
-            on_contact(parts, names, |k| !open[k])
+        for OnContact { edge, boundary, side, directions } in on_contact(parts, names, |k| !open[k])
         {
-            add(edge, boundary, (true, share), &|a| vec![directions[a]]);
+            add(edge, boundary, (true, side), &|a| vec![directions[a]]);
         }
         let mut prescribed = vec![[None; 2]; space.nodes().len()];
         let mut frames = BTreeMap::new();
@@ -189,7 +181,31 @@ impl<'a> Lifter<'a> {
         let factor = factor.map_err(|error| {
             format!("no displacement of least energy to prove forces with: {error}")
         })?;
-        Ok(Lifter { parts, names, space, demands, numbering, factor })
+        let shares = vec![[1.0, 0.0]; names.len()];
+        let mut lifter = Lifter { parts, names, space, demands, numbering, factor, shares };
+        for (boundary, name) in names.iter().enumerate() {
+            if parts.problem.pairs.iter().any(|pair| pair.boundaries[0] == *name) {
+                lifter.shares[boundary] = lifter.least(boundary);
+            }
+        }
+        Ok(lifter)
+    }
+
+    /// The shares of two bodies in the jump 1 between them with which both together have the least energy.
+    fn least(&mut self, boundary: usize) -> [f64; 2] {
+        let target = ForceTarget { boundary: Some(boundary), motion: Motion::Along(None) };
+        let energies = [[1.0, 0.0], [0.0, -1.0]].map(|shares| {
+            self.shares[boundary] = shares;
+            let w = self.field(target).ok()?;
+            let mut forces = vec![[0.0; 2]; w.len()];
+            add_internal_forces(&self.space, &self.parts.problem.material, &w, &mut forces);
+            Some(inner(&w, &forces))
+        });
+        let own = match energies {
+            [Some(first), Some(second)] if first + second > 0.0 => second / (first + second),
+            _ => 0.5,
+        };
+        [own, own - 1.0]
     }
 
     /// The value that a demand asks for at a node; at a place where the boundaries contradict one another, with `strict` an
@@ -203,7 +219,7 @@ impl<'a> Lifter<'a> {
             Motion::Along(ramp) if demand.contact => ramp.map_or(1.0, |ramp| ramp.at(x[ramp.axis])),
             motion => motion.at(Vector2::from(x)).map_or(0.0, |r| r.dot(&demand.direction)),
         };
-        whole * demand.share
+        if demand.contact { whole * self.shares[demand.boundary][demand.side] } else { whole }
     }
 
     /// w at the nodes, of least energy.
@@ -262,9 +278,10 @@ impl<'a> Lifter<'a> {
         }
         // w0 is 1 where w is free, too: it need not have the least energy.
         if target.boundary.is_none() {
-            for OnContact { edge, share, directions, .. } in
+            for OnContact { edge, boundary, side, directions } in
                 on_contact(self.parts, self.names, |_| true)
             {
+                let share = self.shares[boundary][side];
                 for (a, node) in self.space.edge_nodes(edge).into_iter().enumerate() {
                     let (d, w) = (directions[a], Vector2::from(field[node]));
                     let along = match self.demands.get(&node) {

@@ -65,6 +65,9 @@ use crate::results::Solution;
 /// The number of times that the stress is improved around every vertex.
 pub(crate) const SWEEPS: usize = 2;
 
+/// As [`SWEEPS`], with two bodies: the fans of narrow triangles between them are far from what they start with.
+const SWEEPS_FOR_PAIRS: usize = 6;
+
 /// The number of sweeps where forces are asked for, of tau and of the rho of dual pairs.
 const SWEEPS_FOR_FORCES: usize = 16;
 
@@ -224,7 +227,11 @@ fn certify_near(
         }
         (v, built, is_out) = outside();
     }
-    let sweeps = if asked.forces.is_empty() { SWEEPS } else { SWEEPS_FOR_FORCES };
+    let sweeps = match (asked.forces.is_empty(), problem.pairs.is_empty()) {
+        (true, true) => SWEEPS,
+        (true, false) => SWEEPS_FOR_PAIRS,
+        (false, _) => SWEEPS_FOR_FORCES,
+    };
     let topology = sweeps::improve(&mut built.certificate, sweeps, false)?;
     let (certificate, oscillation) = (&built.certificate, &built.oscillation);
     let state = certificate.balanced::<Ball>(topology)?;
