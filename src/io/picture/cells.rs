@@ -3,12 +3,15 @@
 //! A cell takes the level of the triangle at its centre; one on the border whose centre is outside takes that of a triangle
 //! nearby. The picture is cut along the deformed outline afterwards, so the border is as sharp as with triangles.
 
-use std::collections::BTreeMap;
-
 use super::draw::{Point, distance};
+use crate::model::tree::Bounds;
 
-/// A cell by its row and its column, in units of its side.
-type Cell = [i64; 2];
+/// Cells in rows, from the one at `first` on, each with its level if it touches the body.
+struct Cells {
+    first: [i64; 2],
+    columns: usize,
+    levels: Vec<Option<usize>>,
+}
 
 /// Rectangles of neighbouring cells in a row with the same level, which the triangles have: that, and their corners.
 pub(super) fn rectangles(
@@ -16,44 +19,64 @@ pub(super) fn rectangles(
     triangles: &[[Point; 3]],
     levels: &[usize],
 ) -> Vec<(usize, [Point; 4])> {
-    let levels: Vec<(Cell, usize)> = cells(side, triangles, levels).into_iter().collect();
-    let is_next = |a: Cell, b: Cell| a[0] == b[0] && a[1] + 1 == b[1];
-    let runs = levels.chunk_by(|a, b| is_next(a.0, b.0) && a.1 == b.1);
-    let rectangle = |run: &[(Cell, usize)]| {
-        let ([row, start], level) = run[0];
-        let end = start + run.len() as i64;
-        let [x0, x1, y0, y1] = [start, end, row, row + 1].map(|i| i as f64 * side);
-        (level, [[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
-    };
-    runs.map(rectangle).collect()
+    let Cells { first, columns, levels } = Cells::of(side, triangles, levels);
+    let mut rectangles = Vec::new();
+    for (row, cells) in (first[0]..).zip(levels.chunks_exact(columns)) {
+        let mut start = first[1];
+        for run in cells.chunk_by(|a, b| a == b) {
+            let end = start + run.len() as i64;
+            if let Some(level) = run[0] {
+                let [x0, x1, y0, y1] = [start, end, row, row + 1].map(|i| i as f64 * side);
+                rectangles.push((level, [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]));
+            }
+            start = end;
+        }
+    }
+    rectangles
 }
 
-/// The level of each cell that touches the body.
-fn cells(side: f64, triangles: &[[Point; 3]], levels: &[usize]) -> BTreeMap<Cell, usize> {
-    let mut cells = BTreeMap::new();
-    for (triangle, &level) in triangles.iter().zip(levels) {
-        let turn = area(triangle).signum();
-        let range = |c: usize| {
-            let [a, b, d] = triangle.map(|corner| corner[c] / side);
-            (a.min(b).min(d).floor() as i64 - 1)..=(a.max(b).max(d).floor() as i64 + 1)
-        };
-        for row in range(1) {
-            for column in range(0) {
-                let centre = [column, row].map(|i| (i as f64 + 0.5) * side);
-                // The least of the distances from the lines along the sides, negative outside.
-                let depth = (0..3).map(|i| {
-                    let (a, b) = (triangle[i], triangle[(i + 1) % 3]);
-                    2.0 * turn * area(&[a, b, centre]) / distance(a, b)
-                });
-                match depth.fold(f64::INFINITY, f64::min) {
-                    depth if depth >= 0.0 => _ = cells.insert([row, column], level),
-                    depth if depth > -side => _ = cells.entry([row, column]).or_insert(level),
-                    _ => {}
+/// No page is as wide or as high.
+const FAR: f64 = 4000.0;
+
+impl Cells {
+    /// The level of each cell that touches the body.
+    fn of(side: f64, triangles: &[[Point; 3]], levels: &[usize]) -> Cells {
+        let Bounds { low, high } = Bounds::around(triangles.iter().flatten().copied());
+        let cell = |x: f64| (x.clamp(-FAR, FAR) / side).floor() as i64;
+        let first = [1, 0].map(|c| cell(low[c]) - 1);
+        let last = [1, 0].map(|c| cell(high[c]) + 1);
+        let [rows, columns] = [0, 1].map(|c| (last[c] - first[c] + 1) as usize);
+        let mut cells = Cells { first, columns, levels: vec![None; rows * columns] };
+        for (triangle, &level) in triangles.iter().zip(levels) {
+            let turn = area(triangle).signum();
+            let lengths = [0, 1, 2].map(|i| distance(triangle[i], triangle[(i + 1) % 3]));
+            let range = |c: usize| {
+                let [a, b, d] = triangle.map(|corner| corner[c]);
+                (cell(a.min(b).min(d)) - 1)..=(cell(a.max(b).max(d)) + 1)
+            };
+            for row in range(1) {
+                for column in range(0) {
+                    let centre = [column, row].map(|i| (i as f64 + 0.5) * side);
+                    // The least of the distances from the lines along the sides, negative outside.
+                    let depth = (0..3).map(|i| {
+                        let (a, b) = (triangle[i], triangle[(i + 1) % 3]);
+                        2.0 * turn * area(&[a, b, centre]) / lengths[i]
+                    });
+                    let depth = depth.fold(f64::INFINITY, f64::min);
+                    let cell = cells.at([row, column]);
+                    if depth >= 0.0 || depth > -side && cell.is_none() {
+                        *cell = Some(level);
+                    }
                 }
             }
         }
+        cells
     }
-    cells
+
+    fn at(&mut self, [row, column]: [i64; 2]) -> &mut Option<usize> {
+        let [row, column] = [row - self.first[0], column - self.first[1]].map(|i| i as usize);
+        &mut self.levels[row * self.columns + column]
+    }
 }
 
 /// Positive if the corners are in counter-clockwise order (with y upwards).
@@ -69,8 +92,8 @@ mod tests {
     fn a_cell_has_the_level_of_the_triangle_at_its_centre() {
         let triangles =
             [[[0.0, 0.0], [40.0, 0.0], [40.0, 40.0]], [[0.0, 0.0], [40.0, 40.0], [0.0, 40.0]]];
-        let found = cells(4.0, &triangles, &[1, 2]);
-        assert_eq!([found[&[2, 7]], found[&[7, 2]]], [1, 2]);
+        let mut found = Cells::of(4.0, &triangles, &[1, 2]);
+        assert_eq!([*found.at([2, 7]), *found.at([7, 2])], [Some(1), Some(2)]);
         // A row of one level is one rectangle.
         let rectangles = rectangles(4.0, &triangles, &[1, 1]);
         let rows = rectangles.iter().filter(|(_, corners)| (0.0..40.0).contains(&corners[0][1]));
@@ -81,13 +104,13 @@ mod tests {
     #[test]
     fn every_point_of_the_body_is_in_a_cell_with_a_level() {
         // A triangle that starts and ends just beyond cell borders.
-        let cells = cells(4.0, &[[[3.9, 3.9], [20.1, 4.0], [4.0, 20.1]]], &[7]);
+        let mut cells = Cells::of(4.0, &[[[3.9, 3.9], [20.1, 4.0], [4.0, 20.1]]], &[7]);
         for i in 0..=100 {
             for j in 0..=100 - i {
                 let [s, t] = [i, j].map(|k| f64::from(k) / 100.0);
                 let [x, y] = [3.9 + 16.2 * s + 0.1 * t, 3.9 + 0.1 * s + 16.2 * t];
                 let cell = [y, x].map(|c| (c / 4.0).floor() as i64);
-                assert!(cells.contains_key(&cell), "{x} {y}");
+                assert!(cells.at(cell).is_some(), "{x} {y}");
             }
         }
     }

@@ -71,6 +71,20 @@ pub(super) fn rounded(x: f64) -> f64 {
     (x * 100.0).round() / 100.0 + 0.0
 }
 
+/// Appends [`rounded`] coordinates, as `{}` writes them, by whole numbers: in a picture there are many.
+fn push_rounded(to: &mut String, x: f64) {
+    let hundredths = (x * 100.0).round() as i64;
+    let (whole, rest) = (hundredths.unsigned_abs() / 100, hundredths.unsigned_abs() % 100);
+    let sign = if hundredths < 0 { "-" } else { "" };
+    // Writing to a string cannot fail. A number that is not finite is one that the page is refused for.
+    let _ = match (rest / 10, rest % 10) {
+        _ if !x.is_finite() => write!(to, "{x}"),
+        (0, 0) => write!(to, "{sign}{whole}"),
+        (tenths, 0) => write!(to, "{sign}{whole}.{tenths}"),
+        (tenths, hundredths) => write!(to, "{sign}{whole}.{tenths}{hundredths}"),
+    };
+}
+
 /// The width of a text, roughly: no font is at hand, and the reader's may be another.
 pub(super) fn width_of(text: &str, size: f64) -> f64 {
     0.56 * size * text.chars().count() as f64
@@ -268,8 +282,10 @@ impl PathData {
     pub(super) fn line(&mut self, points: impl IntoIterator<Item = Point>) {
         let mut command = 'M';
         for [x, y] in points {
-            // Writing to a string cannot fail.
-            let _ = write!(self.d, "{command}{} {}", rounded(x), rounded(y));
+            self.d.push(command);
+            push_rounded(&mut self.d, x);
+            self.d.push(' ');
+            push_rounded(&mut self.d, y);
             command = if command == 'M' { 'L' } else { ' ' };
         }
     }
@@ -387,6 +403,15 @@ pub(super) fn viridis(t: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn coordinates_of_paths_are_written_as_other_numbers() {
+        for x in [0.0, -0.0, -0.004, 0.005, -0.01, 0.1, -3.1, 12.34, 99.999, -1234.5, 800.0] {
+            let mut written = String::new();
+            push_rounded(&mut written, x);
+            assert_eq!(written, rounded(x).to_string(), "{x}");
+        }
+    }
 
     #[test]
     fn coordinates_have_two_decimals_at_most() {

@@ -1,8 +1,11 @@
 //! A displacement on the points of a VTU file, and the triangles between them.
 
-use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
+use std::io::Read;
 
-use super::ALPHABET;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD as BASE64;
+use flate2::read::ZlibDecoder;
+
 use crate::memory;
 use crate::quote;
 
@@ -213,9 +216,10 @@ impl<'a> Reader<'a> {
             if size > most - all.len() {
                 return Err(format!("it is longer than the {most} bytes that its points can have"));
             }
-            let plain = decompress_to_vec_zlib_with_limit(block, size)
+            let mut plain = ZlibDecoder::new(block).take(size as u64);
+            plain
+                .read_to_end(&mut all)
                 .map_err(|e| format!("block {k} can't be decompressed: {e}"))?;
-            all.extend(plain);
             from = end;
         }
         Ok(all)
@@ -278,23 +282,8 @@ fn doubles(bytes: &[u8], kind: &str) -> Option<Vec<f64>> {
 }
 
 /// The bytes of a base64 code.
-pub(super) fn decode(code: &[u8]) -> Result<Vec<u8>, String> {
-    let mut values = [None; 256];
-    (0..).zip(ALPHABET).for_each(|(value, &letter)| values[usize::from(letter)] = Some(value));
-    let mut bytes = Vec::with_capacity(code.len() / 4 * 3);
-    let (mut bits, mut held) = (0_u32, 0);
-    for &letter in code.iter().take_while(|&&letter| letter != b'=') {
-        let value: u32 = values[usize::from(letter)]
-            .ok_or_else(|| format!("'{}' is no letter of base64", char::from(letter)))?;
-        bits = bits << 6 | value;
-        held += 6;
-        if held >= 8 {
-            held -= 8;
-            bytes.push((bits >> held) as u8);
-            bits &= (1 << held) - 1;
-        }
-    }
-    Ok(bytes)
+fn decode(code: &[u8]) -> Result<Vec<u8>, String> {
+    BASE64.decode(code).map_err(|e| format!("it is no base64: {e}"))
 }
 
 #[cfg(test)]
@@ -334,7 +323,7 @@ mod tests {
         assert_eq!(from_vtu(&file("", 3, [places, ascii])), Ok((expected.clone(), None)));
         let numbers: Vec<u8> =
             [0.5, -2.0, 0.0, 0.0, 1.0, 3.0_f64].iter().flat_map(|x| x.to_le_bytes()).collect();
-        let packed = miniz_oxide::deflate::compress_to_vec_zlib(&numbers, 6);
+        let packed = super::super::compressed(&numbers);
         let header: Vec<u8> =
             [1, 48, 48, packed.len() as u32].iter().flat_map(|n| n.to_le_bytes()).collect();
         // In the layout that meshio writes: the header in a code of its own.
@@ -364,7 +353,7 @@ mod tests {
 
     #[test]
     fn compressed_blocks_longer_than_the_points_are_refused_unread() {
-        let packed = miniz_oxide::deflate::compress_to_vec_zlib(&vec![0; 1 << 20], 9);
+        let packed = super::super::compressed(&vec![0; 1 << 20]);
         let words = [1, 1 << 20, 0, packed.len() as u32];
         let header: Vec<u8> = words.iter().flat_map(|n| n.to_le_bytes()).collect();
         let array = [IN_THE_PLANE, &base64(&[&header, &packed])];
