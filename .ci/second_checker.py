@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Certificates of degree 1 and 2, with circles, oblique supports, motions that nothing stops and adapted meshes, checked by reference/check_bound.py; and tampered
+"""Certificates of degree 1 and 2, with circles, oblique supports, two bodies, motions that nothing stops and adapted meshes, checked by reference/check_bound.py; and tampered
 ones, with their hashes, which it must refuse: second_checker.py PROGRAM FOLDER."""
 import json
 import pathlib
@@ -45,6 +45,8 @@ CASES = {
     "disk": ["cases/disk.toml"], "bracket": ["cases/bracket.toml"], "cantilever": ["cases/cantilever.toml"],
     "oblique 1": ["oblique"], "oblique 2": ["oblique", *P2],
     "slide 1": ["slide"], "slide 2": ["slide", *P2], "shaft": ["cases/disk_force.toml", *P2],
+    "cylinders 1": ["cases/cylinders.toml", "--set", "method.degree=1"], "cylinders 2": ["cases/cylinders.toml", "--set", "method.degree=2"],
+    "lug 1": ["cases/pin_lug.toml", "--set", "method.degree=1"], "lug 2": ["cases/pin_lug.toml", "--set", "method.degree=2"],
     "adapted 1": ["cases/corner.toml", *ADAPTED], "adapted 2": ["cases/corner.toml", *ADAPTED, *P2],
 }
 
@@ -81,6 +83,8 @@ TAMPERINGS = {
     "a share that is smaller": lambda h, a: number(a("shares")[0], 0, lambda x: 0.5 * x),
     "a force that is larger": lambda h, a: number(first(a("edges"), 0), 3, lambda f: 1.001 * f + 1e-6),
     "a tension": lambda h, a: number(first(a("edges"), 6), 3, lambda p: 1e-9),
+    "a second traction between two bodies": lambda h, a: number(next(row for row in a("edges") if row[2] == 8), 3, lambda f: 5e-324),
+    "an edge that two others face": lambda h, a: a("pairs")[0, 1:].__setitem__(slice(None), a("pairs")[1, 1:]),
     "a gap that is smaller": lambda h, a: [number(row, k, lambda g: g - 0.5) for row in a("edges") if row[2] == 6 for k in (5, 6)],
     "a displacement off what is prescribed": lambda h, a: number(
         a("displacement")[np.flatnonzero(a("prescribed")[:, 0])[0]], 0, lambda v: v + 1e-12),

@@ -18,7 +18,7 @@ import numpy as np
 WORDS = {"vertices": "ff", "displacement": "ff", "prescribed": "nfnf", "cuts": "nnf", "triangles": "nnnnnnfffffffff",
          "tensors": "ffffff",
          "edges": "nnnffff", "directions": "nffff", "frames": "nff", "displacement at cuts": "ff",
-         "prescribed at cuts": "nfnf", "bulges": "ffff", "lifts": "nnnf", "polygon": "n", "shares": "f",
+         "prescribed at cuts": "nfnf", "bulges": "ffff", "lifts": "nnnf", "polygon": "n", "pairs": "nn", "shares": "f",
          "boundaries": "nn", "forces": "nnnfffff", "w": "ff", "w at cuts": "ff", "w bulges": "ff",
          "dual forces": "nff", "dual w": "ff", "dual w at cuts": "ff", "dual w bulges": "ff", "dual edges": "nffff"}
 STATEMENT = "|u - v|_a <= bound for the solution u of the contact problem with these data and the displacement v"
@@ -142,7 +142,7 @@ class Body:
         self.numbers = real["edges"].reshape(-1, 2, 2)
         edges = len(self.ends)
         demand(len(self.corners) > 0 and (self.corners < len(self.x)).all() and (self.sides < edges).all()
-               and (self.ends < len(self.x)).all() and (self.role < 8).all(), "an index that names nothing")
+               and (self.ends < len(self.x)).all() and (self.role < 9).all(), "an index that names nothing")
         demand(self.oscillation >= 0, "a negative oscillation: triangle")
         self.direction = np.zeros((edges, 2, 2))
         self.has_direction = np.zeros(edges, bool)
@@ -155,6 +155,12 @@ class Body:
         length = dot(self.direction[:, 0], self.direction[:, 0])
         demand(~supported | ((self.direction[:, 0] == self.direction[:, 1]).all(1) & (length >= 0.25) & (length <= 4)),
                "a direction that turns or has no length: edge")
+        pairs = whole["pairs"]
+        demand((pairs < edges).all() and (self.role[pairs] == [6, 8]).all() and self.has_direction[pairs[:, 0]].all()
+               and len(set(pairs[:, 0])) == len(pairs) and np.array_equal(np.sort(pairs[:, 1]), np.flatnonzero(self.role == 8))
+               and (self.numbers[self.role == 8] == 0).all(), "edges that do not face each other one to one")
+        self.pairs, self.facing = pairs, np.full(edges, -1)
+        self.facing[pairs[:, 0]] = pairs[:, 1]
         self.frames(whole, real, with_cuts)
         demand(len(real["shares"]) == len(self.corners), "shares of other triangles")
         self.shares = real["shares"][:, 0]
@@ -252,8 +258,17 @@ class Body:
             d, along = self.direction[:, 0], dot(self.direction[:, 0], self.bulge)
             size = np.abs(d * self.bulge).sum(1) + np.abs(self.data[:, 0])
             demand((self.role != 7) | (np.abs(along - self.data[:, 0]) <= NEAR * size), "v . d is not what is prescribed: edge")
-            may = np.where((self.role <= 3)[:, None], held, np.stack([self.role >= 6, self.role < 0], 1))
+            may = np.where((self.role <= 3)[:, None], held, np.stack([np.isin(self.role, (6, 7)), self.role < 0], 1))
             demand((may | (self.data == 0)).all(1), "a bulge of data where there are none: edge")
+
+    def jump(self, on, points, bulge):
+        """A displacement at the ends of edges of Gamma_C and its bulges: on a pair less those on the other body, whose edge runs the
+        other way."""
+        w, b, other = points[self.ends[on]], bulge[on], self.facing[on]
+        pair = other >= 0
+        w[pair] -= points[self.ends[other[pair]]][:, ::-1]
+        b[pair] -= bulge[other[pair]]
+        return w, b
 
     def check_contact(self):
         """No tension, no penetration; 2 int tau_n (v . d - g) for each edge."""
@@ -265,13 +280,13 @@ class Body:
         d = np.where(self.has_direction[on, None, None], self.direction[on], (-turned(side) / length[:, None])[:, None])
         turns, varies = (d[:, 0] != d[:, 1]).any(1), pressure[:, 0] != pressure[:, 1]
         demand(~(turns & varies & self.has_direction[on]), "a pressure that varies along a direction that turns: edge")
-        v = self.v[self.ends[on]]
-        b, bulge = self.bulge[on], self.data[on, 0]
+        v, b = self.jump(on, self.v, self.bulge)
+        bulge = self.data[on, 0]
         # v and g by their Bernstein coefficients of degree 2, d by its two; the product is of degree 3.
         v = np.stack([v[:, 0], v.mean(1) + 2 * b, v[:, 1]], 1)
         g = np.stack([gap[:, 0], gap.mean(1) + 2 * bulge, gap[:, 1]], 1)
         beyond = along(v, d) - along(g[:, :, None], np.ones((len(on), 2, 1)))
-        size = np.abs(v).max((1, 2)) + np.abs(g).max(1)
+        size = np.abs(v).max((1, 2)) + np.abs(g).max(1) + (self.facing[on] >= 0) * np.abs(self.v).max()
         demand(beyond <= NEAR * size[:, None], "v goes through the obstacle on Gamma_C: number")
         # Bernstein coefficients of the product with the pressure, of degree 4, whose mean is its integral.
         integral = np.zeros(len(on))
@@ -296,6 +311,8 @@ class Body:
         force[pressed] = -normal[pressed] * self.numbers[pressed, 0, :, None]
         on = self.contact
         force[on] = length[on] * self.numbers[on, 0, :, None] * self.contact_d
+        first, second = self.pairs.T
+        force[second] = -force[first][:, ::-1]
         d = self.direction[supported]
         force[supported] = (d * self.numbers[supported, 0, :, None]
                             + length[supported] * turned(d) * self.numbers[supported, 1, :, None])
@@ -318,46 +335,74 @@ class Body:
         reach = np.abs(arm).max((1, 2))
         force_room, moment_room = 1e-13 * off * size, 1e-13 * off * size * reach
         self.free, self.stop = 0, 0.0
-        for first in np.unique(self.part):
-            here = self.part == first
-            origin = middle[here].mean(0)
-            length = np.abs(middle[here] - origin).max() + reach[here].max()
-            outer = np.flatnonzero((self.role != 0) & here[self.owner])
-            pull = np.abs(self.edge_forces[outer]).sum()
-            motions = self.free_motions(outer, origin, length)
+        for group in self.groups():
+            works, origins, lengths, pull = [], {}, {}, 0.0
+            for first in group:
+                here = self.part == first
+                origin = origins[first] = middle[here].mean(0)
+                length = lengths[first] = np.abs(middle[here] - origin).max() + reach[here].max()
+                pull += np.abs(self.edge_forces[(self.role != 0) & here[self.owner]]).sum()
+                turn = (moment[here] + cross(middle[here] - origin, total[here])).sum() / length
+                works.append(np.append(total[here].sum(0), turn))
+            motions = self.free_motions(group, origins, lengths)
             if len(motions) == 0:
                 continue
-            turn = (moment[here] + cross(middle[here] - origin, total[here])).sum() / length
-            work = np.abs(motions @ np.append(total[here].sum(0), turn))
-            demand(work <= STOP * pull, f"a motion that nothing stops and the forces drive: the part of triangle {first}, motion")
+            work = np.abs(motions @ np.concatenate(works))
+            demand(work <= STOP * pull, f"a motion that nothing stops and the forces drive: the part of triangle {group[0]}, motion")
             self.free += len(motions)
             self.stop = max([self.stop, *work / pull] if pull > 0 else [self.stop])
             # The support is one of the first triangle.
-            force_room[first] += STOP * pull
-            moment_room[first] += STOP * pull * length
+            for first in group:
+                force_room[first] += STOP * pull
+                moment_room[first] += STOP * pull * lengths[first]
         demand(np.abs(total).max(1) <= force_room, "forces that do not balance: triangle")
         demand(np.abs(moment) <= moment_room, "moments that do not balance: triangle")
 
-    def free_motions(self, outer, origin, length):
-        """An orthonormal basis of the motions (along x, along y, turn about the origin times length) of a part on which no force
-        that these edges of its outline may have more of does work."""
+    def groups(self):
+        """The parts that pairs join, each by the number of its first triangle."""
+        label = {first: first for first in np.unique(self.part).tolist()}
+        ends = self.part[self.owner[self.pairs]].tolist()
+        for _ in label:
+            for a, b in ends:
+                label[a] = label[b] = min(label[a], label[b])
+        return [[first for first in label if label[first] == least] for least in sorted(set(label.values()))]
+
+    def free_motions(self, group, origins, lengths):
+        """An orthonormal basis of the motions of some parts (of each along x, along y, the turn about its origin times its length) on which
+        no force that the edges of their outlines may have more of does work."""
+        slot = {first: k for k, first in enumerate(group)}
+        outer = np.flatnonzero((self.role != 0) & np.isin(self.part[self.owner], group))
+        of = np.array([slot[first] for first in self.part[self.owner[outer]].tolist()], int)
+        origin, length = (np.array([kind[first] for first in group])[of] for kind in (origins, lengths))
         start, end = (self.x[self.ends[outer, k]] - origin for k in range(2))
         role, d, f = self.role[outer], self.direction[outer, 0], self.edge_forces[outer]
-        wrench = lambda here, force, turn: np.column_stack([force, turn / length])[here]
-        supports, contact = [], []
+
+        def wrench(force, turn):
+            rows = np.zeros((len(outer), len(group), 3))
+            rows[np.arange(len(outer)), of] = np.column_stack([force, turn / length])
+            return rows.reshape(len(outer), -1)
+
+        supports = []
         axes = ((np.isin(role, (1, 3)), np.array([[1.0, 0.0]])), (np.isin(role, (2, 3)), np.array([[0.0, 1.0]])), (role == 7, d))
         for here, along in axes:
             along = np.broadcast_to(along, start.shape)
             # The same at both ends, and opposite.
-            supports.append(wrench(here, along, cross((start + end) / 2, along)))
-            supports.append(wrench(here, 0 * along, cross(end - start, along) / 6))
-        ends = (f[:, 0] / 2, cross(2 * start + end, f[:, 0]) / 6), (f[:, 1] / 2, cross(start + 2 * end, f[:, 1]) / 6)
+            supports.append(wrench(along, cross((start + end) / 2, along))[here])
+            supports.append(wrench(0 * along, cross(end - start, along) / 6)[here])
+        at_start = wrench(f[:, 0] / 2, cross(2 * start + end, f[:, 0]) / 6)
+        at_end = wrench(f[:, 1] / 2, cross(start + 2 * end, f[:, 1]) / 6)
+        # A pressure on one body is one on the other, whose edge runs the other way.
+        place = np.full(len(self.ends), -1)
+        place[outer] = np.arange(len(outer))
+        first, second = place[self.pairs].T
+        here = first >= 0
+        first, second = first[here], second[here]
+        at_start[first], at_end[first] = at_start[first] + at_end[second], at_end[first] + at_start[second]
         along = self.direction[outer]
         turns = self.has_direction[outer] & (along[:, 0] != along[:, 1]).any(1)
-        for force, turn in ends:
-            contact.append(wrench((role == 6) & ~turns, force, turn))
-        contact.append(wrench((role == 6) & turns, ends[0][0] + ends[1][0], ends[0][1] + ends[1][1]))
-        rows = [np.zeros((3, 3))]
+        contact = [at[(role == 6) & ~turns] for at in (at_start, at_end)]
+        contact.append((at_start + at_end)[(role == 6) & turns])
+        rows = [np.zeros((3 * len(group),) * 2)]
         for kind in (np.vstack(supports), np.vstack(contact)):
             largest = np.sqrt((kind**2).sum(1)).max(initial=0)
             rows += [kind / largest] if largest > 0 else []
@@ -596,8 +641,8 @@ class Forces:
     def on_contact(self, points, bulge):
         """w . d on the edges of Gamma_C."""
         body, on = self.body, self.body.contact
-        w = points[body.ends[on]]
-        return along(np.stack([w[:, 0], w.mean(1) + 2 * bulge[on], w[:, 1]], 1), body.contact_d)
+        w, b = body.jump(on, points, bulge)
+        return along(np.stack([w[:, 0], w.mean(1) + 2 * b, w[:, 1]], 1), body.contact_d)
 
     def weight(self, force, x):
         if not self.axis[force]:

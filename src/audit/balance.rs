@@ -9,7 +9,7 @@
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::certificate::{Certificate, Edge, Owner, Role, exactly, place};
+use super::certificate::{Certificate, Edge, Owner, Role, exactly, opposite, place};
 use crate::kernel::Enclosing;
 use crate::kernel::composite::Wrench;
 
@@ -45,6 +45,9 @@ enum Variation {
     /// A support of the root of a part, against one component of its motion.
     Stop(usize),
 }
+
+/// Three holds of a part, and how far it reaches.
+type Chosen = ([FreeForce; 3], f64);
 
 /// The change of the pressures at both ends of edge `edge` of Gamma_C by equilibrium, in units of themselves.
 #[derive(Clone, Copy)]
@@ -197,13 +200,13 @@ impl<S: Enclosing> OnEdges<'_, S> {
     ) -> Result<Closed<S>, Unbalanced> {
         let added = vec![[Vector2::zeros(); 2]; self.certificate.edges.len()];
         let mut closed = Closed { added, changes: Vec::new(), stops: Vec::new() };
-        for part in tree.parts() {
+        for (part, chosen) in self.settled(tree)?.into_iter().rev() {
             let root = part[0];
             let mut total = wrenches[root];
             for &t in &part[1..] {
                 total = total.plus(wrenches[t]);
             }
-            for (hold, factor, share) in self.holds(part, total)? {
+            for (hold, factor, share) in self.factors(part, chosen, total)? {
                 if let Variation::Stop(c) = hold.profile {
                     let wrench = times(stop(c, total.about), factor);
                     let [start, end] =
@@ -218,10 +221,22 @@ impl<S: Enclosing> OnEdges<'_, S> {
                 add(&mut closed.added[hold.edge], force);
                 let wrench = times(self.wrench(hold), factor);
                 wrenches[owner.piece] = wrenches[owner.piece].plus(wrench);
-                if let Variation::Pressure(ends) = hold.profile {
-                    let factors = ends.map(|end| if end { factor } else { S::from(0) });
-                    closed.changes.push(Change { edge: hold.edge, factors });
-                }
+                let Variation::Pressure(ends) = hold.profile else { continue };
+                let [a, b] = ends.map(|end| if end { factor } else { S::from(0) });
+                let here = Change { edge: hold.edge, factors: [a, b] };
+                let Some(&edge) = self.certificate.facing.get(&hold.edge) else {
+                    closed.changes.push(here);
+                    continue;
+                };
+                // The same pressure acts on the other body, which is closed later.
+                let Some(owner) = self.owners[edge][0] else { continue };
+                let other = FreeForce { edge, profile: Variation::Pressure([ends[1], ends[0]]) };
+                add(&mut closed.added[edge], opposite(force));
+                let wrench = times(self.wrench(other), factor);
+                wrenches[owner.piece] = wrenches[owner.piece].plus(wrench);
+                let is_second = self.certificate.edges[hold.edge].role == Role::Facing;
+                let there = Change { edge, factors: [b, a] };
+                closed.changes.push(if is_second { there } else { here });
             }
             for &t in part[1..].iter().rev() {
                 let Some(e) = tree.towards_root[t] else { continue };
@@ -239,14 +254,54 @@ impl<S: Enclosing> OnEdges<'_, S> {
         Ok(closed)
     }
 
-    /// Three holds of a part with the factors that balance `total`, and what a support takes of the forces on the boundary.
-    fn holds(
+    /// The parts with three holds each, of which pressures between two bodies are those towards parts before: closed from the last
+    /// one on, none is changed by others once it is closed.
+    fn settled<'t>(
+        &self,
+        tree: &'t SpanningTree,
+    ) -> Result<Vec<(&'t [usize], Chosen)>, Unbalanced> {
+        let mut left: Vec<&[usize]> = tree.parts().collect();
+        let mut settled = Vec::with_capacity(left.len());
+        let mut is_settled = vec![false; self.certificate.pieces.len()];
+        while let Some(&first) = left.first() {
+            let mut settle = |part: &'t [usize], chosen: Chosen, is_settled: &mut Vec<bool>| {
+                part.iter().for_each(|&t| is_settled[t] = true);
+                settled.push((part, chosen));
+            };
+            let before = left.len();
+            left.retain(|&part| match self.choose(part, false, &is_settled) {
+                Some(chosen) => {
+                    settle(part, chosen, &mut is_settled);
+                    false
+                }
+                None => true,
+            });
+            if left.len() < before {
+                continue;
+            }
+            // Where no part can be settled without, as few motions as can be are stopped.
+            let with_stops = left.iter().enumerate();
+            let with_stops =
+                with_stops.filter_map(|(i, part)| Some((i, self.choose(part, true, &is_settled)?)));
+            let is_stop = |hold: &&FreeForce| matches!(hold.profile, Variation::Stop(_));
+            let fewest =
+                with_stops.min_by_key(|(_, (holds, _))| holds.iter().filter(is_stop).count());
+            let Some((i, chosen)) = fewest else {
+                return Err(Unbalanced::Free { triangle: first[0] });
+            };
+            settle(left.remove(i), chosen, &mut is_settled);
+        }
+        Ok(settled)
+    }
+
+    /// The factors with which the holds of a part balance `total`, and what a support takes of the forces on the boundary.
+    fn factors(
         &self,
         part: &[usize],
+        (holds, size): Chosen,
         total: Wrench<S>,
     ) -> Result<[(FreeForce, S, f64); 3], Unbalanced> {
         let free = Unbalanced::Free { triangle: part[0] };
-        let Some((holds, size)) = self.choose(part) else { return Err(free) };
         let pull = self.pull(part);
         let unit = holds.map(|hold| match hold.profile {
             Variation::Stop(c) => stop(c, total.about),
@@ -298,6 +353,15 @@ impl<S: Enclosing> OnEdges<'_, S> {
     /// Quantities that may change on edge `e`: tractions on Gamma_D, and each pressure on Gamma_C by a part of itself. Where
     /// the direction of contact turns it is the same at both ends, and stays so.
     fn candidates(&self, e: usize) -> impl Iterator<Item = FreeForce> {
+        let of_pressure = |pressure: [f64; 2], along: Option<[[f64; 2]; 2]>| {
+            if pressure == [0.0; 2] {
+                Vec::new()
+            } else if along.is_some_and(|[a, b]| a != b) {
+                vec![Variation::Pressure([true; 2])]
+            } else {
+                vec![Variation::Pressure([true, false]), Variation::Pressure([false, true])]
+            }
+        };
         let profiles = match self.certificate.edges[e].role {
             Role::Held(held, _) => {
                 let axes = [[1.0, 0.0], [0.0, 1.0]];
@@ -307,11 +371,11 @@ impl<S: Enclosing> OnEdges<'_, S> {
             Role::Supported { along, .. } => {
                 vec![Variation::Constant(along), Variation::Linear(along)]
             }
-            Role::Contact { pressure, along, .. } if pressure != [0.0; 2] => {
-                if along.is_some_and(|[a, b]| a != b) {
-                    vec![Variation::Pressure([true; 2])]
-                } else {
-                    vec![Variation::Pressure([true, false]), Variation::Pressure([false, true])]
+            Role::Contact { pressure, along, .. } => of_pressure(pressure, along),
+            Role::Facing => {
+                match self.certificate.facing.get(&e).map(|&e| self.certificate.edges[e].role) {
+                    Some(Role::Contact { pressure, along, .. }) => of_pressure(pressure, along),
+                    _ => Vec::new(),
                 }
             }
             _ => Vec::new(),
@@ -320,9 +384,9 @@ impl<S: Enclosing> OnEdges<'_, S> {
     }
 
     /// Three holds of a part whose wrenches are as independent as any: greedily, by what is left after those before. Those of
-    /// Gamma_D come first, where any traction is admissible; a motion that neither stops gets a support. Also how far the
-    /// part reaches.
-    fn choose(&self, part: &[usize]) -> Option<([FreeForce; 3], f64)> {
+    /// Gamma_D come first, where any traction is admissible; a motion that neither stops may get a support. Pressures on other parts
+    /// are those on settled ones.
+    fn choose(&self, part: &[usize], may_stop: bool, is_settled: &[bool]) -> Option<Chosen> {
         let double = |x: Vector2<S>| x.map(|c| (c.lower() + c.upper()) / 2.0);
         let origin = double(self.points[self.certificate.pieces[part[0]].vertices[0]]);
         let mut candidates = Vec::new();
@@ -330,6 +394,10 @@ impl<S: Enclosing> OnEdges<'_, S> {
         for &t in part {
             for e in self.certificate.pieces[t].edges {
                 if self.owners[e][0].is_none_or(|owner| owner.piece != t) {
+                    continue;
+                }
+                let faced = self.certificate.facing.get(&e).map(|&other| self.owners[other][0]);
+                if faced.is_some_and(|owner| owner.is_none_or(|owner| !is_settled[owner.piece])) {
                     continue;
                 }
                 for hold in self.candidates(e) {
@@ -359,7 +427,8 @@ impl<S: Enclosing> OnEdges<'_, S> {
         let (of_contact, of_supports) = candidates
             .into_iter()
             .partition(|(hold, _)| matches!(hold.profile, Variation::Pressure(_)));
-        for candidates in [of_supports, of_contact, Vec::from(stops)] {
+        let stops = if may_stop { Vec::from(stops) } else { Vec::new() };
+        for candidates in [of_supports, of_contact, stops] {
             let left = |row: &[f64; 3], chosen: &[(FreeForce, [f64; 3])]| {
                 chosen.iter().fold(*row, |row, (_, other)| {
                     let along = (0..3).map(|c| row[c] * other[c]).sum::<f64>() / norm(other);

@@ -4,7 +4,9 @@
 use nalgebra::Vector2;
 
 use super::balance::{Change, Closed, OnEdges, SpanningTree, Unbalanced};
-use super::certificate::{Certificate, Edge, Owner, Piece, Role, Shape, exactly, support};
+use super::certificate::{
+    Certificate, Edge, Owner, Piece, Role, Shape, exactly, opposite, support,
+};
 use super::checks::{Rejection, wrong};
 use super::on_contact::{OnContact, OnEdge, along_directions, along_the_normal};
 use crate::kernel::composite::{Affine, Composite, Frame, Loads, Wrench};
@@ -84,8 +86,10 @@ impl Certificate {
                     }
                     contact.force
                 }
+                Role::Facing => [Vector2::zeros(); 2],
             });
         }
+        self.face(&mut forces);
         let (resultants, in_balance) = (Vec::new(), Vec::new());
         let closed = Closed { added: Vec::new(), changes: Vec::new(), stops: Vec::new() };
         let mut state = Balanced {
@@ -115,6 +119,15 @@ impl Certificate {
         Ok(state)
     }
 
+    /// The forces on the second bodies of pairs.
+    fn face<S: Enclosing>(&self, forces: &mut [[Vector2<S>; 2]]) {
+        for (&e, &other) in &self.facing {
+            if self.edges[e].role == Role::Facing {
+                forces[e] = opposite(forces[other]);
+            }
+        }
+    }
+
     /// The edges of Gamma_C on which v can't be shown to be outside the obstacle, each with how far it may be inside.
     pub fn penetrations(&self) -> Vec<(usize, f64)> {
         let (v, points): (Shape<Ball>, Vec<Vector2<Ball>>) = (self.shape(), self.places());
@@ -141,14 +154,9 @@ impl Certificate {
         let Role::Contact { pressure: given, gap, along } = edge.role else {
             return Err(wrong("edge", e, "expected one of Gamma_C"));
         };
-        let shape = OnEdge {
-            v: edge.ends.map(|vertex| v.points[vertex]),
-            gap,
-            bulges: self
-                .curved
-                .as_ref()
-                .map(|curved| (exactly(curved.bulges[e]), curved.data[e][0])),
-        };
+        let (v, bulge) = self.jump(e, v);
+        let data = self.curved.as_ref().map(|curved| curved.data[e][0]);
+        let shape = OnEdge { v, gap, bulges: bulge.zip(data) };
         let span = self.span(edge.ends, points);
         let length = || span.dot(&span).sqrt();
         match along {
@@ -287,7 +295,7 @@ impl Balanced<f64> {
                     let d = Vector2::from(*along);
                     *force = now.map(|f| f.dot(&d) / d.dot(&d));
                 }
-                Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } => {}
+                Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } | Role::Facing => {}
             }
         }
         for &Change { edge, factors } in &self.closed.changes {
@@ -307,12 +315,13 @@ impl Balanced<f64> {
                     let edge = end - start;
                     *force = support(along, now, traction, || edge.x.hypot(edge.y));
                 }
-                Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } => {}
+                Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } | Role::Facing => {}
             }
         }
         for &Change { edge, factors } in &self.closed.changes {
             (0..2).for_each(|k| self.forces[edge][k] *= 1.0 + factors[k]);
         }
+        certificate.face(&mut self.forces);
         self.close(certificate)
     }
 }

@@ -33,6 +33,8 @@ pub struct Certificate {
     pub lifts: Vec<Lift>,
     /// The edges that stand for a part of a curved boundary.
     pub polygon: Vec<usize>,
+    /// The edges of two bodies that face each other, one of [`Role::Contact`] and one of [`Role::Facing`], each by the other.
+    pub facing: BTreeMap<usize, usize>,
 }
 
 /// A displacement z that vanishes outside the triangle of the mesh between three vertices: with its traces there, the
@@ -147,7 +149,7 @@ pub enum Role {
     Loaded([[f64; 2]; 2]),
     /// Gamma_N: the pressure p that is given, t = -p n.
     Pressed([f64; 2]),
-    /// Gamma_C.
+    /// Gamma_C. On a pair v is that on this edge less that on the edge that faces this one, which runs the other way.
     Contact {
         /// tau_n at both ends.
         pressure: [f64; 2],
@@ -156,6 +158,13 @@ pub enum Role {
         /// The direction d of contact at both ends, affine between them; `None` is the edge's normal.
         along: Option<[[f64; 2]; 2]>,
     },
+    /// The second body of a pair: the force is minus that on the edge of [`Role::Contact`] that faces this one.
+    Facing,
+}
+
+/// What an edge's values at both ends are on the edge that faces it, which runs the other way, with the opposite sign.
+pub(super) fn opposite<S: Enclosing>([a, b]: [Vector2<S>; 2]) -> [Vector2<S>; 2] {
+    [-b, -a]
 }
 
 /// The vector with these components.
@@ -262,6 +271,24 @@ impl Certificate {
             (None, _) => of(&self.displacement, &self.prescribed, point),
             (Some(cut), Some(curved)) => of(&curved.at_cuts, &curved.prescribed, cut),
             (Some(_), None) => None,
+        }
+    }
+
+    /// A displacement at both ends of edge `e` of Gamma_C, and its bulge there: on a pair less that of the other body.
+    pub(crate) fn jump<S: Enclosing>(
+        &self,
+        e: usize,
+        w: &Shape<S>,
+    ) -> ([Vector2<S>; 2], Option<Vector2<S>>) {
+        let ends = |e: usize| self.edges[e].ends.map(|p| w.points[p]);
+        let bulge = |e: usize| w.bulges.as_ref().map(|bulges| bulges[e]);
+        match self.facing.get(&e) {
+            None => (ends(e), bulge(e)),
+            Some(&other) => {
+                let ([a, b], [c, d]) = (ends(e), opposite(ends(other)));
+                let both = bulge(e).zip(bulge(other));
+                ([a + c, b + d], both.map(|(own, other)| own - other))
+            }
         }
     }
 

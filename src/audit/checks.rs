@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use thiserror::Error;
 
 use super::balance::Unbalanced;
-use super::certificate::{Certificate, Curved, Lift, Owner, Role, is_oblique};
+use super::certificate::{Certificate, Curved, Edge, Lift, Owner, Role, is_oblique};
 use crate::kernel::{Ball, Material};
 
 /// Why a certificate proves nothing.
@@ -145,6 +145,7 @@ impl Certificate {
                         && finite(&gap)
                         && along.is_none_or(|d| finite(d.as_flattened()))
                 }
+                Role::Facing => true,
             };
             if !numbers {
                 return Err(wrong("edge", i, "expected finite numbers"));
@@ -210,8 +211,31 @@ impl Certificate {
                 return Err(wrong("lift", i, "expected a triangle of its own and its norm"));
             }
         }
-        match self.polygon.iter().position(|&e| e >= self.edges.len()) {
-            Some(i) => Err(wrong("edge of the polygon", i, "this edge does not exist")),
+        if let Some(i) = self.polygon.iter().position(|&e| e >= self.edges.len()) {
+            return Err(wrong("edge of the polygon", i, "this edge does not exist"));
+        }
+        self.check_facing()
+    }
+
+    /// The edges of two bodies face each other one to one, and contact between them has a direction.
+    fn check_facing(&self) -> Result<(), Rejection> {
+        let is_pair = |a: usize, b: usize| {
+            let [a, b] = [a, b].map(|e| self.edges.get(e).map(|edge| edge.role));
+            matches!((a, b), (Some(Role::Contact { along: Some(_), .. }), Some(Role::Facing)))
+        };
+        for (&e, &other) in &self.facing {
+            if !(self.facing.get(&other) == Some(&e) && (is_pair(e, other) || is_pair(other, e))) {
+                return Err(wrong(
+                    "edge",
+                    e,
+                    "expected contact along a direction and what faces it",
+                ));
+            }
+        }
+        let alone =
+            |(e, edge): (usize, &Edge)| edge.role == Role::Facing && !self.facing.contains_key(&e);
+        match self.edges.iter().enumerate().position(alone) {
+            Some(e) => Err(wrong("edge", e, "faces no edge")),
             None => Ok(()),
         }
     }
@@ -313,7 +337,7 @@ impl Certificate {
                     }
                     [data[0] != 0.0, false]
                 }
-                Role::Inner(_) | Role::Loaded(_) | Role::Pressed(_) => [false; 2],
+                Role::Inner(_) | Role::Loaded(_) | Role::Pressed(_) | Role::Facing => [false; 2],
             };
             let is_held = matches!(edge.role, Role::Held(..));
             for component in 0..2 {

@@ -11,6 +11,8 @@
 //! The pair is itself a certificate on the same triangles, of the linear problem whose contact edges are held along the
 //! direction of contact, an axis, or free.
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector2;
 
 use super::balance::{OnEdges, Stop};
@@ -83,6 +85,7 @@ impl Certificate {
             edges,
             lifts: Vec::new(),
             polygon: self.polygon.clone(),
+            facing: BTreeMap::new(),
         }
     }
 }
@@ -260,7 +263,9 @@ impl<S: Enclosing> Forces<'_, S> {
             Role::Supported { along, force, .. } => {
                 force.map(|p| exactly::<Ball>(along) * Ball::point(p))
             }
-            Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } => [Vector2::zeros(); 2],
+            Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } | Role::Facing => {
+                [Vector2::zeros(); 2]
+            }
         };
         let forces: Vec<[Vector2<Ball>; 2]> = pair.edges.iter().map(on_edge).collect();
         let points = pair.places::<Ball>();

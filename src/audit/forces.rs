@@ -118,8 +118,8 @@ impl Certificate {
         let Role::Contact { gap, .. } = self.edges[e].role else { return [S::from(0); 4] };
         let bulge = self.curved.as_ref().map_or(0.0, |curved| curved.data[e][0]);
         let g = elevated(gap.map(S::exactly), S::exactly(bulge));
-        let v = self.edges[e].ends.map(|p| state.v.points[p]);
-        let bulge = state.v.bulges.as_ref().map_or_else(Vector2::zeros, |bulges| bulges[e]);
+        let (v, bulge) = self.jump(e, &state.v);
+        let bulge = bulge.unwrap_or_else(Vector2::zeros);
         let v = along(v, bulge, self.directions(e, &state.points));
         [0, 1, 2, 3].map(|k| g[k] - v[k])
     }
@@ -639,8 +639,8 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         let certificate = self.certificate;
         let ends = certificate.edges[e].ends;
         let d = certificate.directions(e, &self.state.points);
-        let bulge = w.bulges.as_ref().map_or_else(Vector2::zeros, |bulges| bulges[e]);
-        let [a, b] = ends.map(|p| w.points[p]);
+        let ([a, b], bulge) = certificate.jump(e, w);
+        let bulge = bulge.unwrap_or_else(Vector2::zeros);
         let off = |x: S| [x.lower(), x.upper()];
         if !self.is_meant(e, target) {
             return along([-a, -b], -bulge, d).map(off);
@@ -738,8 +738,8 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         let shape = self.shape(w, target)?;
         let mut along_all = vec![None; self.certificate.edges.len()];
         for e in self.contact() {
-            let bulge = shape.bulges.as_ref().map_or_else(Vector2::zeros, |bulges| bulges[e]);
-            let w = self.certificate.edges[e].ends.map(|p| shape.points[p]);
+            let (w, bulge) = self.certificate.jump(e, &shape);
+            let bulge = bulge.unwrap_or_else(Vector2::zeros);
             let d = self.certificate.directions(e, &self.state.points);
             let w = along(w, bulge, d).map(|w| w.lower());
             along_all[e] = w.iter().all(|&w| w >= 0.0).then_some(w);

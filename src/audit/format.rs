@@ -228,7 +228,15 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
         edges: arrays.next("edges")?.enumerate().map(edge).collect::<Result<_, _>>()?,
         lifts: arrays.next("lifts")?.map(lift).collect(),
         polygon: arrays.next("polygon")?.collect(),
+        facing: BTreeMap::new(),
     };
+    for [e, other] in arrays.next::<[usize; 2]>("pairs")? {
+        for [e, other] in [[e, other], [other, e]] {
+            if certificate.facing.insert(e, other).is_some() {
+                return Err(format!("edge {e} faces two edges"));
+            }
+        }
+    }
     for (e, d) in arrays.next::<(usize, [[f64; 2]; 2])>("directions")? {
         match certificate.edges.get_mut(e).map(|edge| &mut edge.role) {
             Some(Role::Contact { along: along @ None, .. }) => *along = Some(d),
@@ -471,6 +479,9 @@ fn arrays(certificate: &Certificate, shares: &[f64]) -> ArrayWriter {
     }
     out.add("lifts", certificate.lifts.iter().map(|lift| (lift.corners, lift.norm)));
     out.add("polygon", certificate.polygon.iter().copied());
+    let is_second = |e: &usize| certificate.edges[*e].role == Role::Facing;
+    let pairs = certificate.facing.iter().filter(|(_, other)| is_second(other));
+    out.add("pairs", pairs.map(|(&e, &other)| [e, other]));
     out.add("shares", shares.iter().copied());
     out
 }
@@ -682,6 +693,7 @@ fn role_entry(role: &Role) -> RoleEntry {
         Role::Pressed(pressure) => (5, [pressure, [0.0; 2]]),
         Role::Contact { pressure, gap, .. } => (6, [pressure, gap]),
         Role::Supported { force, traction, .. } => (7, [force, traction]),
+        Role::Facing => (8, [[0.0; 2]; 2]),
     }
 }
 
@@ -694,6 +706,7 @@ fn role(e: usize, number: usize, [start, end]: [[f64; 2]; 2]) -> Result<Role, St
         5 if end == [0.0; 2] && start != [0.0; 2] => Role::Pressed(start),
         6 => Role::Contact { pressure: start, gap: end, along: None },
         7 => Role::Supported { along: [0.0; 2], force: start, traction: end },
+        8 if [start, end] == [[0.0; 2]; 2] => Role::Facing,
         _ => return Err(format!("edge {e} has an unknown role")),
     })
 }

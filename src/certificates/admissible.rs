@@ -1,4 +1,4 @@
-//! v from a displacement: it gets the prescribed values, and is pushed out of the obstacle.
+//! v from a displacement: it gets the prescribed values, and is pushed out of the obstacle, two bodies out of each other.
 
 use std::collections::BTreeMap;
 
@@ -23,8 +23,9 @@ pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Fi
         };
     }
     let size = u.vertices.iter().flatten().fold(0.0_f64, |max, u| max.max(u.abs()));
+    let obstacles = || parts.contact.iter().zip(further).filter(|(edge, _)| !edge.is_pair());
     let mut walls: BTreeMap<usize, Vec<Wall>> = BTreeMap::new();
-    for (edge, further) in parts.contact.iter().zip(further) {
+    for (edge, further) in obstacles() {
         for (k, vertex) in parts.mesh.ends(edge.edge).into_iter().enumerate() {
             let (n, gap) = (edge.directions[k], edge.gap[k]);
             // Balls must see it.
@@ -46,7 +47,7 @@ pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Fi
             };
         }
         let mut moved = false;
-        for (edge, further) in parts.contact.iter().zip(further) {
+        for (edge, further) in obstacles() {
             if !edge.turns() || u.bulges.is_some() {
                 continue;
             }
@@ -87,7 +88,7 @@ pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Fi
         let at_ends = |v: &[[f64; 2]], edge: BoundaryEdge| {
             parts.mesh.ends(edge).map(|vertex| Vector2::from(v[vertex]))
         };
-        for (edge, further) in parts.contact.iter().zip(further) {
+        for (edge, further) in obstacles() {
             let ends = parts.mesh.ends(edge.edge);
             let bulge = Vector2::from(bulges[number(edge.edge)]);
             let over =
@@ -99,7 +100,7 @@ pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Fi
                 *v = (Vector2::from(*v) - edge.directions[k] * step).into();
             }
         }
-        for (edge, further) in parts.contact.iter().zip(further) {
+        for (edge, further) in obstacles() {
             let bulge = &mut bulges[number(edge.edge)];
             let v = (at_ends(&field.vertices, edge.edge), Vector2::from(*bulge));
             let over = Over::new(edge, v, (size, *further));
@@ -110,7 +111,97 @@ pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Fi
             }
         }
     }
+    let pairs = || parts.contact.iter().zip(further).filter(|(edge, _)| edge.is_pair());
+    for _ in 0..SWEEPS {
+        let moved = pairs().fold(false, |moved, (contact, further)| {
+            move_apart(parts, contact, &mut field, (size, *further)) || moved
+        });
+        if !moved {
+            break;
+        }
+    }
     field
+}
+
+/// The number of times that two bodies are moved apart: what is moved at one contact moves its neighbours.
+const SWEEPS: usize = 16;
+
+/// Moves two bodies apart where they go through each other: for each Bernstein coefficient of v . d - g that is positive, with the
+/// least energy that some springs at the vertices and in the middles of both edges have, each as stiff as its body.
+fn move_apart(
+    parts: &ProblemParts,
+    contact: &Contact,
+    field: &mut Field,
+    (size, further): (f64, f64),
+) -> bool {
+    let mesh = parts.mesh;
+    let (d, [g, h]) = (contact.directions, contact.gap);
+    let mean = (d[0] + d[1]) / 2.0;
+    let quadratic = field.bulges.is_some();
+    let gap_bulge = if quadratic { contact.gap_bulge } else { 0.0 };
+    let gap = [g, (g + h) / 2.0 + 2.0 * gap_bulge, h];
+    let margin = 64.0 * f64::EPSILON * (size + g.abs() + h.abs() + gap_bulge.abs()) + further;
+    // Each unknown: a vertex, or the number of an edge for its bulge; its direction; its coefficients; and how easily it moves.
+    let mut unknowns = Vec::with_capacity(6);
+    for (i, side) in contact.sides.iter().enumerate() {
+        let ease = 1.0 / parts.material(side.edge.triangle).mu();
+        let [s, t] = side.places;
+        let blossom = |[a, m, b]: [f64; 3]| {
+            [(s, s), (s, t), (t, t)].map(|(s, t)| {
+                a * (1.0 - s) * (1.0 - t) + m * ((1.0 - s) * t + s * (1.0 - t)) + b * s * t
+            })
+        };
+        let along = mean * Contact::sign(i);
+        let mut add = |at: Result<usize, usize>, along: Vector2<f64>, shape: [f64; 3]| {
+            let change = blossom(shape).map(|n| along * (n * Contact::sign(i)));
+            let effects = |ends| coefficients(&change, &d, &[0.0; 3], ends);
+            let effects: Vec<f64> =
+                contact.parts.iter().flat_map(|part| effects(part.ends)).collect();
+            unknowns.push((at, along, effects, ease));
+        };
+        for (vertex, shape) in
+            mesh.ends(side.edge).into_iter().zip([[1.0, 0.5, 0.0], [0.0, 0.5, 1.0]])
+        {
+            match parts.free_at(vertex) {
+                Free::All => add(Ok(vertex), along, shape),
+                Free::Along(t) => add(Ok(vertex), t * t.dot(&along), shape),
+                Free::Nothing => {}
+            }
+        }
+        if quadratic {
+            let number = mesh.triangle_edges()[side.edge.triangle][side.edge.local];
+            add(Err(number), along, [0.0, 2.0, 0.0]);
+        }
+    }
+    let jump = |field: &Field| {
+        let jump = contact.jump(mesh, field);
+        let of_part = |ends| coefficients(&jump, &d, &gap, ends);
+        contact.parts.iter().flat_map(|part| of_part(part.ends)).collect::<Vec<f64>>()
+    };
+    let mut over = jump(field);
+    let mut moved = false;
+    for j in 0..over.len() {
+        let beyond = over[j] + margin;
+        let give: f64 =
+            unknowns.iter().map(|(_, _, effects, ease)| ease * effects[j] * effects[j]).sum();
+        if !(beyond > 0.0 && give > 0.0) {
+            continue;
+        }
+        // A little farther, so that rounding does not ask again.
+        let step = (beyond + margin) / give;
+        for (at, along, effects, ease) in &unknowns {
+            let by = step * ease * effects[j];
+            over.iter_mut().zip(effects).for_each(|(over, effect)| *over -= by * effect);
+            let place = match (at, &mut field.bulges) {
+                (Ok(vertex), _) => &mut field.vertices[*vertex],
+                (Err(edge), Some(bulges)) => &mut bulges[*edge],
+                (Err(_), None) => continue,
+            };
+            *place = (Vector2::from(*place) - *along * by).into();
+        }
+        moved = true;
+    }
+    moved
 }
 
 /// n is not along an axis.
@@ -221,7 +312,7 @@ impl Over {
         let largest = v[0].dot(&d[0]).abs() + v[1].dot(&d[1]).abs() + bulge.dot(&d[0]).abs();
         let scale = largest + tilted + g.abs() + h.abs() + edge.gap_bulge.abs();
         Over {
-            coefficients: edge.pieces().into_iter().flat_map(of_part).collect(),
+            coefficients: edge.parts.iter().map(|part| part.ends).flat_map(of_part).collect(),
             margin: 64.0 * f64::EPSILON * scale + further,
         }
     }
@@ -229,7 +320,7 @@ impl Over {
     /// The least multiple of a change of v with these coefficients that makes all negative where the change is not 0.
     fn step(&self, edge: &Contact, change: &[Vector2<f64>; 3]) -> f64 {
         let of_part = |part| coefficients(change, &edge.directions, &[0.0; 3], part);
-        let effects = edge.pieces().into_iter().flat_map(of_part);
+        let effects = edge.parts.iter().map(|part| part.ends).flat_map(of_part);
         let all = self.coefficients.iter().zip(effects);
         let steps = all.filter(|(_, effect)| *effect > 1e-6);
         steps.fold(0.0, |step: f64, (c, effect)| step.max((c + 2.0 * self.margin) / effect))
@@ -254,7 +345,7 @@ impl Over {
                 [Vector2::zeros(), d / 2.0, d]
             };
             let step = self.step(edge, &change);
-            let force = length(edge.on_edge()[k]);
+            let force = length(edge.on_edge(0)[k]);
             (k, step, modulus * step * step + 4.0 * force * step)
         };
         let most = 16.0 / 3.0 * modulus * by_bulge * by_bulge;

@@ -23,6 +23,9 @@ use crate::model::{BoundaryEdge, Degree, Mesh, MeshError, Problem, Space};
 /// Numbers that differ by this, in units of the largest of their kind, are the same.
 const ROUNDING: f64 = 1e-11;
 
+/// Places on an edge that differ by this part of the edge are the same.
+const PLACES: f64 = 1e-9;
+
 /// The part of a triangle by which places outside it lie in it: what is the same for other numbers, and the rounding of its own
 /// coordinates.
 fn room(mesh: &Mesh, t: usize) -> f64 {
@@ -58,7 +61,7 @@ pub fn compare(
     certificate: &Certificate,
     forces: &Evidence,
 ) -> Result<Option<String>, Difference> {
-    let (refinement, origins) = refinement(&problem.mesh, certificate)?;
+    let (refinement, origins) = refinement(&problem, certificate)?;
     let problem = problem.refined(refinement);
     // Between the middles of a triangle's edges lies the fourth of its quarters.
     let vertices = certificate.vertices.len();
@@ -114,12 +117,13 @@ fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// The triangles that the pieces of a certificate are parts of, as a refinement of `mesh`, and which of them each piece is a part
+/// The triangles that the pieces of a certificate are parts of, as a refinement of the problem's mesh, and which of them each piece is a part
 /// of. Each point of a piece is a corner of its triangle, or lies between two.
 fn refinement(
-    mesh: &Mesh,
+    problem: &Problem,
     certificate: &Certificate,
 ) -> Result<(Refinement, Vec<usize>), Difference> {
+    let mesh = &problem.mesh;
     let at = |k: usize| Vector2::from(certificate.vertices[k]);
     let mut numbers = BTreeMap::new();
     let mut found: Vec<([usize; 3], usize)> = Vec::new();
@@ -164,7 +168,8 @@ fn refinement(
     origins.iter_mut().for_each(|number| *number = place_of[*number]);
     let (triangles, origin): (Vec<_>, Vec<_>) = order.iter().map(|&k| found[k]).unzip();
     let named = named(mesh, certificate, &triangles, &origin)?;
-    let fine = Mesh::new(certificate.vertices.clone(), triangles, named)?;
+    let vertices = certificate.vertices.clone();
+    let fine = Mesh::with_pairs(vertices, triangles, named, &problem.pairs)?;
     Ok((Refinement { mesh: fine, parents: Vec::new(), origin }, origins))
 }
 
@@ -239,6 +244,7 @@ fn sizes(certificate: &Certificate) -> (f64, f64) {
             }
             Role::Loaded(t) => (lengths, largest(loads, t.as_flattened())),
             Role::Pressed(p) | Role::Supported { traction: p, .. } => (lengths, largest(loads, &p)),
+            Role::Facing => (lengths, loads),
             Role::Inner(force) | Role::Held(_, force) => {
                 (lengths, largest(loads, force.map(|f| f.map(|f| f / length)).as_flattened()))
             }
@@ -325,14 +331,7 @@ impl Comparison<'_> {
         let Some((number, [a, b])) = self.side(edge) else {
             return Err(outside("edge", e, "is on no boundary of the case"));
         };
-        // Where its ends lie on the side of the triangle.
-        let s = edge.ends.map(|p| match p.checked_sub(certificate.vertices.len()) {
-            None => f64::from(u8::from(p == b)),
-            Some(cut) => {
-                let cut = certificate.cuts[cut];
-                if cut.ends[1] == b { cut.at } else { 1.0 - cut.at }
-            }
-        });
+        let s = self.places_on(edge, b);
         let same = |of: (&str, f64), found: &[f64], expected: &[f64]| {
             self.same("edge", e, of, found, expected)
         };
@@ -355,6 +354,7 @@ impl Comparison<'_> {
             (Role::Pressed(p), Role::Pressed(pressure)) => {
                 same(("pressure", self.loads), &p, &pressure)?;
             }
+            (Role::Facing, Role::Facing) => {}
             (Role::Contact { gap: g, along: d, .. }, Role::Contact { gap, along, .. }) => {
                 same(("gap", self.lengths), &g, &gap)?;
                 let [d, along] =
@@ -366,6 +366,9 @@ impl Comparison<'_> {
                 let expected = kind(&expected).to_owned();
                 return Err(Difference::Data { what: "edge", index: e, found, expected });
             }
+        }
+        if let Some(&Boundary::Contact(line)) = parts.boundary.get(&number) {
+            self.facing(e, line, s)?;
         }
         let Some(curved) = &certificate.curved else { return Ok(()) };
         same(("bulge of data", self.lengths), &curved.data[e], &bulge)?;
@@ -396,6 +399,48 @@ impl Comparison<'_> {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Where the ends of an edge lie on the side of the triangle that ends with vertex `b`.
+    fn places_on(&self, edge: &Edge, b: usize) -> [f64; 2] {
+        let Certificate { vertices, cuts, .. } = self.certificate;
+        edge.ends.map(|p| match p.checked_sub(vertices.len()) {
+            None => f64::from(u8::from(p == b)),
+            Some(cut) if cuts[cut].ends[1] == b => cuts[cut].at,
+            Some(cut) => 1.0 - cuts[cut].at,
+        })
+    }
+
+    /// Edge `e`, from place `s` to `t` on an edge of Gamma_C, lies in one contact or in none, and what faces it on a pair is what does so
+    /// in the case.
+    fn facing(&self, e: usize, line: usize, [s, t]: [f64; 2]) -> Result<(), Difference> {
+        let (certificate, parts) = (self.certificate, self.parts);
+        let contact = parts.contact_at(line, (s + t) / 2.0);
+        for &(k, i) in &parts.lines[line] {
+            let [from, to] = parts.contact[k].sides[i].places;
+            let (low, high) = (from.min(to), from.max(to));
+            let is_in = s >= low - PLACES && t <= high + PLACES;
+            let is_off = t <= low + PLACES || s >= high - PLACES;
+            if !(if contact == Some((k, i)) { is_in } else { is_off }) {
+                return Err(outside("edge", e, "is in contact in part, or with several"));
+            }
+        }
+        let Some((k, i)) = contact.filter(|&(k, _)| parts.contact[k].is_pair()) else {
+            return Ok(());
+        };
+        let differs = || outside("edge", e, "does not face what it faces in the case");
+        let sides = &parts.contact[k].sides;
+        let (own, side) = (&sides[i], &sides[1 - i]);
+        let other = certificate.facing.get(&e).map(|&other| &certificate.edges[other]);
+        let other = other.ok_or_else(differs)?;
+        let (number, [_, b]) = self.side(other).ok_or_else(differs)?;
+        let mesh = parts.mesh;
+        if number != mesh.triangle_edges()[side.edge.triangle][side.edge.local] {
+            return Err(differs());
+        }
+        let [u, v] = self.places_on(other, b);
+        let near = |(x, y): (f64, f64)| (side.place(own.within(x)) - y).abs() <= PLACES;
+        if near((s, v)) && near((t, u)) { Ok(()) } else { Err(differs()) }
     }
 
     /// Compares the parts of prescribed displacements and gaps that the certificate's own leave out.
@@ -462,5 +507,6 @@ fn kind(role: &Role) -> &'static str {
         Role::Loaded(_) => "one where a traction acts",
         Role::Pressed(_) => "one where a pressure acts",
         Role::Contact { .. } => "one of contact",
+        Role::Facing => "one that faces another of contact",
     }
 }

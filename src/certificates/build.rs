@@ -1,5 +1,5 @@
 //! A certificate from a discrete solution: v as it was made admissible, tau by equilibrated tractions (`tractions`), on the
-//! triangles of the mesh or on their quarters (`quarters`), cut where contact ends (`divide`).
+//! triangles of the mesh or on their quarters (`quarters`), cut where contact ends or faces a node of another body (`divide`).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,7 +8,6 @@ use nalgebra::Vector2;
 use super::certificate::{
     Certificate, Curved, Cut, Edge, Piece, Role, Shape, exactly, is_oblique, place,
 };
-use super::contact::Profile;
 use super::data::{Data, force_of};
 use super::divide::{Division, SubTriangle, cut, divided};
 use super::field::{Field, edge_ends};
@@ -18,9 +17,9 @@ use super::quarters::{halved, quarters};
 use super::tractions::{moments, stresses, with_force};
 use crate::kernel::composite::Affine;
 use crate::kernel::{Enclosing, Triangle};
-use crate::model::Mesh;
 use crate::model::boundary_normals::SmoothBoundary;
 use crate::model::mesh::length;
+use crate::model::{BoundaryEdge, Mesh};
 
 /// A certificate with equilibrated tractions, before any improvement.
 pub(super) struct Built {
@@ -103,22 +102,17 @@ impl Built {
     /// Where the boundaries of the problem are on the edges of the certificate.
     pub fn line(&self, parts: &ProblemParts) -> Line {
         let (mesh, edges) = (parts.mesh, &self.certificate.edges);
-        let count = mesh.edge_count();
-        // A division keeps its edge for the first part and adds the second one and the cut.
-        let first = edges.len() - 2 * self.divisions.len();
-        let second: BTreeMap<usize, usize> =
-            self.divisions.iter().enumerate().map(|(i, d)| (d.base, first + 2 * i)).collect();
-        let halves = if self.quartered { 2 } else { 1 };
-        let on = |whole: usize| {
-            let halves = (0..halves).map(move |half| half * count + whole);
-            halves.flat_map(|e| std::iter::once(e).chain(second.get(&e).copied()))
-        };
+        let along = self.along(mesh);
         let mut line =
             Line { names: Vec::new(), of: vec![None; edges.len()], stations: Vec::new() };
-        for name in parts.problem.conditions.keys() {
+        let of_pairs = parts.problem.pairs.iter().map(|pair| &pair.boundaries[0]);
+        for name in parts.problem.conditions.keys().chain(of_pairs) {
+            if line.names.contains(name) {
+                continue;
+            }
             for &edge in mesh.edges_of(name).unwrap_or_default() {
                 let whole = mesh.triangle_edges()[edge.triangle][edge.local];
-                on(whole).for_each(|e| line.of[e] = Some(line.names.len()));
+                along.of(whole).iter().for_each(|&(e, _)| line.of[e] = Some(line.names.len()));
             }
             line.names.push(name.clone());
         }
@@ -126,8 +120,11 @@ impl Built {
         let mut arc = 0.0;
         for contact in &parts.contact {
             let whole = mesh.triangle_edges()[contact.edge.triangle][contact.edge.local];
-            for e in on(whole) {
+            for &(e, [s, t]) in along.of(whole) {
                 let (ends, Some(name)) = (edges[e].ends, line.of[e]) else { continue };
+                if !contact.sides[0].has((s + t) / 2.0) {
+                    continue;
+                }
                 if before.is_none_or(|(boundary, _)| boundary != name) {
                     arc = 0.0;
                 }
@@ -146,6 +143,81 @@ impl Built {
             }
         }
         line
+    }
+}
+
+/// The edges of a certificate along those of a mesh, each with the places where it begins and ends there.
+struct Along(BTreeMap<usize, Vec<(usize, [f64; 2])>>);
+
+impl Along {
+    fn of(&self, whole: usize) -> &[(usize, [f64; 2])] {
+        self.0.get(&whole).map_or(&[], Vec::as_slice)
+    }
+}
+
+impl Built {
+    /// The edges of the certificate along those of the outline.
+    fn along(&self, mesh: &Mesh) -> Along {
+        let (count, halves) = (mesh.edge_count(), if self.quartered { 2 } else { 1 });
+        // A division keeps its edge for the first part and adds the second one and the cut.
+        let first = self.certificate.edges.len() - 2 * self.divisions.len();
+        let mut seconds: BTreeMap<usize, Vec<(usize, [f64; 3])>> = BTreeMap::new();
+        for (i, division) in self.divisions.iter().enumerate() {
+            seconds.entry(division.base).or_default().push((first + 2 * i, division.places));
+        }
+        let on = |whole: usize| {
+            let mut all = Vec::with_capacity(halves);
+            for half in 0..halves {
+                let [from, to] = [half, half + 1].map(|k| k as f64 / halves as f64);
+                let (e, end) = (half * count + whole, all.len());
+                let seconds = seconds.get(&e).map_or(&[][..], Vec::as_slice);
+                // The farthest is cut off first.
+                let first = seconds.last().map_or(to, |&(_, places)| places[1]);
+                all.push((e, [from, first]));
+                all.extend(seconds.iter().rev().map(|&(e, [_, at, to])| (e, [at, to])));
+                debug_assert!(all.len() > end);
+            }
+            (whole, all)
+        };
+        let number = |edge: &BoundaryEdge| mesh.triangle_edges()[edge.triangle][edge.local];
+        Along(mesh.outline().iter().map(number).map(on).collect())
+    }
+
+    /// Gives the edges of Gamma_C their pressures and data, and to each what faces it.
+    fn add_contact(&mut self, parts: &ProblemParts) {
+        let along = self.along(parts.mesh);
+        let Certificate { edges, curved, facing, .. } = &mut self.certificate;
+        for (&whole, what) in &parts.boundary {
+            let Boundary::Contact(line) = *what else { continue };
+            for &(e, range) in along.of(whole) {
+                // What acts on Gamma_C does not depend on the places.
+                let (mut role, bulge) =
+                    parts.role_on(whole, (range, [[0.0; 2]; 2]), curved.is_some());
+                let contact = parts.contact_at(line, (range[0] + range[1]) / 2.0);
+                if let (Role::Contact { pressure, .. }, Some((k, i))) = (&mut role, contact) {
+                    *pressure = parts.contact[k].pressure_between(i, range);
+                }
+                edges[e].role = role;
+                if let Some(curved) = curved {
+                    curved.data[e] = bulge;
+                }
+            }
+        }
+        for contact in parts.contact.iter().filter(|contact| contact.is_pair()) {
+            for part in &contact.parts {
+                let middle = (part.ends[0] + part.ends[1]) / 2.0;
+                let there = contact.sides.iter().filter_map(|side| {
+                    let x = side.place(middle);
+                    let whole = parts.mesh.triangle_edges()[side.edge.triangle][side.edge.local];
+                    let inside = |(_, [s, t]): &&(usize, [f64; 2])| *s < x && x < *t;
+                    along.of(whole).iter().find(inside).map(|&(e, _)| e)
+                });
+                if let [first, second] = there.collect::<Vec<usize>>()[..] {
+                    facing.insert(first, second);
+                    facing.insert(second, first);
+                }
+            }
+        }
     }
 }
 
@@ -173,6 +245,7 @@ pub(super) fn build(parts: &ProblemParts, y: &Field, v: &Field) -> Built {
             edges: Vec::with_capacity(mesh.edge_count()),
             lifts: Vec::new(),
             polygon: Vec::new(),
+            facing: BTreeMap::new(),
         },
         origins: Vec::with_capacity(whole.len()),
         oscillation: Oscillation::new(parts, quadratic),
@@ -199,6 +272,7 @@ pub(super) fn build(parts: &ProblemParts, y: &Field, v: &Field) -> Built {
         }
         built.origins.resize(built.certificate.pieces.len(), t);
     }
+    built.add_contact(parts);
     if let Some(bulges) = &v.bulges {
         let vectors = |values: &[[f64; 2]]| values.iter().copied().map(Vector2::from).collect();
         let shape = Shape { points: vectors(&v.vertices), bulges: Some(vectors(bulges)) };
@@ -275,7 +349,7 @@ fn add_edges(
     if *quartered {
         certificate.cuts = all.iter().map(|&ends| Cut { ends, at: 0.5 }).collect();
     }
-    for (half, &[s, t]) in halves.iter().enumerate() {
+    for &[s, t] in halves {
         for (e, (&[a, b], m)) in all.iter().zip(moments).enumerate() {
             let ends =
                 [if s == 0.0 { a } else { vertices + e }, if t == 1.0 { b } else { vertices + e }];
@@ -284,13 +358,7 @@ fn add_edges(
             // Per unit of the part's parameter.
             let [p, q] = force_of(m);
             let at = |x: f64| [0, 1].map(|c| ((1.0 - x) * p[c] + x * q[c]) * (t - s));
-            let mut role = with_force(role, [s, t].map(at));
-            if let (Role::Contact { pressure, .. }, Some(&Boundary::Contact(k))) =
-                (&mut role, parts.boundary.get(&e))
-            {
-                let edge = &parts.contact[k];
-                *pressure = edge.pressure[half].values[0];
-            }
+            let role = with_force(role, [s, t].map(at));
             certificate.edges.push(Edge { ends, role });
             if let Some(curved) = &mut certificate.curved {
                 curved.data.push(bulge);
@@ -299,16 +367,19 @@ fn add_edges(
     }
 }
 
-/// The pressure on edge `e` and the bulge of the gap, where it is one of Gamma_C or the half of one.
-fn on_contact(parts: &ProblemParts, quartered: bool, e: usize) -> Option<(Profile, f64)> {
-    let count = parts.mesh.edge_count();
+/// Where edge `e` is cut, an edge of the mesh or the half of one: the places where it begins and ends on that of the mesh, and those
+/// between them.
+fn cuts_of(parts: &ProblemParts, quartered: bool, e: usize) -> ([f64; 2], Vec<f64>) {
+    let (count, halves) = (parts.mesh.edge_count(), if quartered { 2 } else { 1 });
     let half = e / count;
-    if half > usize::from(quartered) {
-        return None;
+    if half >= halves {
+        return ([0.0, 1.0], Vec::new());
     }
-    let Some(&Boundary::Contact(k)) = parts.boundary.get(&(e % count)) else { return None };
-    let edge = &parts.contact[k];
-    Some((edge.pressure[half], edge.gap_bulge / if quartered { 4.0 } else { 1.0 }))
+    let [from, to] = [half, half + 1].map(|k| k as f64 / halves as f64);
+    let mut cuts = parts.breaks(e % count);
+    cuts.retain(|&at| from < at && at < to);
+    cuts.extend(parts.cuts.get(&e).copied());
+    ([from, to], cuts)
 }
 
 /// A part of triangle `t`, cut where contact ends on one of its edges.
@@ -322,18 +393,15 @@ fn add_part(
     let (corners, edges) = (part.vertices, part.edges);
     let mut found = vec![part];
     for e in edges {
-        let (at, values, gap_bulge) = match on_contact(parts, built.quartered, e) {
-            Some((Profile { cut: Some(at), values }, gap_bulge)) => (at, values, gap_bulge),
-            Some(_) => continue,
-            None => match parts.cuts.get(&e) {
-                Some(&at) => (at, [[0.0; 2]; 2], 0.0),
-                None => continue,
-            },
-        };
-        let Some(owner) = found.iter().position(|part| part.edges.contains(&e)) else { continue };
-        let part = found.remove(owner);
-        let Built { certificate, divisions, .. } = &mut *built;
-        found.extend(cut(part, (e, at, values), gap_bulge, stress, (certificate, divisions)));
+        let ([from, mut to], cuts) = cuts_of(parts, built.quartered, e);
+        for at in cuts.into_iter().rev() {
+            let owner = found.iter().position(|part| part.edges.contains(&e));
+            let Some(owner) = owner else { break };
+            let part = found.remove(owner);
+            let Built { certificate, divisions, .. } = &mut *built;
+            found.extend(cut(part, (e, [from, at, to]), stress, (certificate, divisions)));
+            to = at;
+        }
     }
     let material = parts.material(t).in_plane();
     for SubTriangle { vertices, edges, .. } in found {

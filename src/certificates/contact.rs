@@ -7,20 +7,28 @@
 //! pressure is constant: then it acts on twice the way to the centroid, or on all of the edge where that is nearly all. Beside a quadratic v each half of an edge has a pressure of its own.
 //! Whatever the moments of these pressures lack of those of lambda^h, the displacement that tau is built from is one under these
 //! (`pressed`).
+//!
+//! On a pair an edge has several contacts, each with a part of an edge of the other body, and the pressure is one for both: where a
+//! side is cut, in the middle of an edge or where contact ends, the other one is.
 
 use std::sync::Arc;
 
 use nalgebra::Vector2;
 
+use super::field::Field;
 use super::parts::is_curved;
+use crate::contact::piece::Stretch;
 use crate::contact::{EdgeRule, Piece};
 use crate::kernel::edge_integral::positive_interval;
-use crate::model::{BoundaryEdge, Degree, Problem};
+use crate::model::{BoundaryEdge, Degree, Mesh, Problem};
 
-/// An edge of Gamma_C with what the solution says there.
+/// An edge of Gamma_C, or two parts of edges that face each other, with what the solution says there.
 pub(super) struct Contact {
     pub edge: BoundaryEdge,
     pub boundary: Arc<str>,
+    /// The parts of edges on which it lies: one, or those of two bodies.
+    pub sides: Vec<Side>,
+    /// The length over which pressures are integrated: the mean of those of the sides.
     pub length: f64,
     pub normal: Vector2<f64>,
     /// The direction of contact at both ends.
@@ -29,8 +37,65 @@ pub(super) struct Contact {
     pub gap: [f64; 2],
     /// Its value in the middle less their mean; 0 where it is known to be affine.
     pub gap_bulge: f64,
-    /// The pressure on the edge, or on each of its halves.
-    pub pressure: Vec<Profile>,
+    /// Where the pressure is affine.
+    pub parts: Vec<Part>,
+}
+
+/// A part of an edge.
+#[derive(Clone, Copy)]
+pub(super) struct Side {
+    pub edge: BoundaryEdge,
+    /// Where on the edge the contact begins and ends.
+    pub places: [f64; 2],
+    /// The length of the whole edge.
+    pub length: f64,
+    /// An end of the contact was moved to an end or the middle of the edge, by more than rounding.
+    pub moved: bool,
+}
+
+/// A part of a contact, in units of it, with the pressure at its ends.
+#[derive(Clone, Copy)]
+pub(super) struct Part {
+    pub ends: [f64; 2],
+    pub pressure: [f64; 2],
+}
+
+/// Places on an edge of a pair that are nearer to its ends or its middle are these: between nodes that face each other to rounding, or
+/// to what a mesh generator leaves, there would be slivers.
+pub(super) const SAME_PLACE: f64 = 1e-6;
+
+/// Places that differ by less are the same but for rounding, and so are directions.
+const ROUNDING: f64 = 1e-11;
+
+impl Side {
+    fn new(mesh: &Mesh, stretch: &Stretch) -> Side {
+        let places = [0, 1].map(|a| near_place(stretch.positions[a]));
+        let moved = (0..2).any(|a| (places[a] - stretch.positions[a]).abs() > ROUNDING);
+        let (length, _) = mesh.length_and_normal(stretch.edge);
+        Side { edge: stretch.edge, places, length, moved }
+    }
+
+    /// The place on the edge of place `s` of the contact.
+    pub fn place(&self, s: f64) -> f64 {
+        let [from, to] = self.places;
+        if s == 1.0 { to } else { near_place(from + s * (to - from)) }
+    }
+
+    /// The place in the contact of place `x` on the edge.
+    pub fn within(&self, x: f64) -> f64 {
+        let [from, to] = self.places;
+        (x - from) / (to - from)
+    }
+
+    /// The contact has place `x` of the edge inside.
+    pub fn has(&self, x: f64) -> bool {
+        let s = self.within(x);
+        0.0 < s && s < 1.0
+    }
+}
+
+fn near_place(x: f64) -> f64 {
+    [0.0, 0.5, 1.0].into_iter().find(|place| (x - place).abs() <= SAME_PLACE).unwrap_or(x)
 }
 
 /// tau_n along an edge of Gamma_C: affine, or with a jump at a place between the ends.
@@ -43,6 +108,14 @@ pub(super) struct Profile {
 }
 
 impl Profile {
+    /// On the part of a contact between these ends.
+    fn parts(&self, [from, to]: [f64; 2]) -> Vec<Part> {
+        let [first, second] = self.values;
+        let Some(at) = self.cut else { return vec![Part { ends: [from, to], pressure: first }] };
+        let at = from + (to - from) * at;
+        vec![Part { ends: [from, at], pressure: first }, Part { ends: [at, to], pressure: second }]
+    }
+
     fn whole(pressure: [f64; 2]) -> Profile {
         Profile { cut: None, values: [pressure; 2] }
     }
@@ -106,13 +179,20 @@ impl Profile {
 }
 
 impl Contact {
-    /// `halved` tells whether each half has a pressure of its own.
-    pub fn new(problem: &Problem, edge: &Piece, u: &[[f64; 2]], halved: bool) -> Contact {
-        let (geometry, degree, p) = (&edge.geometry, edge.degree, edge.p(u));
-        let directions = [0, 1].map(|a| geometry.nodes[a].direction);
+    /// `halved` tells whether each half of an edge has a pressure of its own.
+    pub fn new(problem: &Problem, piece: &Piece, u: &[[f64; 2]], halved: bool) -> Contact {
+        let (geometry, degree, p) = (&piece.geometry, piece.degree, piece.p(u));
+        let mut directions = [0, 1].map(|a| geometry.nodes[a].direction);
+        let sides: Vec<Side> =
+            geometry.stretches.iter().map(|s| Side::new(&problem.mesh, s)).collect();
+        // Of straight sides they differ by rounding.
+        if sides.len() > 1 && (directions[1] - directions[0]).amax() <= ROUNDING {
+            directions = [directions[0]; 2];
+        }
         let gap = [0, 1].map(|a| geometry.nodes[a].gap);
-        let turns = geometry.turns();
-        let curved = problem.conditions.get(&**edge.boundary()).is_some_and(is_curved);
+        let turns = directions[0] != directions[1];
+        let curved =
+            sides.len() > 1 || problem.conditions.get(&**piece.boundary()).is_some_and(is_curved);
         let gap_bulge = match geometry.nodes.get(2) {
             // The direction in the middle is the mean of those at the ends, a little shorter than 1.
             Some(middle) if turns || curved => {
@@ -123,106 +203,164 @@ impl Contact {
         };
         // Where P has these values at the nodes.
         let profile = |p: &[f64]| match p {
-            &[start, end] if !turns => Profile::of_affine([start, end], edge.gamma),
+            &[start, end] if !turns => Profile::of_affine([start, end], piece.gamma),
             _ => {
                 let end = match degree.roots(p)[..] {
                     [root] => Some(root),
                     _ => None,
                 };
-                let moments = with_hats(degree, p).map(|p| -(p / edge.gamma));
+                let moments = with_hats(degree, p).map(|p| -(p / piece.gamma));
                 Profile::of_moments(moments, p[0] > 0.0, end, turns)
             }
         };
-        let on_half = |start: f64| {
+        let between = |[from, to]: [f64; 2]| {
             let at = |s: f64| {
-                let shapes = degree.edge_values(start + s / 2.0);
+                let shapes = degree.edge_values(from + s * (to - from));
                 shapes.iter().zip(&p).map(|(n, p)| n * p).sum::<f64>()
             };
             profile(&degree.edge_positions().into_iter().map(at).collect::<Vec<f64>>())
         };
+        let mut breaks = vec![0.0, 1.0];
+        if halved {
+            breaks.extend(sides.iter().filter(|side| side.has(0.5)).map(|side| side.within(0.5)));
+            breaks.sort_by(f64::total_cmp);
+            breaks.dedup_by(|a, b| *a - *b <= SAME_PLACE);
+        }
+        let parts = breaks.windows(2).map(|ends| [ends[0], ends[1]]);
         Contact {
-            edge: edge.edge(),
-            boundary: Arc::clone(edge.boundary()),
-            length: edge.length,
-            normal: edge.normal(),
+            edge: piece.edge(),
+            boundary: Arc::clone(piece.boundary()),
+            sides,
+            length: piece.length,
+            normal: piece.normal(),
             directions,
             gap,
             gap_bulge,
-            pressure: if halved { vec![on_half(0.0), on_half(0.5)] } else { vec![profile(&p)] },
+            parts: parts.flat_map(|ends| between(ends).parts(ends)).collect(),
         }
     }
 
-    /// The parts of the edge on which the pressure is affine: from where to where, in units of it, and at both ends the pressure
-    /// and the traction.
-    fn parts(&self) -> impl Iterator<Item = ([f64; 2], [f64; 2], [Vector2<f64>; 2])> {
-        let share = 1.0 / self.pressure.len() as f64;
-        self.pressure.iter().enumerate().flat_map(move |(i, profile)| {
-            let start = share * i as f64;
-            let at = profile.cut.unwrap_or(1.0);
-            let parts = [([0.0, at], profile.values[0]), ([at, 1.0], profile.values[1])];
-            let parts = parts.into_iter().take(if profile.cut.is_some() { 2 } else { 1 });
-            parts.map(move |(ends, pressure)| {
-                let ends = ends.map(|s| start + share * s);
-                let [d, e] = self.directions;
-                let along = [0, 1].map(|k| (d * (1.0 - ends[k]) + e * ends[k]) * pressure[k]);
-                (ends, pressure, along)
-            })
+    /// It is longer than nothing on each side.
+    pub fn has_length(&self) -> bool {
+        self.sides.iter().all(|side| side.places[0] != side.places[1])
+    }
+
+    /// It is one of two bodies.
+    pub fn is_pair(&self) -> bool {
+        self.sides.len() > 1
+    }
+
+    /// 1 for the first body, -1 for the second.
+    pub fn sign(side: usize) -> f64 {
+        if side == 0 { 1.0 } else { -1.0 }
+    }
+
+    /// The pressure at both ends of the part of an edge of side `i` between two places, per length of the edge of the first side.
+    pub fn pressure_between(&self, i: usize, places: [f64; 2]) -> [f64; 2] {
+        let ends = places.map(|x| self.sides[i].within(x));
+        let middle = (ends[0] + ends[1]) / 2.0;
+        let inside = |part: &&Part| part.ends[0] < middle && middle < part.ends[1];
+        let Some(Part { ends: [from, to], pressure: [p, q] }) = self.parts.iter().find(inside)
+        else {
+            return [0.0; 2];
+        };
+        let [start, end] = self.sides[0].places;
+        let ratio =
+            if self.is_pair() { self.length / (self.sides[0].length * (end - start)) } else { 1.0 };
+        ends.map(|s| {
+            let s = (s - from) / (to - from);
+            // The ends of a part are known to rounding.
+            let p = if s.abs() <= SAME_PLACE {
+                *p
+            } else if (s - 1.0).abs() <= SAME_PLACE || p == q {
+                *q
+            } else {
+                p + s * (q - p)
+            };
+            p * ratio
         })
     }
 
-    /// The parts of the edge that are edges of the certificate.
-    pub fn pieces(&self) -> Vec<[f64; 2]> {
-        self.parts().map(|(ends, ..)| ends).collect()
-    }
-
-    /// int p d phi over the part of the edge between `from` and `to` for these functions phi of degree 2 or less, of the place on
-    /// the edge from 0 to 1: Simpson's rule is exact.
+    /// int p d phi, with the sign of the side, over the part of its edge between `from` and `to` for these functions phi of degree 2
+    /// or less, of the place on the edge from 0 to 1: Simpson's rule is exact.
     fn moments<const N: usize>(
         &self,
+        i: usize,
         [from, to]: [f64; 2],
         phi: impl Fn(f64) -> [f64; N],
     ) -> [Vector2<f64>; N] {
-        let mut moments = [Vector2::zeros(); N];
-        for ([s, t], _, [q, r]) in
-            self.parts().filter(|(ends, ..)| ends[0] >= from && ends[1] <= to)
-        {
-            let weight = self.length * (t - s) / 6.0;
+        let (mut moments, side) = ([Vector2::zeros(); N], &self.sides[i]);
+        let [d, e] = self.directions;
+        for &Part { ends: [s, t], pressure } in &self.parts {
+            let middle = side.place((s + t) / 2.0);
+            if !(from < middle && middle < to) {
+                continue;
+            }
+            let [q, r] =
+                [(s, pressure[0]), (t, pressure[1])].map(|(s, p)| (d * (1.0 - s) + e * s) * p);
+            let weight = Contact::sign(i) * self.length * (t - s) / 6.0;
             for (x, q, times) in [(s, q, 1.0), ((s + t) / 2.0, (q + r) / 2.0, 4.0), (t, r, 1.0)] {
-                let phi = phi(x);
+                let phi = phi(side.place(x));
                 (0..N).for_each(|k| moments[k] += q * (phi[k] * times * weight));
             }
         }
         moments
     }
 
-    /// int p d phi for the hat functions of the ends, and for 4 s (1 - s).
-    pub fn on_edge(&self) -> [Vector2<f64>; 3] {
-        self.moments([0.0, 1.0], |s| [1.0 - s, s, 4.0 * s * (1.0 - s)])
+    /// int p d phi for the hat functions of the ends of a side's edge, and for 4 s (1 - s).
+    pub fn on_edge(&self, i: usize) -> [Vector2<f64>; 3] {
+        self.moments(i, [0.0, 1.0], |s| [1.0 - s, s, 4.0 * s * (1.0 - s)])
     }
 
-    /// int p d phi over the part of this number for the hat functions of its ends.
-    pub fn on_part(&self, number: usize) -> [Vector2<f64>; 2] {
-        let count = self.pressure.len() as f64;
-        let [from, to] = [number, number + 1].map(|k| k as f64 / count);
-        self.moments([from, to], |s| [(to - s) * count, (s - from) * count])
+    /// int p d phi over the part of a side's edge between two places for the hat functions of its ends.
+    pub fn on_part(&self, i: usize, [from, to]: [f64; 2]) -> [Vector2<f64>; 2] {
+        self.moments(i, [from, to], |s| [(to - s) / (to - from), (s - from) / (to - from)])
     }
 
-    /// int p, which is not positive, and int p d . r over it for a motion that is affine along the edge.
-    pub fn against(&self, ends: [Vector2<f64>; 2]) -> [f64; 2] {
-        let [a, b, _] = self.on_edge();
-        let force = self.parts().map(|([s, t], [p, q], _)| self.length * (t - s) * (p + q) / 2.0);
-        [force.sum(), a.dot(&ends[0]) + b.dot(&ends[1])]
+    /// The force int p, which is not positive.
+    pub fn force(&self) -> f64 {
+        let force = |part: &Part| {
+            let ([s, t], [p, q]) = (part.ends, part.pressure);
+            self.length * (t - s) * (p + q) / 2.0
+        };
+        self.parts.iter().map(force).sum()
+    }
+
+    /// int p d . r over side `i` for a motion that is affine along its edge.
+    pub fn against(&self, i: usize, ends: [Vector2<f64>; 2]) -> f64 {
+        let [a, b, _] = self.on_edge(i);
+        a.dot(&ends[0]) + b.dot(&ends[1])
     }
 
     /// Multiplies the pressure.
     pub fn scale(&mut self, factor: f64) {
-        let values = self.pressure.iter_mut().flat_map(|profile| &mut profile.values);
-        values.flatten().for_each(|p| *p *= factor);
+        self.parts.iter_mut().flat_map(|part| &mut part.pressure).for_each(|p| *p *= factor);
+    }
+
+    /// The Bernstein coefficients along the contact of a field on side `i`.
+    pub fn along_side(&self, mesh: &Mesh, i: usize, field: &Field) -> [Vector2<f64>; 3] {
+        let side = &self.sides[i];
+        let [a, b] = mesh.ends(side.edge).map(|vertex| Vector2::from(field.vertices[vertex]));
+        let number = mesh.triangle_edges()[side.edge.triangle][side.edge.local];
+        let bulge = field.bulges.as_ref().map_or(Vector2::zeros(), |all| all[number].into());
+        let middle = (a + b) / 2.0 + bulge * 2.0;
+        let [s, t] = side.places;
+        [(s, s), (s, t), (t, t)].map(|(s, t)| {
+            a * ((1.0 - s) * (1.0 - t)) + middle * ((1.0 - s) * t + s * (1.0 - t)) + b * (s * t)
+        })
+    }
+
+    /// Those of a field, on a pair less those on the other body.
+    pub fn jump(&self, mesh: &Mesh, field: &Field) -> [Vector2<f64>; 3] {
+        let sides = (0..self.sides.len())
+            .map(|i| self.along_side(mesh, i, field).map(|value| value * Contact::sign(i)));
+        sides.fold([Vector2::zeros(); 3], |[a, b, c], [d, e, f]| [a + d, b + e, c + f])
     }
 
     /// The directions, if they are not the normal.
     pub fn along(&self) -> Option<[[f64; 2]; 2]> {
-        (self.directions != [self.normal; 2]).then(|| self.directions.map(<[f64; 2]>::from))
+        (self.is_pair() || self.directions != [self.normal; 2])
+            .then(|| self.directions.map(<[f64; 2]>::from))
     }
 
     /// Tells whether the direction of contact turns along it.

@@ -12,10 +12,11 @@ use super::build::{Built, build};
 use super::certificate::{Certificate, Cut, Role, is_oblique};
 use super::field::Field;
 use super::forces::{ForceTarget, Lifting, Motion};
-use super::parts::{Boundary, ProblemParts};
+use super::parts::{Boundary, OnLine, ProblemParts};
 use super::sweeps::improve;
 use crate::contact::residual::add_internal_forces;
 use crate::held::rigid::{Parts, free_motions, pins};
+use crate::linear::dense::inner;
 use crate::linear::factor::Factor;
 use crate::linear::matrix::{LowerTriangle, Neighbours, Numbering};
 use crate::linear::ordering::nested_dissection;
@@ -29,6 +30,48 @@ struct Prescription {
     direction: Vector2<f64>,
     boundary: usize,
     contact: bool,
+    /// The side of the contact: 1 on the second of two bodies.
+    side: usize,
+}
+
+/// An edge of Gamma_C.
+struct OnContact {
+    edge: BoundaryEdge,
+    boundary: usize,
+    /// As [`Prescription::side`].
+    side: usize,
+    /// The direction of contact at its start, its end and in its middle.
+    directions: [Vector2<f64>; 3],
+}
+
+/// The edges of Gamma_C that have a contact which is `wanted`.
+fn on_contact(
+    parts: &ProblemParts,
+    names: &[String],
+    wanted: impl Fn(usize) -> bool,
+) -> Vec<OnContact> {
+    let of_line = |line: &OnLine| {
+        let wanted: OnLine = line.iter().copied().filter(|&(k, _)| wanted(k)).collect();
+        let &(k, i) = wanted.first()?;
+        let (contact, edge) = (&parts.contact[k], parts.contact[k].sides[i].edge);
+        let boundary = names.iter().position(|name| **name == *contact.boundary)?;
+        let direction = |x: f64| {
+            let beyond = |&(k, i): &(usize, usize)| {
+                let s = parts.contact[k].sides[i].within(x);
+                (s - s.clamp(0.0, 1.0)).abs()
+            };
+            let nearest = wanted.iter().min_by(|a, b| beyond(a).total_cmp(&beyond(b)));
+            let &(k, i) = nearest.unwrap_or(&(k, i));
+            let (s, [d, e]) = (parts.contact[k].sides[i].within(x), parts.contact[k].directions);
+            match s {
+                s if s <= 0.0 || d == e => d,
+                s if s >= 1.0 => e,
+                s => d * (1.0 - s) + e * s,
+            }
+        };
+        Some(OnContact { edge, boundary, side: i, directions: [0.0, 1.0, 0.5].map(direction) })
+    };
+    parts.lines.iter().filter_map(of_line).collect()
 }
 
 /// Makes displacements w.
@@ -40,6 +83,8 @@ pub(super) struct Lifter<'a> {
     demands: BTreeMap<usize, Vec<Prescription>>,
     numbering: Numbering,
     factor: Factor,
+    /// The parts of the jump on each boundary that are the two bodies' own, with their signs.
+    shares: Vec<[f64; 2]>,
 }
 
 /// Two directions with a sine below this are parallel.
@@ -68,40 +113,37 @@ impl<'a> Lifter<'a> {
         let mut demands: BTreeMap<usize, Vec<Prescription>> = BTreeMap::new();
         let mut add = |edge: BoundaryEdge,
                        boundary: usize,
-                       contact,
+                       (contact, side),
                        of: &dyn Fn(usize) -> Vec<Vector2<f64>>| {
             for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
                 let at_node = demands.entry(node).or_default();
                 for direction in of(a) {
-                    let demand = Prescription { direction, boundary, contact };
+                    let demand = Prescription { direction, boundary, contact, side };
                     if !at_node.contains(&demand) {
                         at_node.push(demand);
                     }
                 }
             }
         };
-        for contact in [false, true] {
-            for (boundary, name) in names.iter().enumerate() {
-                for &edge in parts.mesh.edges_of(name).unwrap_or_default() {
-                    let e = parts.mesh.triangle_edges()[edge.triangle][edge.local];
-                    match parts.boundary.get(&e) {
-                        Some(&Boundary::Held(held, _)) if !contact => {
-                            let axes = [Vector2::x(), Vector2::y()];
-                            let held: Vec<_> =
-                                (0..2).filter(|&c| held[c]).map(|c| axes[c]).collect();
-                            add(edge, boundary, contact, &|_| held.clone());
-                        }
-                        Some(&Boundary::Supported(d, ..)) if !contact => {
-                            add(edge, boundary, contact, &|_| vec![d.into()]);
-                        }
-                        Some(&Boundary::Contact(k)) if contact && !open[k] => {
-                            let [d, e] = parts.contact[k].directions;
-                            add(edge, boundary, contact, &|a| vec![[d, e, (d + e) / 2.0][a]]);
-                        }
-                        _ => {}
+        for (boundary, name) in names.iter().enumerate() {
+            for &edge in parts.mesh.edges_of(name).unwrap_or_default() {
+                let e = parts.mesh.triangle_edges()[edge.triangle][edge.local];
+                match parts.boundary.get(&e) {
+                    Some(&Boundary::Held(held, _)) => {
+                        let axes = [Vector2::x(), Vector2::y()];
+                        let held: Vec<_> = (0..2).filter(|&c| held[c]).map(|c| axes[c]).collect();
+                        add(edge, boundary, (false, 0), &|_| held.clone());
                     }
+                    Some(&Boundary::Supported(d, ..)) => {
+                        add(edge, boundary, (false, 0), &|_| vec![d.into()]);
+                    }
+                    _ => {}
                 }
             }
+        }
+        for OnContact { edge, boundary, side, directions } in on_contact(parts, names, |k| !open[k])
+        {
+            add(edge, boundary, (true, side), &|a| vec![directions[a]]);
         }
         let mut prescribed = vec![[None; 2]; space.nodes().len()];
         let mut frames = BTreeMap::new();
@@ -139,7 +181,31 @@ impl<'a> Lifter<'a> {
         let factor = factor.map_err(|error| {
             format!("no displacement of least energy to prove forces with: {error}")
         })?;
-        Ok(Lifter { parts, names, space, demands, numbering, factor })
+        let shares = vec![[1.0, 0.0]; names.len()];
+        let mut lifter = Lifter { parts, names, space, demands, numbering, factor, shares };
+        for (boundary, name) in names.iter().enumerate() {
+            if parts.problem.pairs.iter().any(|pair| pair.boundaries[0] == *name) {
+                lifter.shares[boundary] = lifter.least(boundary);
+            }
+        }
+        Ok(lifter)
+    }
+
+    /// The shares of two bodies in the jump 1 between them with which both together have the least energy.
+    fn least(&mut self, boundary: usize) -> [f64; 2] {
+        let target = ForceTarget { boundary: Some(boundary), motion: Motion::Along(None) };
+        let energies = [[1.0, 0.0], [0.0, -1.0]].map(|shares| {
+            self.shares[boundary] = shares;
+            let w = self.field(target).ok()?;
+            let mut forces = vec![[0.0; 2]; w.len()];
+            add_internal_forces(&self.space, &self.parts.problem.material, &w, &mut forces);
+            Some(inner(&w, &forces))
+        });
+        let own = match energies {
+            [Some(first), Some(second)] if first + second > 0.0 => second / (first + second),
+            _ => 0.5,
+        };
+        [own, own - 1.0]
     }
 
     /// The value that a demand asks for at a node; at a place where the boundaries contradict one another, with `strict` an
@@ -149,10 +215,11 @@ impl<'a> Lifter<'a> {
         if target.boundary.is_some_and(|boundary| boundary != demand.boundary) {
             return 0.0;
         }
-        match target.motion {
+        let whole = match target.motion {
             Motion::Along(ramp) if demand.contact => ramp.map_or(1.0, |ramp| ramp.at(x[ramp.axis])),
             motion => motion.at(Vector2::from(x)).map_or(0.0, |r| r.dot(&demand.direction)),
-        }
+        };
+        if demand.contact { whole * self.shares[demand.boundary][demand.side] } else { whole }
     }
 
     /// w at the nodes, of least energy.
@@ -211,13 +278,26 @@ impl<'a> Lifter<'a> {
         }
         // w0 is 1 where w is free, too: it need not have the least energy.
         if target.boundary.is_none() {
-            for edge in &self.parts.contact {
-                let [d, e] = edge.directions;
-                for (a, node) in self.space.edge_nodes(edge.edge).into_iter().enumerate() {
-                    if !self.demands.contains_key(&node) {
-                        let d = [d, e, (d + e) / 2.0][a];
-                        let w = Vector2::from(field[node]);
-                        field[node] = (w + d * ((1.0 - w.dot(&d)) / d.dot(&d))).into();
+            for OnContact { edge, boundary, side, directions } in
+                on_contact(self.parts, self.names, |_| true)
+            {
+                let share = self.shares[boundary][side];
+                for (a, node) in self.space.edge_nodes(edge).into_iter().enumerate() {
+                    let (d, w) = (directions[a], Vector2::from(field[node]));
+                    let along = match self.demands.get(&node) {
+                        None => d,
+                        // A body that another one holds may be held across contact there, and move the other way.
+                        Some(held) if share != 1.0 => match independent(held) {
+                            (Some(one), None) if !held.iter().any(|demand| demand.contact) => {
+                                Vector2::new(-one.direction[1], one.direction[0])
+                            }
+                            _ => continue,
+                        },
+                        Some(_) => continue,
+                    };
+                    let moved = along.dot(&d);
+                    if moved.abs() > 0.5 {
+                        field[node] = (w + along * ((share - w.dot(&d)) / moved)).into();
                     }
                 }
             }
@@ -249,7 +329,11 @@ impl<'a> Lifter<'a> {
                 match *what {
                     Boundary::Held(held, _) => Boundary::Held(held, [0.0; 2]),
                     Boundary::Supported(d, ..) => Boundary::Supported(d, 0.0, None),
-                    Boundary::Contact(k) if !open[k] => {
+                    Boundary::Contact(line) if parts.lines[line].iter().any(|&(k, _)| !open[k]) => {
+                        let (k, _) = parts.lines[line][0];
+                        if parts.contact[k].is_pair() {
+                            return Err("the force is one between two bodies".to_owned());
+                        }
                         let [d, e] = parts.contact[k].directions;
                         if is_oblique(d.into()) || d != e {
                             return Err("contact does not act along an axis".to_owned());
@@ -267,12 +351,14 @@ impl<'a> Lifter<'a> {
             );
         }
         let problem = Problem::of(mesh.clone(), parts.problem.material.clone());
-        let cuts = built.divisions.iter().map(|division| (division.base, division.at)).collect();
+        let cuts =
+            built.divisions.iter().map(|division| (division.base, division.places[1])).collect();
         let frames = parts.frames.clone();
         let dual = ProblemParts {
             problem: &problem,
             mesh,
             contact: Vec::new(),
+            lines: Vec::new(),
             prescribed,
             frames,
             boundary,

@@ -42,7 +42,7 @@ pub(super) struct Oscillation {
 impl Oscillation {
     /// `quadratic` tells whether v is, so that it follows data of degree 2.
     pub fn new(parts: &ProblemParts, quadratic: bool) -> Self {
-        let (given, between) = (given(parts, quadratic), parts.known_at_nodes());
+        let (given, between) = (given(parts, quadratic), parts.known_at_nodes(quadratic));
         let inexact = given.iter().filter_map(|given| {
             let degree = given.degree?;
             let exact = given.functions.iter().all(|f| is_within(f, degree));
@@ -71,7 +71,15 @@ impl Oscillation {
         let cancelled = (!cancelled.is_empty()).then(|| {
             format!("{}: the problem that is bounded has what doubles leave", cancelled.join("; "))
         });
-        let reasons: Vec<String> = measured.into_iter().chain(named).chain(cancelled).collect();
+        let moved: Vec<String> = parts.moved().iter().map(|name| quoted(name, '\'')).collect();
+        let moved = (!moved.is_empty()).then(|| {
+            format!(
+                "nodes that face those of {} to within a millionth of an edge are taken to do so exactly",
+                moved.join(", ")
+            )
+        });
+        let reasons = measured.into_iter().chain(named).chain(moved).chain(cancelled);
+        let reasons: Vec<String> = reasons.collect();
         let reason = (!reasons.is_empty()).then(|| reasons.join("; "));
         Oscillation { reason, lifts: BTreeMap::new() }
     }

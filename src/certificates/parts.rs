@@ -5,11 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector2;
 
 use super::certificate::{Role, is_oblique};
-use super::contact::Contact;
-use super::data::{Traction, bulge_of};
+use super::contact::{Contact, SAME_PLACE};
+use super::data::{Traction, bulge_of, is_within};
 use super::errors::CertifyError;
 use super::field::Field;
-use crate::contact::Piece;
+use crate::contact::{Pair, Piece};
 use crate::kernel::Material;
 use crate::model::boundary_normals::SmoothBoundary;
 use crate::model::constraints::Constraints;
@@ -30,9 +30,12 @@ pub(super) enum Boundary<'a> {
     Loaded(Traction<'a>),
     /// Nothing: traction 0.
     Free,
-    /// Gamma_C, and which of its edges.
+    /// Gamma_C, and which of its edges, by its place in [`ProblemParts::lines`].
     Contact(usize),
 }
+
+/// The contacts on an edge, with their sides that lie on the edge: one, or those of pairs.
+pub(super) type OnLine = Vec<(usize, usize)>;
 
 /// The parts of a problem that certificates are made from.
 pub(super) struct ProblemParts<'a> {
@@ -40,6 +43,8 @@ pub(super) struct ProblemParts<'a> {
     pub mesh: &'a Mesh,
     /// Gamma_C.
     pub contact: Vec<Contact>,
+    /// The edges that contacts lie on.
+    pub lines: Vec<OnLine>,
     /// u_D at the vertices.
     pub prescribed: Vec<[Option<f64>; 2]>,
     /// The vertices that are held along an oblique direction alone, and this: what is prescribed there is along it.
@@ -63,8 +68,11 @@ impl<'a> ProblemParts<'a> {
     ) -> Result<Self, CertifyError> {
         let space = Space::new(&problem.mesh, degree);
         let constraints = Constraints::new(problem, &space)?;
-        let contact: Vec<Contact> =
-            pieces.iter().map(|edge| Contact::new(problem, edge, displacement, halved)).collect();
+        let contact: Vec<Contact> = pieces
+            .iter()
+            .map(|piece| Contact::new(problem, piece, displacement, halved))
+            .filter(Contact::has_length)
+            .collect();
         let unsupported = |why: String| Err(CertifyError::Unsupported(why));
         if let Some(point) = problem.points.first() {
             return unsupported(format!(
@@ -149,8 +157,20 @@ impl<'a> ProblemParts<'a> {
                 boundary.insert(number(edge), what);
             }
         }
+        let mut lines: Vec<OnLine> = Vec::new();
         for (k, edge) in contact.iter().enumerate() {
-            boundary.insert(number(edge.edge), Boundary::Contact(k));
+            for (i, side) in edge.sides.iter().enumerate() {
+                let e = number(side.edge);
+                let line = match boundary.get(&e) {
+                    Some(&Boundary::Contact(line)) => line,
+                    _ => {
+                        lines.push(Vec::new());
+                        lines.len() - 1
+                    }
+                };
+                lines[line].push((k, i));
+                boundary.insert(e, Boundary::Contact(line));
+            }
         }
         let vertices = mesh.vertices().len();
         let mut prescribed = constraints.values()[..vertices].to_vec();
@@ -165,7 +185,9 @@ impl<'a> ProblemParts<'a> {
             }
         }
         let cuts = BTreeMap::new();
-        let parts = ProblemParts { problem, mesh, contact, prescribed, frames, boundary, cuts };
+        let parts =
+            ProblemParts { problem, mesh, contact, lines, prescribed, frames, boundary, cuts };
+        parts.check_overlaps()?;
         parts.check_directions()?;
         Ok(parts)
     }
@@ -180,9 +202,6 @@ impl<'a> ProblemParts<'a> {
     ) -> (Role, [f64; 2]) {
         let none = [[0.0; 2]; 2];
         let of_part = |bulge: f64| (t - s) * (t - s) * bulge;
-        let between = |[p, q]: [f64; 2], bulge: f64| {
-            [s, t].map(|s| (1.0 - s) * p + s * q + 4.0 * s * (1.0 - s) * bulge)
-        };
         match self.boundary.get(&e) {
             None => (Role::Inner(none), [0.0; 2]),
             Some(Boundary::Free) => (Role::Loaded(none), [0.0; 2]),
@@ -192,17 +211,72 @@ impl<'a> ProblemParts<'a> {
                 let traction = traction.map_or([0.0; 2], |traction| traction.across(along, places));
                 (Role::Supported { along, force: [0.0; 2], traction }, [of_part(bulge), 0.0])
             }
-            Some(&Boundary::Contact(k)) => {
+            Some(&Boundary::Contact(line)) => {
+                let Some((k, i)) = self.contact_at(line, (s + t) / 2.0) else {
+                    return (Role::Loaded(none), [0.0; 2]);
+                };
+                if i > 0 {
+                    return (Role::Facing, [0.0; 2]);
+                }
                 let edge = &self.contact[k];
+                let [s, t] = [s, t].map(|x| edge.sides[i].within(x));
+                let between = |[p, q]: [f64; 2], bulge: f64| {
+                    [s, t].map(|s| (1.0 - s) * p + s * q + 4.0 * s * (1.0 - s) * bulge)
+                };
                 let gap = between(edge.gap, if quadratic { edge.gap_bulge } else { 0.0 });
                 let along = edge.along().map(|[d, e]| {
+                    if d == e {
+                        return [d, e];
+                    }
                     let [x, y] = [0, 1].map(|c| between([d[c], e[c]], 0.0));
                     [0, 1].map(|k| [x[k], y[k]])
                 });
                 let role = Role::Contact { pressure: [0.0; 2], gap, along };
-                (role, [of_part(edge.gap_bulge), 0.0])
+                (role, [(t - s) * (t - s) * edge.gap_bulge, 0.0])
             }
         }
+    }
+
+    /// The contact that has place `x` of an edge inside, and its side there.
+    pub fn contact_at(&self, line: usize, x: f64) -> Option<(usize, usize)> {
+        self.lines[line].iter().copied().find(|&(k, i)| self.contact[k].sides[i].has(x))
+    }
+
+    /// The places inside an edge where what acts on it changes.
+    pub fn breaks(&self, e: usize) -> Vec<f64> {
+        let Some(&Boundary::Contact(line)) = self.boundary.get(&e) else { return Vec::new() };
+        let contacts = self.lines[line].iter();
+        let of = |&(k, i): &(usize, usize)| {
+            let edge = &self.contact[k];
+            edge.parts.iter().flat_map(|part| part.ends).map(move |s| edge.sides[i].place(s))
+        };
+        let mut all: Vec<f64> = contacts.flat_map(of).filter(|&x| 0.0 < x && x < 1.0).collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup_by(|a, b| *a - *b <= SAME_PLACE);
+        all
+    }
+
+    /// No part of an edge faces two others.
+    fn check_overlaps(&self) -> Result<(), CertifyError> {
+        for line in self.lines.iter().filter(|line| line.len() > 1) {
+            let mut ranges: Vec<([f64; 2], usize)> = line
+                .iter()
+                .map(|&(k, i)| {
+                    let [s, t] = self.contact[k].sides[i].places;
+                    ([s.min(t), s.max(t)], k)
+                })
+                .collect();
+            ranges.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]));
+            if let Some(pair) =
+                ranges.windows(2).find(|pair| pair[1].0[0] < pair[0].0[1] - SAME_PLACE)
+            {
+                let boundary = quoted(&self.contact[pair[0].1].boundary, '\'');
+                return Err(CertifyError::Unsupported(format!(
+                    "a part of an edge faces two others, on {boundary} or the boundary that it is a pair with"
+                )));
+            }
+        }
+        Ok(())
     }
 
     /// At the ends of an edge that is held along a direction the same one is, or all of the displacement.
@@ -293,11 +367,25 @@ impl<'a> ProblemParts<'a> {
         turning.map(|edge| &*edge.boundary).collect()
     }
 
+    /// The first boundaries of pairs on which nodes that nearly face each other are taken to do so.
+    pub fn moved(&self) -> BTreeSet<&str> {
+        let moved = self.contact.iter().filter(|c| c.sides.iter().any(|side| side.moved));
+        moved.map(|contact| &*contact.boundary).collect()
+    }
+
     /// The contact boundaries of which direction and gap are known at the nodes only: those that turn, and those whose obstacle is
-    /// neither a plane nor a distance that is affine by its expression.
-    pub fn known_at_nodes(&self) -> BTreeSet<&str> {
+    /// neither a plane nor a distance that is affine by its expression, and pairs whose clearance a v that is `quadratic`, or affine,
+    /// does not follow.
+    pub fn known_at_nodes(&self, quadratic: bool) -> BTreeSet<&str> {
         let curved = self.problem.conditions.iter().filter(|(_, condition)| is_curved(condition));
-        self.turning().into_iter().chain(curved.map(|(name, _)| name.as_str())).collect()
+        let curved = curved.map(|(name, _)| name.as_str());
+        let inexact = |pair: &&Pair| {
+            let degree = if quadratic { 2 } else { 1 };
+            pair.clearance.as_ref().is_some_and(|clearance| !is_within(clearance, degree))
+        };
+        let of_pairs = self.problem.pairs.iter().filter(inexact);
+        let of_pairs = of_pairs.map(|pair| pair.boundaries[0].as_str());
+        self.turning().into_iter().chain(curved).chain(of_pairs).collect()
     }
 
     /// The material of triangle `t`.

@@ -12,7 +12,7 @@
 
 use nalgebra::Vector2;
 
-use super::contact::Contact;
+use super::contact::{Contact, Side};
 use super::data::Data;
 use super::errors::CertifyError;
 use super::parts::{Boundary, ProblemParts};
@@ -51,7 +51,9 @@ pub(super) fn displacement(
     let driven: Vec<f64> = fields.iter().map(|field| inner(&forces, field)).collect();
     balance(parts, (&bodies, &motions), &driven);
     for edge in &parts.contact {
-        add_on_edge(&space, edge.edge, edge.on_edge(), &mut forces);
+        for (i, side) in edge.sides.iter().enumerate() {
+            add_on_edge(&space, side.edge, edge.on_edge(i), &mut forces);
+        }
     }
     let mut prescribed = constraints.values().to_vec();
     let is_free = |node: usize, c: usize| {
@@ -146,13 +148,16 @@ fn balance(parts: &mut ProblemParts, (bodies, motions): (&Parts, &[FreeMotion]),
     let mesh = parts.mesh;
     // The force of each edge, and its mean work on each motion.
     let against = |edge: &Contact| -> (f64, Vec<f64>) {
-        let ends = mesh.ends(edge.edge).map(|vertex| Vector2::from(mesh.vertices()[vertex]));
-        let force = -edge.against(ends)[0];
+        let force = -edge.force();
         let mean = |motion: &FreeMotion| {
-            if bodies.of_triangle()[edge.edge.triangle] != motion.part || !(force > 0.0) {
-                return 0.0;
-            }
-            -edge.against(ends.map(|x| motion.at(x.into()).into()))[1] / force
+            let on_side = |(i, side): (usize, &Side)| {
+                if bodies.of_triangle()[side.edge.triangle] != motion.part || !(force > 0.0) {
+                    return 0.0;
+                }
+                let ends = mesh.ends(side.edge).map(|vertex| mesh.vertices()[vertex]);
+                -edge.against(i, ends.map(|x| motion.at(x).into())) / force
+            };
+            edge.sides.iter().enumerate().map(on_side).sum()
         };
         (force, motions.iter().map(mean).collect())
     };

@@ -21,7 +21,7 @@ use super::Asked;
 use super::balanced::Balanced;
 use super::build::{Built, Line, Station};
 use super::certificate::{Certificate, Role};
-use super::contact::Profile;
+use super::contact::Part;
 use super::dual::ByPair;
 use super::field::Field;
 use super::forces::{Cover, Evidence, ForceTarget, Forces, Mean, Motion, Ramp, WrongLifting};
@@ -327,10 +327,8 @@ fn open(parts: &ProblemParts, v: &Field, mean: Mean) -> Vec<bool> {
         .contact
         .iter()
         .map(|edge| {
-            let ends = parts.mesh.ends(edge.edge);
-            let gap = |k: usize| {
-                edge.gap[k] - Vector2::from(v.vertices[ends[k]]).dot(&edge.directions[k])
-            };
+            let jump = edge.jump(parts.mesh, v);
+            let gap = |k: usize| edge.gap[k] - jump[2 * k].dot(&edge.directions[k]);
             gap(0).min(gap(1))
         })
         .collect();
@@ -340,7 +338,7 @@ fn open(parts: &ProblemParts, v: &Field, mean: Mean) -> Vec<bool> {
     };
     let force = |boundary: &str| -> f64 {
         let of = parts.contact.iter().filter(|edge| &*edge.boundary == boundary);
-        of.map(|edge| -edge.against([Vector2::zeros(); 2])[0]).sum()
+        of.map(|edge| -edge.force()).sum()
     };
     let names: BTreeSet<&str> = parts.contact.iter().map(|edge| &*edge.boundary).collect();
     let least: BTreeMap<&str, f64> = names
@@ -356,10 +354,9 @@ fn open(parts: &ProblemParts, v: &Field, mean: Mean) -> Vec<bool> {
 /// The edges of Gamma_C that are not pressed from end to end, but for so many next to those that are; where `beyond` is
 /// negative, so many of these, too.
 fn off_contact(parts: &ProblemParts, beyond: i32) -> Vec<bool> {
-    let is_full =
-        |profile: &Profile| profile.cut.is_none() && profile.values[0].iter().all(|&p| p < 0.0);
+    let is_full = |part: &Part| part.pressure.iter().all(|&p| p < 0.0);
     let mut open: Vec<bool> =
-        parts.contact.iter().map(|edge| !edge.pressure.iter().all(is_full)).collect();
+        parts.contact.iter().map(|edge| !edge.parts.iter().all(is_full)).collect();
     let ends: Vec<[usize; 2]> =
         parts.contact.iter().map(|edge| parts.mesh.ends(edge.edge)).collect();
     let grows = beyond < 0;
@@ -499,10 +496,18 @@ fn list(
                 parts.boundary.get(&parts.mesh.triangle_edges()[edge.triangle][edge.local])
             })
             .collect();
-        let mut along = what.iter().filter_map(|what| match what {
-            Boundary::Contact(k) => Some(parts.contact[*k].directions),
+        // Of a pair, those of the first body.
+        let lines = what.iter().filter_map(|what| match what {
+            Boundary::Contact(line) => Some(&parts.lines[*line]),
             _ => None,
         });
+        let contacts = lines.flatten().filter(|&&(_, side)| side == 0);
+        let mut along = contacts.map(|&(k, _)| parts.contact[k].directions);
+        let pairs = parts.problem.pairs.iter().filter(|pair| pair.boundaries.contains(name));
+        if pairs.count() > 1 {
+            // The forces of several bodies, of which each is one.
+            continue;
+        }
         if let Some([d, _]) = along.next() {
             let constant = along.all(|other| other == [d, d]);
             axes[boundary] = (0..2).find(|&c| constant && d[1 - c] == 0.0).map(|c| (c, d[c]));

@@ -74,6 +74,12 @@ fn outward(
     normal: Vector2<f64>,
 ) -> [Vector2<f64>; 2] {
     let (edge, count) = (&certificate.edges[e], parts.mesh.edge_count());
+    if let Some(&Boundary::Contact(line)) = parts.boundary.get(&(e % count)) {
+        let half = [e / count, e / count + 1].map(|k| k as f64 / 2.0);
+        let moments = parts.lines[line].iter().map(|&(k, i)| parts.contact[k].on_part(i, half));
+        let sum = moments.fold([Vector2::zeros(); 2], |[a, b], [c, d]| [a + c, b + d]);
+        return force_of(&sum).map(Vector2::from);
+    }
     match edge.role {
         Role::Inner(force) | Role::Held(_, force) => {
             let [a, b] = force.map(Vector2::from);
@@ -84,12 +90,7 @@ fn outward(
         }
         Role::Loaded(traction) => traction.map(|t| Vector2::from(t) * length(normal)),
         Role::Pressed(p) => p.map(|p| normal * -p),
-        Role::Contact { .. } => match parts.boundary.get(&(e % count)) {
-            Some(&Boundary::Contact(k)) => {
-                force_of(&parts.contact[k].on_part(e / count)).map(Vector2::from)
-            }
-            _ => [Vector2::zeros(); 2],
-        },
+        Role::Contact { .. } | Role::Facing => [Vector2::zeros(); 2],
     }
 }
 

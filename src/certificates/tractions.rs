@@ -109,10 +109,13 @@ pub(super) fn moments(
                 let ends = [1, 2].map(|k| mesh.vertices()[corners[t][(local + k) % 3]]);
                 moments[e] = traction.moments(ends, normal);
             }
-            Some(Boundary::Contact(k)) => {
+            Some(&Boundary::Contact(line)) => {
                 known[e] = Known::All;
-                let [a, b, _] = parts.contact[*k].on_edge();
-                moments[e] = [a, b];
+                moments[e] = [Vector2::zeros(); 2];
+                for &(k, i) in &parts.lines[line] {
+                    let [a, b, _] = parts.contact[k].on_edge(i);
+                    moments[e] = [moments[e][0] + a, moments[e][1] + b];
+                }
             }
         }
     }
@@ -295,6 +298,6 @@ pub(super) fn with_force(role: Role, force: [[f64; 2]; 2]) -> Role {
             let force = force.map(|f| (f[0] * d[0] + f[1] * d[1]) / squared);
             Role::Supported { along: d, force, traction }
         }
-        Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } => role,
+        Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } | Role::Facing => role,
     }
 }

@@ -13,6 +13,7 @@ use signorini::results::Solution;
 use signorini::solve::{Gamma0, Method, Settings, SolveError, discretize, solve, solve_discrete};
 
 mod balance;
+mod certified;
 mod curved;
 mod friction;
 mod limits;

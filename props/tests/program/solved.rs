@@ -174,6 +174,8 @@ fn lost(certificate: &Certificate, t: usize, q: f64) -> f64 {
             }
             Role::Loaded(traction) => largest(traction.as_flattened()) * long(edge.ends),
             Role::Pressed(p) | Role::Contact { pressure: p, .. } => largest(&p) * long(edge.ends),
+            // That of the edge which it faces.
+            Role::Facing => 0.0,
         })
     });
     let piece = &certificate.pieces[t];

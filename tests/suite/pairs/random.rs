@@ -3,8 +3,11 @@
 
 use std::collections::BTreeMap;
 
+use signorini::certificates::binding::compare;
+use signorini::certificates::{certify, format};
+
 use super::*;
-use crate::common::{DEGREES, Random};
+use crate::common::{DEGREES, Random, encoded};
 
 fn number_from(variable: &str, default: u64) -> u64 {
     std::env::var(variable).ok().map_or(default, |text| text.parse().unwrap())
@@ -148,6 +151,37 @@ fn ninety_nine_of_a_hundred_pairs_are_proved() {
     steps.sort_unstable();
     println!("steps: median {}, most {}", steps[steps.len() / 2], steps[steps.len() - 1]);
     assert!(100 * missed <= count, "{missed} of {count} are not proved");
+}
+
+#[test]
+fn pairs_at_random_have_certificates_and_these_are_of_their_problems() {
+    let (from, count) =
+        (number_from("SIGNORINI_PAIRS_FROM", 1), number_from("SIGNORINI_PAIRS", 60));
+    let (mut certified, mut missed, mut bounds) = (0, 0, Vec::new());
+    for seed in from..from + count {
+        let Drawn { kind, said, problem, method, .. } = drawn(seed);
+        let Ok((solution, _)) = solve(&problem, &method, &Settings::default()) else { continue };
+        if problem.pairs[0].law != Law::Contact || solution.verdict.name() != "proved" {
+            continue;
+        }
+        let outcome = certify(&problem, &solution).map_err(|error| error.to_string());
+        let outcome = outcome.and_then(|c| {
+            bounds.push(c.relative);
+            let (header, bytes) = encoded(&c);
+            let audit = format::audit(header, &bytes).map_err(|error| error.to_string())?;
+            compare(problem.clone(), &audit.certificate, &audit.forces)
+                .map_err(|error| error.to_string())
+        });
+        certified += 1;
+        if let Err(error) = outcome {
+            println!("seed {seed}: {kind}: {error} [{said}]");
+            missed += 1;
+        }
+    }
+    bounds.sort_by(f64::total_cmp);
+    println!("{certified} certificates, {missed} missed; relative bounds {bounds:?}");
+    assert!(certified > count / 4 && 20 * missed <= certified, "{missed} of {certified}");
+    assert!(bounds[bounds.len() / 2] < 1.0, "{bounds:?}");
 }
 
 #[test]
