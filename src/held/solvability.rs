@@ -381,6 +381,7 @@ pub(super) fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -
     // The rows in use and their weights.
     let mut used: Vec<(usize, f64)> = Vec::new();
     let mut rest = target.to_vec();
+    let rounding = 16.0 * f64::EPSILON * norm(target);
     for _ in 0..MOST_EXCHANGES {
         if norm(&rest) <= tolerance {
             return None;
@@ -389,7 +390,8 @@ pub(super) fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -
         let fresh =
             (0..rows.len()).filter(|i| norm(&rows[*i]) > 0.0 && used.iter().all(|(u, _)| u != i));
         let best = fresh.max_by(|i, j| gain(i).total_cmp(&gain(j)));
-        let Some(best) = best.filter(|i| gain(i) > 0.0) else { break };
+        // Of a row that gains rounding only, the weight would be rounding, or no number where the row depends on those in use.
+        let Some(best) = best.filter(|i| gain(i) > rounding) else { break };
         used.push((best, 0.0));
         loop {
             // Rows that depend on each other have no unique weights: the last one adds nothing.
@@ -427,7 +429,7 @@ pub(super) fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -
             }
         }
     }
-    Some(rest).filter(|rest| norm(rest) > tolerance)
+    Some(rest).filter(|rest| !(norm(rest) <= tolerance))
 }
 
 /// The method is finite, and with three unknowns takes a few; this bounds its time should rounding make it go around, and decides
@@ -458,6 +460,24 @@ mod tests {
         let motion = nnls_residual(&rows, &[1.0, 2.0], 1e-9).unwrap();
         assert!(rows.iter().all(|c| c[0] * motion[0] + c[1] * motion[1] <= 1e-12), "admitted");
         assert!(motion[0] + 2.0 * motion[1] > 0.0, "and the loads do work on it");
+    }
+
+    /// Rows (x, y, turn) of a floor and of a wall at the right, of so many edges; the load presses down. A row that depended on two in
+    /// use made the rest no number, which passed for nothing.
+    #[test]
+    fn a_wall_that_loads_do_not_press_is_left_whatever_the_number_of_edges() {
+        for n in 1..40 {
+            let places = |e: usize| [e, e + 1].map(|i| 2.0 * i as f64 / n as f64 - 1.0);
+            let floor = (0..n).map(|e| (e, places(e).map(|x| vec![0.0, -1.0, -x]).to_vec()));
+            let wall = (0..n).map(|e| (n + e, places(e).map(|y| vec![1.0, 0.0, -y]).to_vec()));
+            let edges: Vec<EdgeRows> = floor.chain(wall).collect();
+            let off = 1.0 / 15.0;
+            let kept = press(edges.clone(), &[0.0, -1.0, -off], 1e-10).unwrap();
+            assert_eq!(kept, edges[..n], "{n} edges");
+            // Control: what leans on the wall presses both.
+            let kept = press(edges.clone(), &[0.3, -1.0, -off], 1e-10).unwrap();
+            assert_eq!(kept, edges, "{n} edges");
+        }
     }
 
     #[test]
