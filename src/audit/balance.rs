@@ -4,7 +4,8 @@
 //! by is taken by three components of traction on Gamma_D, where tractions are free, or of the pressure on Gamma_C, which
 //! stays one as long as none changes by more than itself. The additional tractions exist as real numbers, and intervals
 //! contain them. Where a motion is left that neither stops, as a round shaft turns in its bearing, the problem meant has a
-//! support against it, which takes a force no larger than rounding ([`STOP`]).
+//! support against it, which takes a force no larger than rounding ([`STOP`]). A pressure between two bodies changes on both: a part
+//! hands on what it lacks to parts that need nothing of it (`settled`).
 
 use nalgebra::Vector2;
 use thiserror::Error;

@@ -7,7 +7,7 @@
 //! On Gamma_D w must be that motion exactly. On Gamma_C it may miss its target phi by omega = phi - w . d, at a price: what
 //! is meant is R(w) + int |sigma_n| omega, and with -beta' (g - v_n) - e' w0_n <= omega <= beta (g - v_n) + e w0_n that
 //! integral is at most beta A + e R(w0), by \[Q2\] with A <= M^2 - |sigma - m|^2. So w may leave its target where the body is
-//! off the obstacle; w0 is 1 on Gamma_C and covers rounding.
+//! off the obstacle; w0 is 1 on Gamma_C and covers rounding. Between two bodies w . d is that of the jump.
 
 use std::fmt::Display;
 

@@ -16,6 +16,9 @@
 //! Contact may also act along a direction d, affine on each edge, in place of n: v . d <= g, and tau n = p d with p <= 0. The
 //! theorem holds as it stands, for the solution u of the problem with that d (section 7.2).
 //!
+//! Between two bodies v . d is that of the jump, v on an edge less v on the edge that faces this one, and tau N is there minus that on
+//! this edge: one pressure for both (section 12.6).
+//!
 //! v is affine on the triangles of the mesh, or quadratic on those of the certificate ([`Curved`]): then it has a vector for each
 //! edge, too, the *bulge* by which it is beyond the mean of the edge's ends in the middle. C eps(v) is affine, and v_n - g
 //! is known not to be positive where its Bernstein coefficients are not.

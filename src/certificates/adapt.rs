@@ -110,6 +110,11 @@ pub enum AdaptError {
         quoted(boundary, '\'')
     )]
     Curved { boundary: String },
+    #[error(
+        "no mesh can be adapted: {} or what it faces is curved, the gap between them is that of their smooth shapes, and bisection keeps the straight edges of the mesh; expected straight boundaries, or a finer mesh",
+        quoted(boundary, '\'')
+    )]
+    CurvedPair { boundary: String },
 }
 
 impl AdaptError {
@@ -120,7 +125,7 @@ impl AdaptError {
             AdaptError::Certify(error) => {
                 matches!(error, CertifyError::Data(_) | CertifyError::Unsupported(_))
             }
-            AdaptError::Curved { .. } => true,
+            AdaptError::Curved { .. } | AdaptError::CurvedPair { .. } => true,
         }
     }
 }
@@ -298,7 +303,7 @@ fn unknowns(mesh: &Mesh, degree: Degree) -> usize {
     2 * (mesh.vertices().len() + middles)
 }
 
-/// Where contact acts along normals, these are those of straight edges.
+/// Where contact acts along normals, or between two bodies, these are those of straight edges.
 fn check_straight(problem: &Problem) -> Result<(), AdaptError> {
     let space = Space::new(&problem.mesh, Degree::One);
     let line = ContactLine::new(problem, &space).map_err(CertifyError::Data)?;
@@ -308,8 +313,16 @@ fn check_straight(problem: &Problem) -> Result<(), AdaptError> {
     };
     let boundary = |piece: &PieceGeometry| piece.first().boundary.to_string();
     let curved = line.pieces().find(|p| !p.along_normal && along_its_normal(&boundary(p)));
-    match curved {
-        Some(piece) => Err(AdaptError::Curved { boundary: boundary(piece) }),
+    if let Some(piece) = curved {
+        return Err(AdaptError::Curved { boundary: boundary(piece) });
+    }
+    // Normals of straight sides differ by rounding.
+    let turns =
+        |piece: &PieceGeometry| (piece.nodes[1].direction - piece.nodes[0].direction).amax() > 1e-9;
+    let is_curved =
+        |piece: &&PieceGeometry| piece.stretches.len() > 1 && (piece.curved || turns(piece));
+    match line.pieces().find(is_curved) {
+        Some(piece) => Err(AdaptError::CurvedPair { boundary: boundary(piece) }),
         None => Ok(()),
     }
 }

@@ -169,13 +169,12 @@ impl Built {
             let mut all = Vec::with_capacity(halves);
             for half in 0..halves {
                 let [from, to] = [half, half + 1].map(|k| k as f64 / halves as f64);
-                let (e, end) = (half * count + whole, all.len());
+                let e = half * count + whole;
                 let seconds = seconds.get(&e).map_or(&[][..], Vec::as_slice);
                 // The farthest is cut off first.
                 let first = seconds.last().map_or(to, |&(_, places)| places[1]);
                 all.push((e, [from, first]));
                 all.extend(seconds.iter().rev().map(|&(e, [_, at, to])| (e, [at, to])));
-                debug_assert!(all.len() > end);
             }
             (whole, all)
         };

@@ -281,7 +281,7 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
     let (conditions, kinds) = read_boundaries(root, solution.as_ref(), &mesh, depth, &pairs)?;
     let friction = read_friction(root, of_revolution)?;
     let points = read_points(root, &mesh)?;
-    let adapt = root.optional_section("adapt", |table| read_target(table, &conditions))?;
+    let adapt = root.optional_section("adapt", |table| read_target(table, &conditions, &pairs))?;
     let asked = root.optional_section("certify", |table| read_quantities(table, &conditions))?;
     let output = root.optional_section("output", |table| read_output(table, &mesh))?;
     let (probes, stretch) = output.unwrap_or_default();

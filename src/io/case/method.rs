@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::table::{Table, Value};
 use crate::certificates::{Asked, Ramp, Target};
+use crate::contact::Pair;
 use crate::io::input::FileError;
 use crate::model::Condition;
 use crate::model::Degree;
@@ -80,7 +81,7 @@ fn contact_boundary(
 ) -> Result<String, FileError> {
     match conditions.get(name) {
         Some(condition) if condition.is_contact() => Ok(name.to_owned()),
-        _ => Err(value.wrong("the name of a contact boundary")),
+        _ => Err(value.wrong("the name of a contact boundary with an obstacle or a gap")),
     }
 }
 
@@ -88,6 +89,7 @@ fn contact_boundary(
 pub(super) fn read_target(
     table: &Table,
     conditions: &Conditions,
+    pairs: &[Pair],
 ) -> Result<(Target, Option<String>), FileError> {
     table.only(&["target", "max_unknowns"])?;
     let expected = "a share above 0 % and below 100 %, such as \"1 %\", of the energy norm, or { force = \"bottom\", within = \"1 %\" }";
@@ -97,7 +99,12 @@ pub(super) fn read_target(
         let of_force = target.table()?;
         of_force.only(&["force", "within"])?;
         let boundary = of_force.require("force", "the name of a contact boundary")?;
-        force = Some(contact_boundary(boundary.text()?, &boundary, conditions)?);
+        let name = boundary.text()?;
+        force = Some(if pairs.iter().any(|pair| pair.boundaries[0] == name) {
+            name.to_owned()
+        } else {
+            contact_boundary(name, &boundary, conditions)?
+        });
         target = of_force.require("within", "a share of the force, such as \"1 %\"")?;
     }
     let percent = target.as_text().and_then(|text| text.strip_suffix('%'));

@@ -4,7 +4,9 @@
 use signorini::certificates::binding::compare;
 use signorini::certificates::proof::Role;
 use signorini::certificates::quantities::Name;
-use signorini::certificates::{Certificate, Continuous, Rejection, Target, adapt, certify};
+use signorini::certificates::{
+    Asked, Certificate, Continuous, Rejection, Target, adapt, adapt_to, certify,
+};
 use signorini::contact::residual::add_internal_forces;
 use signorini::io::certificate;
 use signorini::kernel::Ball;
@@ -398,6 +400,31 @@ fn a_mesh_of_two_bodies_is_adapted_to_a_bound() {
         println!("{degree:?}: {:?}", adapted.levels.iter().map(|l| l.relative).collect::<Vec<_>>());
         assert!(adapted.unmet.is_none() && c.relative <= relative, "{:?}", adapted.unmet);
         assert_eq!(compare(problem, &c.certificate, &c.quantities.evidence), Ok(None));
+    }
+}
+
+#[test]
+fn a_mesh_of_two_bodies_is_adapted_to_the_force_between_them() {
+    let problem = squares([3, 4], [1.0, 1.0]).problem();
+    let target = Target { relative: 0.02, max_unknowns: 40_000 };
+    let how = (&method(Degree::Two), &Settings::default());
+    let force = (target, Some("upper.bottom"));
+    let (_, adapted) = adapt_to(problem, how, force, &Asked::default(), &|_| {}).unwrap();
+    let c = adapted.certified.unwrap();
+    assert!(adapted.unmet.is_none(), "{:?}", adapted.unmet);
+    let force = c.quantities.list.iter().find(|q| q.name == Name::ContactForce).unwrap();
+    let [low, high] = force.interval.clone().unwrap();
+    assert!(low <= FORCES[0] && FORCES[0] <= high && high - low <= 0.04 * high, "{low} {high}");
+}
+
+#[test]
+fn round_bodies_are_not_adapted_because_their_middles_would_lie_on_chords() {
+    for (name, boundary) in [("cylinders.toml", "lower"), ("press_fit.toml", "shaft")] {
+        let case = case(name, &[]);
+        let target = Target { relative: 0.01, max_unknowns: 10_000 };
+        let adapted = adapt(case.problem, &case.method, &Settings::default(), target, &|_| {});
+        let error = adapted.err().unwrap();
+        assert!(error.is_wrong_case() && error.to_string().contains(boundary), "{error}");
     }
 }
 
