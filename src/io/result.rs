@@ -37,6 +37,8 @@ pub struct Results {
     pub schema: u32,
     pub title: String,
     #[serde(skip_serializing_if = "Option::is_none")]
+    pub step: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub verdict: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
@@ -197,6 +199,8 @@ impl Results {
         for part in &mut self.contact {
             let [x, y] = &mut part.resultant;
             [&mut part.force, &mut part.moment, x, y].into_iter().for_each(times);
+            let friction = part.friction.iter_mut();
+            friction.for_each(|of| [&mut of.shear, &mut of.dissipated].into_iter().for_each(times));
         }
         if let Some(b) = &mut self.balance {
             let all = [&mut b.strain, &mut b.loads, &mut b.supports, &mut b.contact];
