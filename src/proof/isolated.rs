@@ -941,3 +941,93 @@ fn power(n: usize, times: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
     }
     largest
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers between -1 and 1.
+    fn draws(seed: f64) -> impl FnMut() -> f64 {
+        let mut x = seed;
+        move || {
+            x = 3.99 * x * (1.0 - x);
+            2.0 * x - 1.0
+        }
+    }
+
+    /// G of some functionals, each of its own size.
+    fn compliance(z: &Mat<f64>) -> Compliance {
+        let g = z.transpose() * z;
+        let n = g.nrows();
+        let by = Mat::from_fn(n, n, |i, j| 1e-14 * (g[(i, i)] * g[(j, j)]).sqrt());
+        Compliance { entry: largest(&by), off: row_sum(&by), g, by }
+    }
+
+    fn length(matrix: &Mat<f64>, x: &[f64]) -> f64 {
+        let row = |i: usize| (0..x.len()).map(|j| matrix[(i, j)] * x[j]).sum::<f64>();
+        norm(&(0..matrix.nrows()).map(row).collect::<Vec<f64>>())
+    }
+
+    #[test]
+    fn what_is_said_of_an_inverse_holds_and_is_close() {
+        for seed in [0.1, 0.23, 0.37, 0.61] {
+            let mut next = draws(seed);
+            let (rows, n) = (9, 12);
+            // More functionals than there are directions, of sizes from 1e-3 to 1e3.
+            let sizes: Vec<f64> = (0..n).map(|_| 10.0_f64.powf(3.0 * next())).collect();
+            let z = Mat::from_fn(rows, n, |_, j| sizes[j] * next());
+            let blocks: Vec<DMatrix<f64>> = (0..n / 2)
+                .map(|e| {
+                    let (a, b) = (1.0 / sizes[2 * e], 1.0 / sizes[2 * e + 1]);
+                    let sticks = f64::from(u8::from(e % 2 == 0));
+                    let across = [0.8 * a * b * (1.0 - sticks), b * b * sticks];
+                    DMatrix::from_row_slice(2, 2, &[a * a, 0.0, across[0], across[1]])
+                })
+                .collect();
+            let mut h = Mat::<f64>::zeros(n, n);
+            for (e, block) in blocks.iter().enumerate() {
+                (0..4).for_each(|k| h[(2 * e + k / 2, 2 * e + k % 2)] = block[(k / 2, k % 2)]);
+            }
+            let one = Mat::<f64>::identity(rows, rows);
+            let whole = &z * &h * z.transpose() + &one;
+            let exact = whole.partial_piv_lu().solve(&one);
+            let inverse = Root::new(&compliance(&z)).unwrap().inverse(&blocks).unwrap();
+            let square = exact.transpose() * &exact;
+            let times = |x: &[f64]| -> Vec<f64> {
+                (0..rows).map(|i| (0..rows).map(|j| square[(i, j)] * x[j]).sum()).collect()
+            };
+            let found = power(rows, times).sqrt();
+            let close = |most: f64, found: f64| {
+                // The control: nothing much smaller would be true.
+                assert!(most >= found * (1.0 - 1e-6) && most <= 1.1 * found, "{most} {found}");
+            };
+            close(inverse.bound(), found.max(1.0));
+            let answers = &exact * &z;
+            for j in 0..n {
+                let mut unit = vec![0.0; n];
+                unit[j] = 1.0;
+                close(length(&inverse.answers, &unit) + inverse.slack[j], length(&answers, &unit));
+            }
+            let t: Vec<f64> = (0..rows).map(|_| next()).collect();
+            let w: Vec<PreciseBall> = (0..n)
+                .map(|j| PreciseBall::from((0..rows).map(|i| z[(i, j)] * t[i]).sum::<f64>()))
+                .collect();
+            let most = inverse.times(&w, [norm(&t), 1e-12]);
+            assert!(most >= length(&exact, &t) && most <= 3.0 * (norm(&t) + length(&exact, &t)));
+        }
+    }
+
+    #[test]
+    fn a_root_is_above_what_is_off_and_a_smaller_one_is_none() {
+        let mut next = draws(0.3);
+        let z = Mat::from_fn(5, 8, |_, j| 10.0_f64.powi(j as i32 - 4) * next());
+        let of = compliance(&z);
+        let root = Root::new(&of).unwrap();
+        let more = &root.c * root.c.transpose();
+        let above = |share: f64| {
+            let less = Mat::from_fn(8, 8, |i, j| more[(i, j)] - root.g[(i, j)] * share);
+            is_positive_definite(&less, root.off)
+        };
+        assert!(above(1.0) && !above(1.0 + 1e-9));
+    }
+}

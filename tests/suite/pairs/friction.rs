@@ -242,8 +242,7 @@ fn cylinders(cells: [usize; 2], drag: f64, mu: f64) -> Problem {
 #[test]
 fn dragged_cylinders_stick_and_slide_as_cattaneo_and_mindlin_say() {
     let mu = 0.3;
-    // Of what sticks the ends lie within pieces, and are known to a part of one.
-    for (degree, cells, stuck) in [(Degree::One, [96, 72], 0.05), (Degree::Two, [48, 36], 0.05)] {
+    for (degree, cells) in [(Degree::One, [96, 72]), (Degree::Two, [48, 36])] {
         let problem = cylinders(cells, 0.0033, mu);
         let s = proved(&problem, &method(degree));
         let [shear, force] = s.boundaries[0].resultant.map(f64::abs);
@@ -262,8 +261,7 @@ fn dragged_cylinders_stick_and_slide_as_cattaneo_and_mindlin_say() {
             piece.across(&force).iter().enumerate().map(|(i, f)| f * place(i).powi(2)).sum()
         };
         let second = d.contact.iter().map(of_piece).sum::<f64>().abs();
-        // From the outermost point that sticks on the left to that on the right: in between some of a piece may slide for one that
-        // sticks on the other body.
+        // From the outermost point that sticks on the left to that on the right.
         let ends = d.contact.iter().fold([0.0, 0.0], |[left, right]: [f64; 2], piece| {
             let sticks = piece.contribution(&d.rule, &piece.p(&s.displacement)).friction[0];
             let place = |i: usize| piece.geometry.stretches[0].place(d.space.mesh(), i)[0];
@@ -277,14 +275,16 @@ fn dragged_cylinders_stick_and_slide_as_cattaneo_and_mindlin_say() {
         let stuck_on = (ends[1] - ends[0]) / 2.0;
         let off = [stuck_on / c - 1.0, second / expected - 1.0];
         println!(
-            "{degree:?}: {off:?} {:.4} a {a:.4}, Q/(mu P) {share:.4}, c/a {:.4} for {:.4}, second moment off by {:.1e}, {} factorisations",
-            s.boundaries[0].friction.unwrap().sticks / 2.0 / a,
+            "{degree:?}: a {a:.4}, Q/(mu P) {share:.4}, c/a {:.4} for {:.4}, second moment off by {:.1e}, {} factorisations",
             stuck_on / a,
             c / a,
             off[1],
             s.newton.factorizations
         );
-        assert!(off[0].abs() <= stuck && off[1].abs() <= 1e-2, "{degree:?}: {off:?}");
+        // The shear stress is c - |x| to the power 1/2 above the bound there, and what sticks ends short of that by a part of an edge:
+        // by half of one of the coarser body at most. On 20 edges to a that is 3.6 % of c.
+        let edge = 0.4 * 0.09 / (0.6 * cells[1] as f64 / 2.0);
+        assert!((stuck_on - c).abs() <= edge / 2.0 && off[1].abs() <= 1e-2, "{degree:?}: {off:?}");
         // The control: as if all of it slid.
         assert!((second / (mu * force * a * a / 4.0) - 1.0).abs() > 0.1);
     }
