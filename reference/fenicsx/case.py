@@ -265,6 +265,8 @@ def read_case(path):
     root = _Table("", content, path)
     if root.has("pair"):
         root.refuse("pair", "a pair of boundaries", "contact with rigid obstacles only: this engine has no contact between bodies")
+    if root.has("step"):
+        root.refuse("step", "load steps", "a case without: this engine has no friction")
     body = root.table("body", needed=False)
     materials = _materials(root.table("material"), _plane(body, "strain"))
     if root.has("exact") and None not in materials:

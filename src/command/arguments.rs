@@ -31,8 +31,7 @@ pub struct Arguments {
 const SCOPE: &str = "Linear elastic, small displacements and rotations, plane strain, plane stress or bodies of revolution. Contact is \
                      with rigid obstacles and between deformable bodies, without friction or with Tresca's or Coulomb's: they push \
                      and never pull; gap and direction are those of the undeformed bodies.\n\
-                     Not computed: 3D, large displacements or sliding, loads one after the other, friction in bodies of revolution, \
-                     plasticity and other nonlinear materials, dynamics, thermal strain.\n\
+                     Not computed: 3D, large displacements or sliding, friction in bodies of revolution, plasticity and other nonlinear materials, dynamics, thermal strain.\n\
                      docs/case.md of the sources lists the keys of a case file.";
 
 const EXIT_CODES: &str = "Exit codes: 0 solved and proved; 1 no result: it could not be computed or written, or a certificate was not accepted; \

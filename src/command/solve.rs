@@ -2,19 +2,18 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use signorini::certificates::adapt::Stage;
 use signorini::io::files::spare;
 use signorini::io::outputs::{self, Extra};
 use signorini::io::result::{Results, result_json};
-use signorini::io::{Failure, run};
-use signorini::io::{input, summary};
+use signorini::io::{Case, Failure, input, run, steps, summary};
 use signorini::quote;
 
 use super::arguments::{CaseArguments, Engine, SolveOptions};
 use super::progress::Phases;
-use super::{Done, SHORT, complain, engine, folder, is_standard_input, read, summarised};
+use super::{Done, SHORT, complain, engine, folder, is_standard_input, read, summarised, sweep};
 
 pub fn run(
     case: &CaseArguments,
@@ -32,7 +31,16 @@ pub fn run(
     let case = &CaseArguments { file: case.file.clone(), settings };
     let (results, files) = match (options.engine, options.ranks) {
         (Engine::Fenicsx, _) => solve_by_fenicsx(case, options, quiet)?,
-        (Engine::Signorini, None) => solve(case, options, quiet)?,
+        (Engine::Signorini, None) => {
+            let phases = Phases::start(quiet);
+            phases.enter("reading the case and its mesh");
+            let (start, read) = (Instant::now(), read(case)?);
+            let folder = folder(&case.file, options.out.as_deref());
+            if !read.steps.is_empty() {
+                return step_by_step(read, &folder, options, (phases, quiet));
+            }
+            solve((read, start.elapsed()), &folder, options, (phases, quiet))?
+        }
         (Engine::Signorini, Some(ranks)) => {
             return Err(Failure::wrong(format!(
                 "--ranks {ranks}: this program solves in one process; expected --engine fenicsx beside it"
@@ -49,24 +57,45 @@ pub fn run(
     Ok(if results.falls_short() { Done { code: SHORT, ..done } } else { done })
 }
 
+/// Solves the load steps of a case.
+fn step_by_step(
+    case: Case,
+    folder: &Path,
+    options: &SolveOptions,
+    (phases, quiet): (Phases, bool),
+) -> Result<Done, Failure> {
+    if options.json {
+        return Err(Failure::wrong(
+            "--json: the case has [[step]], whose results are files of their own; expected a case without, or the folder of each step",
+        ));
+    }
+    spare(folder, &steps::FILES, &case.sources)?;
+    let count = case.steps.len();
+    let extra = Extra { certificate: options.certificate, report: options.report };
+    let watcher = |step, stage| match stage {
+        Stage::Solve(phase) => phases.enter_solve(phase),
+        _ => phases.enter(format!("step {step} of {count}")),
+    };
+    let table = steps::run(case.steps, folder, extra, &watcher)?;
+    drop(phases);
+    if let [Err(failure)] = &table.results[..] {
+        return Err(failure.clone().of(&case.file));
+    }
+    sweep::ended(&table, folder, quiet)
+}
+
 type Written = (Results, Vec<PathBuf>);
 
 fn solve(
-    arguments: &CaseArguments,
+    (case, read): (Case, Duration),
+    folder: &Path,
     options: &SolveOptions,
-    quiet: bool,
+    (phases, quiet): (Phases, bool),
 ) -> Result<Written, Failure> {
     let extra = Extra { certificate: options.certificate, report: options.report };
-    let phases = Phases::start(quiet);
-    phases.enter("reading the case and its mesh");
-    let start = Instant::now();
-    let case = read(arguments)?;
-    let read = start.elapsed();
-    let out = options.out.as_deref();
-    let folder = folder(&arguments.file, out);
-    let with_files = !options.json || out.is_some();
+    let with_files = !options.json || options.out.is_some();
     if with_files {
-        spare(&folder, &outputs::FILES, &case.sources)?;
+        spare(folder, &outputs::FILES, &case.sources)?;
     }
     let file = case.file.clone();
     let watcher = |stage| match stage {
@@ -86,8 +115,8 @@ fn solve(
         return Ok((results, Vec::new()));
     }
     phases.enter("writing the files");
-    let remark = remark_of_another_case(&folder, &case.file);
-    let (files, results) = outputs::write(&folder, &case, &solved, read, extra)?;
+    let remark = remark_of_another_case(folder, &case.file);
+    let (files, results) = outputs::write(folder, &case, &solved, read, extra)?;
     drop(phases);
     if let (Some(remark), false) = (remark, quiet) {
         complain(&remark);

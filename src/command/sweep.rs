@@ -25,7 +25,7 @@ pub fn run(
     let runs = sweep::count(axes)?;
     let folder = folder(file, out);
     let (file, text) = read_text(file)?;
-    spare(&folder, &[sweep::FILE, sweep::CURVES], std::slice::from_ref(&file))?;
+    spare(&folder, &sweep::FILES, std::slice::from_ref(&file))?;
     let phases = Phases::start(quiet);
     let enter = |done| phases.enter(format!("{done} of {runs} runs"));
     enter(0);
@@ -48,7 +48,13 @@ pub fn run(
     {
         return Err(failure.clone().of(&file));
     }
-    let written = sweep.write(&folder)?;
+    ended(&sweep, &folder, quiet)
+}
+
+/// Writes the table, and tells how its runs ended.
+pub(super) fn ended(sweep: &Sweep, folder: &Path, quiet: bool) -> Result<Done, Failure> {
+    let codes: Vec<u8> = sweep.results.iter().map(code).collect();
+    let written = sweep.write(folder)?;
     let all_in = |allowed: &[u8]| codes.iter().all(|code| allowed.contains(code));
     let code = if all_in(&[0]) {
         0
@@ -57,7 +63,7 @@ pub fn run(
     } else {
         FAILED
     };
-    Ok(Done { code, ..summarised(&summary::swept(&sweep, &written), quiet) })
+    Ok(Done { code, ..summarised(&summary::swept(sweep, &written), quiet) })
 }
 
 /// The exit code of a run with these results.

@@ -153,6 +153,7 @@ impl ContactLine {
             let chained = chains(of_pair, |piece| [0, 1].map(|a| place(piece, a)));
             pieces.extend(chained.into_iter().map(Arc::new));
         }
+        begin_at(&problem.slip, &mut pieces)?;
         Ok(ContactLine { degree, pieces })
     }
 
@@ -377,6 +378,32 @@ fn law_of(
     }
 }
 
+/// Puts the slip of the load step before onto the pieces, if there was one.
+fn begin_at(slip: &[Vec<f64>], pieces: &mut [Arc<PieceGeometry>]) -> Result<(), DataError> {
+    if slip.is_empty() {
+        return Ok(());
+    }
+    let count = |nodes: usize| nodes == 0 || slip.iter().all(|of| [0, nodes].contains(&of.len()));
+    let nodes = pieces.first().map_or(0, |piece| piece.nodes.len());
+    if slip.len() != pieces.len() || !count(nodes) {
+        return Err(DataError::Value {
+            what: "the slip that is carried over",
+            found: format!(
+                "that of {} pieces of the contact line, and there are {}",
+                slip.len(),
+                pieces.len()
+            ),
+            expected: "as many from step to step: a clearance that leaves the same points of a pair within reach",
+        });
+    }
+    for (piece, slip) in pieces.iter_mut().zip(slip).filter(|(_, slip)| !slip.is_empty()) {
+        let mut moved = (**piece).clone();
+        moved.nodes.iter_mut().zip(slip).for_each(|(node, &slip)| node.slip = slip);
+        *piece = Arc::new(moved);
+    }
+    Ok(())
+}
+
 /// No edge that faces away from its obstacle lies inside it, and no boundary faces away as a whole: else the obstacle is on the
 /// other side of the body. Other edges may face away, as those of the upper half of a disk on a floor.
 fn check_sides(problem: &Problem, line: &[Arc<PieceGeometry>]) -> Result<(), DataError> {
@@ -429,7 +456,7 @@ impl Obstacles<'_> {
             let on_facet = SmoothPoint { place: space.nodes()[node], normal };
             let point = curve.map_or(on_facet, |points| points[a]);
             let Closest { gap, direction } = self.closest(&boundary, point)?;
-            nodes.push(PieceNode { place: point.place, direction, gap });
+            nodes.push(PieceNode { place: point.place, direction, gap, slip: 0.0 });
         }
         let along_normal = nodes.iter().all(|node| node.direction == normal);
         let bulge = match self.problem.conditions.get(&*boundary) {
@@ -473,7 +500,7 @@ impl Obstacles<'_> {
         };
         let stretches: Vec<Stretch> = sides.into_iter().zip(names).map(stretch).collect();
         let place = |a: usize| stretches[0].place(mesh, a);
-        let node = |(a, (direction, gap))| PieceNode { place: place(a), direction, gap };
+        let node = |(a, (direction, gap))| PieceNode { place: place(a), direction, gap, slip: 0.0 };
         let nodes = directions.into_iter().zip(gap).enumerate().map(node).collect();
         let law = match &pair.friction {
             Some(friction) if pair.law == Law::Contact => {

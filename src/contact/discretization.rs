@@ -160,11 +160,11 @@ impl<'a> Discretization<'a> {
         }
     }
 
-    /// The discretization with Tresca's friction where this one has Coulomb's; `bound` tells the slip bound at the ends of a piece from
-    /// its number and its coefficient.
+    /// The discretization with a given slip bound where this one has Coulomb's friction: at the start, at the end and in the middle of a
+    /// piece, from its number and its coefficient.
     #[must_use]
-    pub(crate) fn with_slip_bounds(&self, bound: impl Fn(usize, f64) -> [f64; 2]) -> Self {
-        self.with_coulomb(|e, mu| Bound::Tresca(bound(e, mu)))
+    pub(crate) fn with_slip_bounds(&self, bound: impl Fn(usize, f64) -> [f64; 3]) -> Self {
+        self.with_coulomb(|e, mu| Bound::Given(bound(e, mu)))
     }
 
     /// The discretization with this many times the coefficients of Coulomb's friction.

@@ -40,6 +40,9 @@ pub enum Bound {
     Tresca([f64; 2]),
     /// mu
     Coulomb(f64),
+    /// s at the start, at the end and in the middle, quadratic for quadratic elements; none where it is negative. It is what Coulomb's
+    /// law has for a given pressure.
+    Given([f64; 3]),
 }
 
 impl Bound {
@@ -53,6 +56,7 @@ impl Bound {
                 [start, end, middle].into_iter().take(normal.len()).collect()
             }
             Bound::Coulomb(mu) => normal.iter().map(|&p| exact(mu) * p).collect(),
+            Bound::Given(s) => s.into_iter().take(normal.len()).map(|s| gamma * exact(s)).collect(),
         }
     }
 
@@ -61,6 +65,7 @@ impl Bound {
         match self {
             Bound::Tresca([start, end]) => (start + end) / 2.0,
             Bound::Coulomb(mu) => mu * pressure.max(0.0),
+            Bound::Given([.., middle]) => middle.max(0.0),
         }
     }
 }
@@ -113,7 +118,7 @@ where
     };
     let block = |entries: [[f64; M]; M]| DMatrix::from_fn(M, M, |a, b| entries[a][b]);
     let by_normal = match bound {
-        Bound::Tresca(_) => DMatrix::zeros(M, M),
+        Bound::Tresca(_) | Bound::Given(_) => DMatrix::zeros(M, M),
         Bound::Coulomb(mu) => mu * block(of.by_bound),
     };
     let itself = Integrals {

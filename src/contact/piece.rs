@@ -32,6 +32,8 @@ pub struct PieceNode {
     pub direction: Vector2<f64>,
     /// g: on the piece the gap is the Lagrange interpolant of these.
     pub gap: f64,
+    /// g_t: the jump across n~ at which friction begins, likewise; 0 but after another load step.
+    pub slip: f64,
 }
 
 /// The part of an edge on which a side of a piece lies.
@@ -565,9 +567,13 @@ impl<S: Scalar + From<f64>> Piece<S> {
         self.p0.iter().enumerate().map(value).collect()
     }
 
-    /// g of functional `i`; across n~ there is none.
+    /// g of functional `i`, or g_t across n~.
     pub(crate) fn gap_of(&self, i: usize) -> f64 {
-        self.geometry.nodes.get(i).map_or(0.0, |node| node.gap)
+        let nodes = &self.geometry.nodes;
+        match i.checked_sub(nodes.len()) {
+            None => nodes[i].gap,
+            Some(a) => nodes.get(a).map_or(0.0, |node| node.slip),
+        }
     }
 
     /// P(u) = P0(u) - g there.

@@ -61,7 +61,7 @@ impl Grip {
             is_rough = true;
             let rows = across(motions, parts, space, piece);
             match bound {
-                Bound::Tresca([s, t]) => {
+                Bound::Tresca([s, t]) | Bound::Given([s, t, _]) => {
                     // int s N_a, N_a of degree 1 or 2.
                     let sixth = piece.length / 6.0;
                     let weights = match rows.len() {

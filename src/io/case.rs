@@ -52,6 +52,10 @@ pub struct Case {
     pub title: String,
     /// The problem.
     pub problem: Problem,
+    /// Its load steps, a case for each \[\[step\]\]; each begins where the one before ends.
+    pub steps: Vec<Case>,
+    /// The number of the load step that it is, from 1, if it is one.
+    pub step: Option<usize>,
     /// The variant of method (8).
     pub method: Method,
     /// The accuracy.
@@ -212,19 +216,26 @@ impl Case {
         let unit = |units: &Units| {
             [Measure::Length, Measure::Stress].map(|measure| units.of(measure, self.thickness))
         };
-        Words { units: self.units.as_ref().map(unit), known_force: None }
+        Words {
+            units: self.units.as_ref().map(unit),
+            known_force: None,
+            is_step: self.step.is_some(),
+        }
     }
 }
 
 fn parse(source: Source, mesh: Option<Mesh>) -> Result<Case, FileError> {
     let layers = source.layers();
     let entries = source.entries(&layers)?;
-    let mut case = case(source.file, &Table::whole(source, &entries), mesh)?;
-    case.text = source.text.to_owned();
-    for setting in source.settings {
-        case.text += &format!("# --set {}\n", setting.replace('\n', " "));
-    }
-    Ok(case)
+    let count = read_steps(&Table::whole(source, &entries))?;
+    let step = |i: usize| {
+        let entries = source.entries_of_step(&layers, i)?;
+        let step = case(source.file, &Table::whole(source, &entries), mesh.clone())?;
+        Ok(Case { text: source.said(), step: Some(i + 1), ..step })
+    };
+    let steps = (0..count).map(step).collect::<Result<Vec<Case>, FileError>>()?;
+    let whole = case(source.file, &Table::whole(source, &entries), mesh)?;
+    Ok(Case { text: source.said(), steps, ..whole })
 }
 
 fn text(bytes: Vec<u8>, file: &Path) -> Result<String, FileError> {
@@ -244,7 +255,7 @@ const MEMORY_PER_BYTE: u64 = 400;
 fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileError> {
     root.only(&[
         "title", "mesh", "material", "load", "exact", "boundary", "obstacle", "pair", "point",
-        "method", "solver", "adapt", "certify", "output", "units", "body",
+        "method", "solver", "adapt", "certify", "output", "units", "body", "step",
     ])?;
     let title = match root.get("title") {
         Some(title) => title.text()?.to_owned(),
@@ -297,7 +308,10 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
             friction,
             points,
             pairs,
+            slip: Vec::new(),
         },
+        steps: Vec::new(),
+        step: None,
         materials,
         units,
         thickness,
@@ -313,6 +327,38 @@ fn case(file: &Path, root: &Table, given: Option<Mesh>) -> Result<Case, FileErro
         remarks,
         sources: std::iter::once(file.to_owned()).chain(mesh_file).collect(),
     })
+}
+
+/// The keys of a load step: what moves and loads the body, and where obstacles are. The mesh and the method stay.
+const OF_A_STEP: [&str; 6] = ["title", "boundary", "load", "pair", "obstacle", "point"];
+
+/// The number of load steps, whose tables have no other keys than these.
+fn read_steps(root: &Table) -> Result<usize, FileError> {
+    let Some(all) = root.get("step") else { return Ok(0) };
+    if all.is_table() {
+        return Err(all.wrong("a list of tables, each under [[step]]"));
+    }
+    for beside in ["adapt", "exact", "certify"] {
+        if root.get(beside).is_some() {
+            let found = format!("[[step]] beside [{beside}]");
+            return Err(all
+                .at
+                .found(&found, "one of both: steps are solved on one mesh, without certificates"));
+        }
+    }
+    let steps = all.items()?;
+    for step in &steps {
+        let table = step.section("[[step]]".to_owned())?;
+        table.only(&OF_A_STEP)?;
+        for key in ["boundary", "load", "obstacle", "point"] {
+            if let Some(value) = table.get(key).filter(|value| !value.is_table()) {
+                return Err(
+                    value.wrong("a table, such as boundary.top.displacement = [\"0.1\", \"0\"]")
+                );
+            }
+        }
+    }
+    Ok(steps.len())
 }
 
 fn read_units(table: &Table) -> Result<Units, FileError> {

@@ -49,6 +49,9 @@ mod revolution;
 pub mod run;
 #[cfg(feature = "files")]
 #[doc(hidden)]
+pub mod steps;
+#[cfg(feature = "files")]
+#[doc(hidden)]
 pub mod summary;
 #[cfg(feature = "files")]
 #[doc(hidden)]

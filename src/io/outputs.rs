@@ -204,6 +204,7 @@ pub fn results(
         case: Some(case.file.display().to_string()),
         schema: SCHEMA,
         title: case.title.clone(),
+        step: case.step,
         verdict: Some(solution.verdict.name().to_owned()),
         reason: solution.verdict.reason().map(str::to_owned),
         missing: Vec::new(),

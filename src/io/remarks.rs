@@ -37,6 +37,8 @@ pub(super) struct Words {
     pub(super) units: Option<[String; 2]>,
     /// The contact boundary whose force is proved to be as near to the true one as was asked for.
     pub(super) known_force: Option<String>,
+    /// The case is one of several load steps.
+    pub(super) is_step: bool,
 }
 
 impl Solution {
@@ -70,7 +72,7 @@ pub(super) fn remarks(problem: &Problem, solution: &Solution, words: &Words) -> 
     }
     remarks.extend(model::overlap(problem, words));
     remarks.extend(model::interference(problem, solution, words));
-    remarks.extend(friction(solution));
+    remarks.extend(friction(solution, words));
     let (largest, size) = (solution.quantities.max_displacement, size(problem));
     if largest > LARGE_DISPLACEMENT * size {
         remarks.push(format!(
@@ -99,7 +101,7 @@ pub(super) fn before(problem: &Problem, degree: Degree, words: &Words) -> Vec<St
 const ACROSS_GAPS: f64 = 0.01;
 
 /// Says what a reader may not expect of friction.
-fn friction(solution: &Solution) -> Vec<String> {
+fn friction(solution: &Solution, words: &Words) -> Vec<String> {
     let mut remarks = Vec::new();
     for boundary in &solution.boundaries {
         let Some(friction) = &boundary.friction else { continue };
@@ -111,10 +113,10 @@ fn friction(solution: &Solution) -> Vec<String> {
             ));
         }
     }
-    if solution.boundaries.iter().any(|b| b.friction.is_some_and(|friction| friction.slides > 0.0))
-    {
+    let slides = |b: &ContactBoundary| b.friction.is_some_and(|friction| friction.slides > 0.0);
+    if !words.is_step && solution.boundaries.iter().any(slides) {
         remarks.push(
-            "one step: friction is as if the loads grew in proportion, with slip in one direction"
+            "one step: friction is as if the loads grew in proportion, with slip in one direction; loads one after the other are [[step]] tables"
                 .to_owned(),
         );
     }

@@ -58,6 +58,11 @@ pub fn solve(
     start: Option<&Solution>,
     watcher: &dyn Fn(Stage),
 ) -> Result<(Case, Solved), Failure> {
+    if !case.steps.is_empty() {
+        return Err(Failure::wrong(
+            "found [[step]], load steps that follow each other; expected a case without, or the command 'signorini solve'",
+        ));
+    }
     let Some((target, force)) = case.adapt.clone() else {
         let of_solve = |phase| watcher(Stage::Solve(phase));
         let course = Course::default().watched_by(&of_solve);

@@ -318,10 +318,14 @@ fn how_it_was_solved(r: &Results, shown: &QuantityFormat, verbose: bool, lines: 
             imbalance < WORTH_SHOWING || parts.into_iter().all(|energy| energy.abs() <= no_energy);
         if verbose || !is_balanced {
             let [loads, supports, contact] = parts.map(|e| shown.number(e, Measure::Moment));
+            let taken = r.contact.iter().filter_map(|part| part.friction).map(|of| of.dissipated);
+            let friction = taken.reduce(|a, b| a + b).map_or(String::new(), |taken| {
+                format!(", of which friction takes {}", shown.number(taken, Measure::Moment))
+            });
             lines.line(
                 "balance",
                 format!(
-                    "a(u,u) = loads {loads} + supports {supports} + contact {contact}, relative imbalance {imbalance:.0e}"
+                    "a(u,u) = loads {loads} + supports {supports} + contact {contact}{friction}, relative imbalance {imbalance:.0e}"
                 ),
             );
         }

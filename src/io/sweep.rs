@@ -103,13 +103,15 @@ fn expanded(item: &str) -> Vec<String> {
 /// The entry of a run that is still to come when a sweep is stopped.
 const NOT_SOLVED: &str = "not solved";
 
-pub const FILE: &str = "sweep.csv";
+/// The table, and force and peak over what varies.
+pub const FILES: [&str; 2] = ["sweep.csv", "sweep.svg"];
 
-/// Force and peak over what varies.
-pub const CURVES: &str = "sweep.svg";
+/// The names of the files of a table of runs: the table, force and peak over what varies, and what ParaView opens, where the runs have
+/// files.
+pub(crate) type Names = [&'static str; 3];
 
-/// The name of the file that ParaView opens, where the runs have files.
-pub(crate) const COLLECTION: &str = "sweep.pvd";
+/// Those of a sweep.
+const NAMES: &Names = &[FILES[0], FILES[1], "sweep.pvd"];
 
 /// A case and its results for the combinations of the values of some keys.
 #[derive(Clone, Debug)]
@@ -122,6 +124,8 @@ pub struct Sweep {
     pub results: Vec<Result<Results, Failure>>,
     /// The files of each run are written, too.
     pub with_files: bool,
+    /// The names of the files.
+    pub(crate) names: &'static Names,
 }
 
 /// The number of runs that these axes make.
@@ -178,11 +182,18 @@ pub fn run(
     };
     let mut title = String::new();
     for values in &values {
-        title = read(values)?.title;
+        let case = read(values)?;
+        if !case.steps.is_empty() {
+            return Err(Failure::wrong(
+                "found [[step]] in the case, whose load steps are solved one after the other; expected a case without, or 'signorini solve'",
+            ));
+        }
+        title = case.title;
     }
     clear(folder);
     let keys = axes.iter().map(|axis| axis.key.clone()).collect();
-    let mut sweep = Sweep { title, keys, values, results: Vec::new(), with_files: files };
+    let mut sweep =
+        Sweep { title, keys, values, results: Vec::new(), with_files: files, names: NAMES };
     let (all, runs) = (sweep.values.clone(), sweep.values.len());
     let in_a_row = runs.div_ceil(jobs.clamp(1, runs.max(1)));
     let stopped = AtomicBool::new(false);
@@ -231,13 +242,13 @@ pub fn run(
     })
 }
 
-fn of_run(folder: &Path, i: usize) -> PathBuf {
+pub(crate) fn of_run(folder: &Path, i: usize) -> PathBuf {
     folder.join((i + 1).to_string())
 }
 
 /// Removes the files that an earlier sweep into `folder` has written of its runs, result.json first, and the folders of runs
 /// that are empty then. What can't be removed stays.
-fn clear(folder: &Path) {
+pub(crate) fn clear(folder: &Path) {
     for run in (0..MOST_RUNS).map(|i| of_run(folder, i)).filter(|run| run.is_dir()) {
         for name in outputs::FILES.iter().rev() {
             let _ = fs::remove_file(run.join(name));
@@ -316,6 +327,13 @@ fn cells(r: &Results, shown: NumberFormat) -> Vec<(String, String)> {
         add(&name, "force", part.force);
         add(&name, "length", part.length);
         add(&name, "peak_pressure", part.peak_pressure);
+        if let Some(friction) = &part.friction {
+            let [x, y] = part.resultant;
+            add(&name, "force_x", x);
+            add(&name, "force_y", y);
+            add(&name, "slip", friction.slip);
+            add(&name, "dissipated", friction.dissipated);
+        }
     }
     let proved = r.certificate.as_ref().and_then(|c| c.discrete.as_ref()?.intervals.as_ref());
     for part in proved.iter().flat_map(|intervals| &intervals.contact) {
@@ -415,12 +433,12 @@ impl Sweep {
         if rest > 0 { shown + &more } else { shown }
     }
 
-    /// The text of sweep.csv: each number the shortest decimal that reads back to the same double.
+    /// The text of the table: each number the shortest decimal that reads back to the same double.
     pub fn csv(&self) -> String {
         self.lines(false, &csv::number).into_iter().map(csv::line).collect()
     }
 
-    /// The text of sweep.pvd: the solutions of the runs as the steps of one animation, for ParaView.
+    /// The text of the collection: the solutions of the runs as the steps of one animation, for ParaView.
     fn pvd(&self) -> String {
         let step = |(i, results): (i32, &Result<Results, Failure>)| match results {
             Ok(_) => format!("<DataSet timestep=\"{i}\" file=\"{i}/solution.vtu\"/>\n"),
@@ -502,17 +520,18 @@ impl Sweep {
         })
     }
 
-    /// Writes sweep.csv into `folder`, sweep.svg where a number varies, and sweep.pvd where the runs have files; returns their
+    /// Writes the table into `folder`, the curves where a number varies, and the collection where the runs have files; returns their
     /// paths.
     pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-        let mut output = Output::new(folder)?.replacing(&[COLLECTION, CURVES]);
-        if let Some(curves) = self.curves() {
-            output.stage_made(CURVES, figure(&curves))?;
+        let &[table, curves, collection] = self.names;
+        let mut output = Output::new(folder)?.replacing(&self.names[1..]);
+        if let Some(drawn) = self.curves() {
+            output.stage_made(curves, figure(&drawn))?;
         }
         if self.with_files {
-            output.stage(COLLECTION, self.pvd().as_bytes())?;
+            output.stage(collection, self.pvd().as_bytes())?;
         }
-        output.stage(FILE, self.csv().as_bytes())?;
+        output.stage(table, self.csv().as_bytes())?;
         output.publish()
     }
 }

@@ -160,6 +160,9 @@ pub struct Problem {
     pub points: Vec<PointSupport>,
     /// Boundaries that may touch each other.
     pub pairs: Vec<Pair>,
+    /// The jumps across the direction of contact at which friction begins, at the nodes of each piece of Gamma_C: those of the load
+    /// step before (`Solution::slip`); empty where there is none, and on pieces without friction.
+    pub slip: Vec<Vec<f64>>,
 }
 
 impl Problem {
@@ -179,6 +182,7 @@ impl Problem {
             friction: BTreeMap::new(),
             points: Vec::new(),
             pairs: Vec::new(),
+            slip: Vec::new(),
         }
     }
 
@@ -229,6 +233,7 @@ impl Problem {
     #[must_use]
     pub fn refined(mut self, Refinement { mesh, origin, .. }: Refinement) -> Self {
         self.material = self.material.on_parts(&origin);
+        self.slip = Vec::new();
         for force in &mut self.surface_forces {
             // Triangles are numbered in the order of those that they are parts of.
             let parts = |&t: &usize| {

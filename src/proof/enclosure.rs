@@ -296,13 +296,20 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
                 None => self.held_by(&nowhere, &at, fields, (&r, arithmetic)),
                 Some(_) => Err(Unproved::HeldByContact),
             };
-            return match by_a {
-                Err(Unproved::NotIsolated | Unproved::NoFactor | Unproved::HeldByContact) => {
-                    let pressed = Pressed::at(d, &self.lines, &at.u, 0.0);
-                    self.held_by(&pressed, &at, fields, (&r, arithmetic))
-                }
-                found => found,
+            let is_enough = match &by_a {
+                Ok(enclosure) => enclosure.is_within(self.proof),
+                Err(Unproved::NotIsolated | Unproved::NoFactor | Unproved::HeldByContact) => false,
+                Err(_) => true,
             };
+            let pressed = Pressed::at(d, &self.lines, &at.u, 0.0);
+            if is_enough || pressed.is_nowhere() {
+                return by_a;
+            }
+            let found = self.held_by(&pressed, &at, fields, (&r, arithmetic));
+            let radius = |of: &Result<Enclosure, Unproved>| {
+                of.as_ref().map_or(f64::INFINITY, |of| of.radius)
+            };
+            return if by_a.is_ok() && radius(&by_a) <= radius(&found) { by_a } else { found };
         }
         if d.slides.is_none() {
             let mut best = self.held_by(&nowhere, &at, fields, (&r, arithmetic));
@@ -370,9 +377,8 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         let negligible = SLIGHT * known;
         let first = weighted(r, &crude);
         let coulomb = d.has_coulomb();
-        let rho = if first <= negligible && !coulomb {
-            up(first + up_to)
-        } else {
+        let mut dual = Dual { norm: first, z: Vec::new(), left: first };
+        if !(first <= negligible) || coulomb {
             let factor = match factor {
                 Some(factor) => factor,
                 None => factor.insert(match &self.of_a {
@@ -386,8 +392,11 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
                 }),
             };
             let product = Product { system, lines: &self.lines, pressed, arithmetic };
-            up(dual_norm(&product, factor, r, &crude, coercivity, negligible) + up_to)
-        };
+            // With Coulomb's friction each digit of it widens the ball without another solution.
+            let negligible = if coulomb { 0.0 } else { negligible };
+            dual = dual_norm(&product, factor, r, &crude, coercivity, negligible);
+        }
+        let rho = up(dual.norm + up_to);
         if !coulomb && !pressed.stay(rho) {
             return Err(Unproved::HeldByContact);
         }
@@ -397,18 +406,18 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             let product = Product { system, lines: &self.lines, pressed, arithmetic };
             let times = |z: &[PreciseBall]| product.times(z);
             let body = isolated::Body { system, factor, times: &times, crude: &crude, coercivity };
+            let rest = isolated::Rest { rho, z: &dual.z, left: up(dual.left + up_to), size };
             if pressed.is_nowhere() {
                 let known = match &mut self.known {
                     Some(known) => known,
                     none => none.insert(isolated::Known::new(&body, &self.lines, None)?),
                 };
-                let of = [rho, size];
-                isolated = Some(isolated::isolate(d, (known, None), &self.lines, &at.u, of)?);
+                let known = (&*known, None);
+                isolated = Some(isolated::isolate(known, &self.lines, &at.u, system, &rest)?);
             } else {
                 let known = isolated::Known::new(&body, &self.lines, Some(springs))?;
-                let of = [rho, size];
-                let by_a = self.known.as_ref();
-                isolated = Some(isolated::isolate(d, (&known, by_a), &self.lines, &at.u, of)?);
+                let known = (&known, self.known.as_ref());
+                isolated = Some(isolated::isolate(known, &self.lines, &at.u, system, &rest)?);
             }
         }
         let rho = isolated.map_or(rho, |isolated| isolated.rho);
@@ -549,8 +558,21 @@ fn crude_norms(system: &System, korn: &Korn, coercivity: f64) -> Vec<f64> {
     crude
 }
 
-/// |r|_A* at most, where |t|_A* <= sum of `crude`_i |t_i| for every t, and |v|_a^2 <= |v|_A^2 / `coercivity`. What is
-/// `negligible` need not be known better.
+/// A dual norm is corrected as long as that takes it below this share of what it was: of a body whose factor knows hardly a digit each
+/// correction takes off some of what is left.
+const BETTER: f64 = 0.9;
+
+/// A functional in the dual norm of A.
+struct Dual {
+    /// Its norm, at most.
+    norm: f64,
+    /// It is A z, up to a functional of at most this norm.
+    z: Vec<PreciseBall>,
+    left: f64,
+}
+
+/// Of r, where |t|_A* <= sum of `crude`_i |t_i| for every t, and |v|_a^2 <= |v|_A^2 / `coercivity`. What is `negligible` need not be
+/// known better.
 fn dual_norm(
     a: &Product,
     factor: &Factor,
@@ -558,10 +580,10 @@ fn dual_norm(
     crude: &[f64],
     coercivity: f64,
     negligible: f64,
-) -> f64 {
+) -> Dual {
     let mut z = vec![PreciseBall::from(0); r.len()];
     let mut left = Cow::Borrowed(r);
-    let mut best = f64::INFINITY;
+    let mut best = Dual { norm: f64::INFINITY, z: Vec::new(), left: f64::INFINITY };
     loop {
         let mut correction: Vec<f64> = left.iter().map(|t| t.head()).collect();
         factor.solve(&mut correction);
@@ -579,14 +601,15 @@ fn dual_norm(
         let energy = up(off + root(square));
         left = Cow::Owned(az);
         let rest = up(weighted(&left, crude) + off);
-        let bound = up(energy + rest);
-        if !(rest > (SLIGHT * energy).max(negligible)) {
-            return bound.min(best);
+        let norm = up(energy + rest);
+        let (is_known, is_better) =
+            (!(rest > (SLIGHT * energy).max(negligible)), norm < BETTER * best.norm);
+        if norm < best.norm {
+            best = Dual { norm, z: z.clone(), left: rest };
         }
-        if !(bound < best / 2.0) {
-            return bound.min(best);
+        if is_known || !is_better {
+            return best;
         }
-        best = bound;
     }
 }
 

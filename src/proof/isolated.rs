@@ -2,24 +2,23 @@
 //! exactly one within a distance R, and how far that can be: docs/theory.md, 13.6.
 //!
 //! With B the functionals, A = L L^T, Z = L^-1 B^T, G = Z^T Z and H0 what the terms of contact and friction have for a derivative where it is
-//! certain which of them is meant, J0 = A + B^T H0 B:
+//! certain which of them is meant, J0 = A + B^T H0 B. Newton's map v - J0^-1 F(v) moves u~ by at most `step`, and brings two fields within R
+//! of u~ nearer to each other by a factor of at most
 //!
-//! - beta = |J0^-1| from the dual norm of A to the norm of A = 1 / min(1, sigma_min(1 + G^(1/2) H0 G^(1/2))),
-//! - eta(R) = sum over the pieces of (1 + 2 mu) (|E| / gamma) g m(R): g is the largest eigenvalue of the block of G at a node, m(R) the
-//!   measure of where a change of P by g^(1/2) R could change which term is meant.
+//! q(R) = sum over the pieces of |E| / gamma times the integral of what J0^-1 makes of the forces by which the terms may differ from those
+//! of H0 at a point, for P that changes by what a field of norm R does there.
 //!
-//! If beta (rho + eta(R) R) <= R and beta eta(R) < 1, rho being the dual norm of the residual, there is exactly one solution within R in the
-//! norm of A, and it is within beta rho / (1 - beta eta(R)).
+//! If step + q(R) R <= R and q(R) < 1, there is exactly one solution within R in the norm of A, and it is within step / (1 - q(R)).
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use nalgebra::DMatrix;
 
 use super::Unproved;
-use super::balls::{free, root};
+use super::balls::{field, free, root};
 use super::pressed::{EdgePiece, Row};
 use crate::contact::friction::Bound;
-use crate::contact::law::Law;
+use crate::contact::law::{EdgeRule, Law};
 use crate::contact::{Discretization, Piece};
 use crate::kernel::Response;
 use crate::kernel::ball::{PreciseBall, larger, up};
@@ -34,12 +33,8 @@ use crate::solve::coulomb::coefficient;
 const MOST_FUNCTIONALS: usize = 2_000;
 const MOST_ENTRIES: usize = 40_000_000;
 
-/// The share of a stretch that is left out at a root, where nothing is certain: so little that it bounds no radius.
-const INSET: f64 = 1e-9;
-
-/// The bounds of the smallest singular value that are tried, the largest first.
-const SINGULAR_VALUES: [f64; 14] =
-    [0.999, 0.99, 0.97, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.03];
+/// The shares of a stretch that are left out at a root, where nothing is certain: the first with which the rest is.
+const INSETS: [f64; 4] = [1e-14, 1e-12, 1e-10, 1e-7];
 
 /// What is proved of the solution near a displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,10 +70,11 @@ pub(super) struct Body<'a, 'd, 'p> {
 struct Compliance {
     /// Its middle.
     g: Mat<f64>,
-    /// The norm of what it is off, at most.
-    off: f64,
-    /// The largest entry that it is off by.
+    /// What each entry is off by, at most.
+    by: Mat<f64>,
+    /// The largest of these, and the norm of what G is off.
     entry: f64,
+    off: f64,
 }
 
 impl Body<'_, '_, '_> {
@@ -141,64 +137,154 @@ impl Body<'_, '_, '_> {
             by(i, j).max(by(j, i)) + f64::EPSILON * mean[(i, j)].abs()
         });
         let (off, entry) = (row_sum(&by), largest(&by));
-        Ok(Compliance { g: mean, off, entry })
+        Ok(Compliance { g: mean, by, entry, off })
     }
 }
 
-/// Which terms are meant where some polynomials are positive: the factors of P_n in the normal force, and of P_n and P_t in the shear
-/// force.
-struct State {
-    positive: Vec<Row>,
-    factors: [f64; 3],
+/// The most that linear combinations of P0_n(v) and P0_t(v) are on a piece, for v of norm 1.
+struct Reach {
+    /// Of P0_n, and of P0_t; 0 where the piece does not feel that.
+    normal: f64,
+    across: f64,
+    /// Products of what the components at a node are, n with n, t with t, n with t; what these are off by, and what a component is.
+    nodes: Vec<[f64; 3]>,
+    entry: f64,
+    slack: f64,
+    /// What a polynomial exceeds its nodal values by.
+    between: f64,
 }
 
-/// The states of a piece that a change of P by `d` in length does not end.
-fn states(piece: &Piece<PreciseBall>, p: &[PreciseBall], d: f64) -> Vec<State> {
-    let less =
-        |row: Row, by: f64| -> Row { row.into_iter().map(|v| v - PreciseBall::from(by)).collect() };
-    let [normal, across] = [piece.along(p), piece.across(p)].map(<[PreciseBall]>::to_vec);
+impl Reach {
+    /// Of P0: the products are the entries of G.
+    fn new(piece: &Piece<PreciseBall>, of: &Compliance) -> Self {
+        Reach::with(piece, [of.entry, 0.0], |i, j| of.g[(i, j)])
+    }
+
+    fn with(
+        piece: &Piece<PreciseBall>,
+        [entry, slack]: [f64; 2],
+        product: impl Fn(usize, usize) -> f64,
+    ) -> Self {
+        let count = piece.degree.nodes_per_edge();
+        let first = piece.functionals().start;
+        let is_rough = piece.p0.len() > count;
+        let node = |i: usize| {
+            let j = i + count;
+            let normal = product(i, i);
+            if is_rough { [normal, product(j, j), product(i, j)] } else { [normal, 0.0, 0.0] }
+        };
+        let between = match piece.degree {
+            Degree::One => 1.0,
+            Degree::Two => 1.25,
+        };
+        let nodes = (first..first + count).map(node).collect();
+        let mut reach = Reach { normal: 0.0, across: 0.0, nodes, entry, slack, between };
+        reach.normal = reach.of(1.0, 0.0);
+        reach.across = if is_rough { reach.of(0.0, 1.0) } else { 0.0 };
+        reach
+    }
+
+    /// Of a P0_n + b P0_t.
+    fn of(&self, a: f64, b: f64) -> f64 {
+        let size = a.abs() + b.abs();
+        let square = |&[n, t, nt]: &[f64; 3]| {
+            let magnitudes = a * a * n.abs() + b * b * t.abs() + 2.0 * (a * b * nt).abs();
+            let value = a * a * n + b * b * t + 2.0 * a * b * nt;
+            value.max(0.0) + 8.0 * f64::EPSILON * magnitudes + size * size * self.entry
+        };
+        let most = self.nodes.iter().map(square).fold(0.0, larger);
+        up(self.between * (most.sqrt() + size * self.slack) * (1.0 + 1e-12))
+    }
+
+    /// What forces a P0_n(v) along and b P0_n(v) + c P0_t(v) across at a point do to a body whose answers to forces have this reach,
+    /// at most.
+    fn through(&self, [a, b, c]: Terms, answer: &Reach) -> f64 {
+        let by_forces = a.abs() * self.normal * answer.normal + self.of(b, c) * answer.across;
+        let by_values = self.normal * answer.of(a, b) + c.abs() * self.across * answer.across;
+        up(by_forces.min(by_values) * (1.0 + 1e-12))
+    }
+}
+
+/// The derivative of the terms of a point: of the normal force by P_n, of the shear force by P_n and by P_t.
+type Terms = [f64; 3];
+
+/// The regions of a piece where, for all v within R, P_n(v) has one sign and P_t(v) lies within the bound or beyond on one side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Region {
+    Open,
+    Pressed,
+    Sticks,
+    Right,
+    Left,
+}
+
+/// The polynomials that are positive in each region of a piece, where P_n and P_t have the values `p` and change as for all v within
+/// `r`.
+fn regions(
+    piece: &Piece<PreciseBall>,
+    (p, reach): (&[PreciseBall], &Reach),
+    r: f64,
+) -> Vec<(Region, Vec<Row>)> {
+    let less = |row: &Row, most: f64| -> Row {
+        let by = PreciseBall::from(up(most * r * (1.0 + 1e-12)));
+        row.iter().map(|&v| v - by).collect()
+    };
     let minus = |row: &Row| -> Row { row.iter().map(|&v| -v).collect() };
     let sum = |a: &Row, b: &Row| -> Row { a.iter().zip(b).map(|(&a, &b)| a + b).collect() };
-    let pressed = || less(normal.clone(), d);
-    let open = || less(minus(&normal), d);
-    let state = |positive: Vec<Row>, factors: [f64; 3]| State { positive, factors };
-    match piece.geometry.law {
-        Law::Friction(bound @ Bound::Coulomb(mu)) => {
-            let m = bound.at_nodes(piece.gamma, &normal);
-            let far = up((1.0 + mu) * d);
-            let [below, above] = [sum(&m, &minus(&across)), sum(&m, &across)];
-            vec![
-                state(vec![open()], [0.0; 3]),
-                state(
-                    vec![pressed(), less(below.clone(), far), less(above.clone(), far)],
-                    [1.0, 0.0, 1.0],
-                ),
-                state(vec![pressed(), less(minus(&below), far)], [1.0, mu, 0.0]),
-                state(vec![pressed(), less(minus(&above), far)], [1.0, -mu, 0.0]),
-            ]
-        }
-        Law::Friction(bound) => {
-            let m = bound.at_nodes(piece.gamma, &normal);
-            let [below, above] = [sum(&m, &minus(&across)), sum(&m, &across)];
-            let across = [
-                (vec![less(below.clone(), d), less(above.clone(), d)], 1.0),
-                (vec![less(minus(&below), d)], 0.0),
-                (vec![less(minus(&above), d)], 0.0),
-            ];
+    let [normal, across] = [piece.along(p), piece.across(p)].map(<[PreciseBall]>::to_vec);
+    let mut all = Vec::new();
+    if piece.geometry.law.responses().first() == Some(&Response::Unilateral) {
+        all.push((Region::Open, vec![less(&minus(&normal), reach.normal)]));
+        all.push((Region::Pressed, vec![less(&normal, reach.normal)]));
+    }
+    if let Law::Friction(bound) = piece.geometry.law {
+        let m = bound.at_nodes(piece.gamma, &normal);
+        let mu = match bound {
+            Bound::Coulomb(mu) => mu,
+            _ => 0.0,
+        };
+        let [below, above] = [sum(&m, &minus(&across)), sum(&m, &across)];
+        let [by_below, by_above] = [reach.of(mu, -1.0), reach.of(mu, 1.0)];
+        all.push((Region::Sticks, vec![less(&below, by_below), less(&above, by_above)]));
+        all.push((Region::Right, vec![less(&minus(&below), by_below)]));
+        all.push((Region::Left, vec![less(&minus(&above), by_above)]));
+    }
+    all
+}
+
+/// The terms that may act at a point of these regions: each of P, and all between any two of them.
+fn possible(law: Law, has: impl Fn(Region) -> bool) -> Vec<Terms> {
+    let normal = match (has(Region::Open), has(Region::Pressed)) {
+        (true, _) => vec![0.0],
+        (_, true) => vec![1.0],
+        _ => vec![0.0, 1.0],
+    };
+    let (sticks, right, left) = (has(Region::Sticks), has(Region::Right), has(Region::Left));
+    let none_is_sure = !(sticks || right || left);
+    match law {
+        Law::Friction(Bound::Coulomb(mu)) => {
             let mut all = Vec::new();
-            for (normal, factor) in [(open(), 0.0), (pressed(), 1.0)] {
-                for (rows, sticks) in &across {
-                    let positive = [vec![normal.clone()], rows.clone()].concat();
-                    all.push(state(positive, [factor, 0.0, *sticks]));
-                }
+            if normal.contains(&0.0) {
+                all.push([0.0; 3]);
+            }
+            if normal.contains(&1.0) {
+                let pressed =
+                    [(sticks, [1.0, 0.0, 1.0]), (right, [1.0, mu, 0.0]), (left, [1.0, -mu, 0.0])];
+                let found = pressed.into_iter().filter(|(is, _)| *is || none_is_sure);
+                all.extend(found.map(|(_, terms)| terms));
             }
             all
         }
-        law if law.responses().first() == Some(&Response::Unilateral) => {
-            vec![state(vec![open()], [0.0; 3]), state(vec![pressed()], [1.0, 0.0, 0.0])]
+        Law::Friction(_) => {
+            let across = [(sticks, 1.0), (right || left, 0.0)];
+            let across = across.into_iter().filter(|(is, _)| *is || none_is_sure);
+            across.flat_map(|(_, c)| normal.iter().map(move |&a| [a, 0.0, c])).collect()
+        }
+        _ if law.responses().first() == Some(&Response::Unilateral) => {
+            normal.into_iter().map(|a| [a, 0.0, 0.0]).collect()
         }
         // P itself, whatever it is.
-        _ => vec![state(Vec::new(), [1.0, 0.0, 1.0])],
+        _ => vec![[1.0, 0.0, 1.0]],
     }
 }
 
@@ -212,86 +298,166 @@ fn turning_point(values: &Row) -> Option<f64> {
     (at > 0.0 && at < 1.0).then_some(at)
 }
 
-/// The pieces of an edge on which one of its states is certain, with the factors of that state.
-fn certain(
+/// Where all of these polynomials are positive on a piece.
+fn where_positive(
     d: &Discretization,
     piece: &Piece<PreciseBall>,
-    p: &[PreciseBall],
-    change: f64,
-) -> Vec<(EdgePiece, [f64; 3])> {
-    let of = |State { positive, factors }: State| {
-        let cuts: Vec<f64> = positive.iter().filter_map(turning_point).collect();
-        let edge = (d.space.degree(), &d.rule);
-        let found = EdgePiece::positive(edge, piece.radii, &positive, (INSET, &cuts));
-        found.into_iter().map(move |piece| (piece, factors))
-    };
-    states(piece, p, change).into_iter().flat_map(of).collect()
+    positive: &[Row],
+) -> Vec<EdgePiece> {
+    let cuts: Vec<f64> = positive.iter().filter_map(turning_point).collect();
+    EdgePiece::positive((d.space.degree(), &d.rule), piece.radii, positive, (&INSETS, &cuts))
 }
 
 /// What eta and H0 take of a piece.
 struct OnPiece<'a> {
     piece: &'a Piece<PreciseBall>,
     p: Row,
-    /// The square root of g.
-    reach: f64,
-    /// (1 + 2 mu) (|E| / gamma) g
+    reach: Reach,
+    /// |E| / gamma
     weight: f64,
+    /// The stretches on which H0 has these terms, which add up where they overlap.
+    meant: Vec<([f64; 2], Terms)>,
+    /// The block of H0.
+    block: DMatrix<f64>,
 }
 
-impl OnPiece<'_> {
-    /// The measure of where no state is certain to stay within R, at most.
-    fn uncertain(&self, d: &Discretization, r: f64) -> f64 {
-        let change = up(self.reach * r * (1.0 + 1e-12));
-        let all = certain(d, self.piece, &self.p, change);
-        let sure: f64 = all.iter().map(|(piece, _)| piece.share.lower().max(0.0)).sum();
-        let left = (1.0 - sure * (1.0 - 1e-14)).clamp(0.0, 1.0);
-        // H0 leaves the insets of its own, longer stretches out: at fewer than these ends.
-        if left > INSET { (left + 128.0 * INSET).min(1.0) } else { left }
-    }
-
-    /// The block of H0: the integrals over where a state is certain to stay within R.
-    fn block(&self, d: &Discretization, r: f64) -> DMatrix<f64> {
-        let (count, nodes) = (self.piece.p0.len(), self.piece.degree.nodes_per_edge());
+impl<'a> OnPiece<'a> {
+    /// With the terms that are certain to stay within `r`: the normal ones, and the others where it is pressed.
+    fn new(
+        d: &Discretization,
+        (piece, of): (&'a Piece<PreciseBall>, &Compliance),
+        u: &[[PreciseBall; 2]],
+        r: f64,
+    ) -> Self {
+        let (reach, p) = (Reach::new(piece, of), piece.p(u));
+        let law = piece.geometry.law;
+        let all = regions(piece, (&p, &reach), r);
+        let pressed = all.iter().find(|(region, _)| *region == Region::Pressed);
+        let pressed = pressed.map_or_else(Vec::new, |(_, rows)| rows.clone());
+        let mut found: Vec<(EdgePiece, Terms)> = Vec::new();
+        let mut add = |positive: &[Row], terms: Terms| {
+            found.extend(where_positive(d, piece, positive).into_iter().map(|part| (part, terms)));
+        };
+        match law {
+            Law::Friction(bound) => {
+                let (mu, needs) = match bound {
+                    Bound::Coulomb(mu) => (mu, pressed.clone()),
+                    _ => (0.0, Vec::new()),
+                };
+                add(&pressed, [1.0, 0.0, 0.0]);
+                for (region, rows) in &all {
+                    let terms = match region {
+                        Region::Open | Region::Pressed => continue,
+                        Region::Sticks => [0.0, 0.0, 1.0],
+                        Region::Right => [0.0, mu, 0.0],
+                        Region::Left => [0.0, -mu, 0.0],
+                    };
+                    add(&[needs.clone(), rows.clone()].concat(), terms);
+                }
+            }
+            _ if !pressed.is_empty() => add(&pressed, [1.0, 0.0, 0.0]),
+            _ => add(&[], [1.0, 0.0, 1.0]),
+        }
+        let (count, nodes) = (piece.p0.len(), piece.degree.nodes_per_edge());
         let mut block = DMatrix::zeros(count, count);
-        let weight = self.piece.weight().head();
-        for (part, [normal, by_normal, across]) in
-            certain(d, self.piece, &self.p, up(self.reach * r))
-        {
-            for a in 0..nodes {
-                for b in 0..nodes {
-                    let mass = weight * part.mass[a][b].head();
-                    block[(a, b)] += normal * mass;
-                    if count > nodes {
-                        block[(nodes + a, b)] += by_normal * mass;
-                        block[(nodes + a, nodes + b)] += across * mass;
-                    }
+        for (part, [normal, by_normal, across]) in &found {
+            for (a, b) in (0..nodes * nodes).map(|k| (k / nodes, k % nodes)) {
+                let mass = piece.weight().head() * part.mass[a][b].head();
+                block[(a, b)] += normal * mass;
+                if count > nodes {
+                    block[(nodes + a, b)] += by_normal * mass;
+                    block[(nodes + a, nodes + b)] += across * mass;
                 }
             }
         }
-        block
+        let meant = found.into_iter().map(|(part, terms)| (part.ends, terms)).collect();
+        OnPiece { piece, p, reach, weight: piece.weight().upper(), meant, block }
     }
+
+    /// What the body does, at most, under the forces by which the terms differ from those of H0, for P of any two fields within `r`: once
+    /// with the reach of its `answer` to forces, once with that of P0.
+    fn uncertain(&self, d: &Discretization, r: f64, answer: &Reach) -> [f64; 2] {
+        let law = self.piece.geometry.law;
+        if law.responses().first() != Some(&Response::Unilateral) {
+            return [0.0; 2];
+        }
+        let all = regions(self.piece, (&self.p, &self.reach), r);
+        let mut sure: Vec<([f64; 2], Region)> = Vec::new();
+        for (region, positive) in &all {
+            let parts = where_positive(d, self.piece, positive);
+            sure.extend(parts.into_iter().map(|part| (part.ends, *region)));
+        }
+        let most = |[a, b]: [f64; 2]| {
+            let within = |ends: &[f64; 2]| ends[0] <= a && b <= ends[1];
+            let meant = self.meant.iter().filter(|(ends, _)| within(ends));
+            let meant = meant.fold([0.0; 3], |sum: Terms, (_, terms)| add(sum, *terms, 1.0));
+            let has = |region| sure.iter().any(|(ends, of)| *of == region && within(ends));
+            let off = possible(law, has).into_iter().map(|terms| add(terms, meant, -1.0));
+            off.filter(|off| *off != [0.0; 3]).fold([0.0; 2], |most: [f64; 2], off| {
+                let both = [answer, &self.reach].map(|answer| self.reach.through(off, answer));
+                [larger(most[0], both[0]), larger(most[1], both[1])]
+            })
+        };
+        let plus = |sum: [f64; 2], (share, most): (f64, [f64; 2])| {
+            [sum[0] + share * most[0], sum[1] + share * most[1]]
+        };
+        let sum = match &d.rule {
+            EdgeRule::Gauss(points) => {
+                let radius = |s: f64| {
+                    self.piece.radii.map_or(1.0, |radii| {
+                        let [a, b] = radii.map(|r| r.upper());
+                        (1.0 - s) * a + s * b
+                    })
+                };
+                let of = |&(s, weight): &(f64, f64)| (weight * radius(s), most([s, s]));
+                points.iter().map(of).fold([0.0; 2], plus)
+            }
+            EdgeRule::Exact => {
+                let ends = self.meant.iter().map(|(ends, _)| ends);
+                let ends = ends.chain(sure.iter().map(|(ends, _)| ends));
+                let mut cuts: Vec<f64> = ends.flatten().copied().chain([0.0, 1.0]).collect();
+                cuts.sort_unstable_by(f64::total_cmp);
+                let radius = self
+                    .piece
+                    .radii
+                    .map_or(1.0, |radii| radii.iter().map(|r| r.upper()).fold(0.0, larger));
+                let stretches = cuts.windows(2).filter(|cut| cut[0] < cut[1]);
+                let of = |cut: &[f64]| ((cut[1] - cut[0]) * radius, most([cut[0], cut[1]]));
+                stretches.map(of).fold([0.0; 2], plus)
+            }
+        };
+        sum.map(|sum| up(self.weight * sum * (1.0 + 1e-12)))
+    }
+
+    /// The norm of what the block of H0, and springs of this size, are rounded by, at most: entries are rounded from balls, by some
+    /// units in the last place.
+    fn rounding(&self, springs: f64) -> f64 {
+        let trace: f64 = self.reach.nodes.iter().map(|[n, t, _]| n + t).sum();
+        let entries = 2.0 * self.reach.entry * self.reach.nodes.len() as f64;
+        1e-14 * (norm(self.block.as_slice()) + springs) * (trace + entries)
+    }
+
+    /// What gamma^{1/2} times the change of pressure and shear is at most beside |v|, its square.
+    fn pressure(&self) -> f64 {
+        let (n, t) = (self.reach.normal, self.reach.across);
+        let mu = coefficient(self.piece).unwrap_or(0.0);
+        let radius =
+            self.piece.radii.map_or(1.0, |radii| radii.iter().map(|r| r.upper()).fold(0.0, larger));
+        up(self.weight * radius * (n * n + (mu * n + t) * (mu * n + t)) * (1.0 + 1e-12))
+    }
+}
+
+/// a + s b
+fn add(a: Terms, b: Terms, s: f64) -> Terms {
+    std::array::from_fn(|i| a[i] + s * b[i])
 }
 
 /// g of a piece: the largest eigenvalue of the blocks of G at its nodes, times what a polynomial exceeds its nodal values by.
 fn largest_eigenvalue(piece: &Piece<PreciseBall>, of: &Compliance) -> f64 {
-    let nodes = piece.degree.nodes_per_edge();
-    let first = piece.functionals().start;
-    let mut most = 0.0_f64;
-    for a in 0..nodes {
-        let i = first + a;
-        let value = if piece.p0.len() > nodes {
-            let j = i + nodes;
-            let (a, b, c) = (of.g[(i, i)], of.g[(j, j)], of.g[(i, j)]);
-            (a + b) / 2.0 + ((a - b) / 2.0).hypot(c) + 4.0 * of.entry
-        } else {
-            of.g[(i, i)] + of.entry
-        };
-        most = most.max(value * (1.0 + 1e-12));
-    }
-    match piece.degree {
-        Degree::One => up(most),
-        Degree::Two => up(most * 25.0 / 16.0),
-    }
+    let Reach { nodes, entry, between, .. } = Reach::new(piece, of);
+    let largest = |&[a, b, c]: &[f64; 3]| (a + b) / 2.0 + ((a - b) / 2.0).hypot(c) + 4.0 * entry;
+    let most = nodes.iter().map(largest).fold(0.0, larger);
+    up(most * between * between * (1.0 + 1e-12))
 }
 
 /// Returns whether a symmetric matrix is positive definite, proved in floating point: Cholesky's method runs to its end on the
@@ -320,63 +486,182 @@ fn frobenius(matrix: &Mat<f64>) -> f64 {
     up(entries.map(|at| matrix[at] * matrix[at]).sum::<f64>().sqrt() * (1.0 + 1e-9))
 }
 
-/// A root of G: any C with C C^T near G, the norm of what it is off, and a bound of the norm of G^(1/2).
+/// C with C C^T >= G, in scaled functionals: the diagonal of what it is a factor of is about 1.
+///
+/// With Z = V C^T, V is no longer than 1, and every 1 - V Y V^T no longer than 1 - Y or 1: it is what an isometry makes of it, cut off.
 struct Root {
-    c: Mat<f64>,
-    /// |G^(1/2) - (C C^T)^(1/2)| at most: the root of |G - C C^T|.
+    /// Powers of two that the functionals are multiplied by.
+    scale: Vec<f64>,
+    /// G, scaled, and what it is off.
+    g: Mat<f64>,
     off: f64,
-    norm: f64,
-    /// The Frobenius norm of C.
-    size: f64,
+    c: Mat<f64>,
 }
 
 impl Root {
     fn new(of: &Compliance) -> Option<Self> {
         let n = of.g.nrows();
-        let largest = (0..n).map(|i| of.g[(i, i)]).fold(0.0, f64::max);
-        let mut shift = (1e-15 * largest * n as f64).max(f64::MIN_POSITIVE);
-        for _ in 0..8 {
-            let shifted =
-                Mat::from_fn(n, n, |i, j| of.g[(i, j)] + if i == j { shift } else { 0.0 });
+        let power = |i: usize| {
+            let size = of.g[(i, i)].max(f64::MIN_POSITIVE);
+            (-0.5 * size.log2()).round().clamp(-500.0, 500.0).exp2()
+        };
+        let scale: Vec<f64> = (0..n).map(power).collect();
+        let scaled = |m: &Mat<f64>| Mat::from_fn(n, n, |i, j| scale[i] * m[(i, j)] * scale[j]);
+        let (g, off) = (scaled(&of.g), row_sum(&scaled(&of.by)));
+        let trace: f64 = (0..n).map(|i| g[(i, i)].abs()).sum();
+        let mut shift = 4.0 * (off + (n + 8) as f64 * f64::EPSILON * trace);
+        for _ in 0..6 {
+            let shifted = Mat::from_fn(n, n, |i, j| g[(i, j)] + if i == j { shift } else { 0.0 });
             if let Ok(llt) = shifted.llt(Side::Lower) {
                 let c = llt.L().to_owned();
                 let product = &c * c.transpose();
-                let rest = Mat::from_fn(n, n, |i, j| of.g[(i, j)] - product[(i, j)]);
+                let rest = Mat::from_fn(n, n, |i, j| shifted[(i, j)] - product[(i, j)]);
                 let size = frobenius(&c);
-                let rounding = 2.0 * n as f64 * f64::EPSILON * size * size;
-                let off = up((row_sum(&rest) + rounding + of.off).sqrt());
-                return Some(Root { c, off, norm: up((row_sum(&of.g) + of.off).sqrt()), size });
+                let rounding = 2.0 * (n + 8) as f64 * f64::EPSILON * size * size;
+                if row_sum(&rest) + rounding + off <= shift * (1.0 - 1e-9) {
+                    return Some(Root { scale, g, off, c });
+                }
             }
-            shift *= 100.0;
+            shift *= 16.0;
         }
         None
     }
 
-    /// C^T H C for a block diagonal H, and the norm of what G^(1/2) H G^(1/2), turned, is off it.
-    fn around(&self, blocks: &[DMatrix<f64>]) -> (Mat<f64>, f64) {
+    /// H, scaled, of its blocks.
+    fn scaled(&self, blocks: &[DMatrix<f64>]) -> Mat<f64> {
         let n = self.c.nrows();
-        let mut hc = Mat::<f64>::zeros(n, n);
-        let (mut first, mut most) = (0, 0.0_f64);
-        for h in blocks {
-            most = most.max(norm(h.as_slice()));
-            for i in 0..h.nrows() {
-                for k in 0..h.ncols() {
-                    if h[(i, k)] != 0.0 {
-                        for j in 0..n {
-                            hc[(first + i, j)] += h[(i, k)] * self.c[(first + k, j)];
-                        }
-                    }
-                }
+        let mut h = Mat::<f64>::zeros(n, n);
+        let mut first = 0;
+        for block in blocks {
+            for (i, k) in (0..block.ncols()).flat_map(|k| (0..block.nrows()).map(move |i| (i, k))) {
+                let scale = self.scale[first + i] * self.scale[first + k];
+                h[(first + i, first + k)] = block[(i, k)] / scale;
             }
-            first += h.nrows();
+            first += block.nrows();
         }
-        let product = self.c.transpose() * &hc;
-        let rounding = 4.0 * (n + 16) as f64 * f64::EPSILON;
-        let (turned, rounded) =
-            (2.0 * self.off * (self.norm + self.off), rounding * self.size * self.size);
-        let off = most * (1.0 + 1e-9) * (turned + rounded);
-        (product, up(off))
+        h
     }
+
+    /// C^T H C, and the norm of what rounding makes of it.
+    fn around(&self, h: &Mat<f64>) -> (Mat<f64>, f64) {
+        let n = self.c.nrows();
+        let product = self.c.transpose() * (h * &self.c);
+        let magnitudes = magnitudes(&self.c).transpose() * (magnitudes(h) * magnitudes(&self.c));
+        let rounding = 4.0 * (n + 16) as f64 * f64::EPSILON;
+        (product, up(rounding * frobenius(&magnitudes)))
+    }
+
+    /// About the inverse of 1 + Z H Z^T, for these blocks of H: with any K, 1 - Z K Z^T is nearly that,
+    ///
+    /// (1 + Z H Z^T) (1 - Z K Z^T) = 1 + Z (H - K - H G K) Z^T.
+    fn inverse(&self, blocks: &[DMatrix<f64>]) -> Option<Inverse> {
+        let n = self.c.nrows();
+        let h = self.scaled(blocks);
+        let hg = &h * &self.g;
+        let with_one = |m: &Mat<f64>, sign: f64| {
+            Mat::from_fn(n, n, |i, j| sign * m[(i, j)] + if i == j { 1.0 } else { 0.0 })
+        };
+        let k = with_one(&hg, 1.0).partial_piv_lu().solve(&h);
+        let hgk = &hg * &k;
+        let [c, size_h, size_g, size_k] = [&self.c, &h, &self.g, &k].map(magnitudes);
+        let products = (&size_h * &size_g) * &size_k;
+        let rounding = 4.0 * (n + 16) as f64 * f64::EPSILON;
+        let most = Mat::from_fn(n, n, |i, j| {
+            let rest = h[(i, j)] - k[(i, j)] - hgk[(i, j)];
+            rest.abs() + rounding * (size_h[(i, j)] + size_k[(i, j)] + products[(i, j)])
+        });
+        // C^T H E K C, E being what G is off.
+        let by_g = self.off * frobenius(&(h.transpose() * &self.c)) * frobenius(&(&k * &self.c));
+        let left = up(frobenius(&(c.transpose() * (&most * &c))) * (1.0 + rounding) + by_g);
+        let (y, off) = self.around(&k);
+        let norm = up(longest(&with_one(&y, -1.0))? + off).max(1.0);
+        if !(left < 1.0) {
+            return None;
+        }
+        // C^T (1 - K G)
+        let answers = self.c.transpose() * with_one(&(&k * &self.g), -1.0);
+        let sizes = c.transpose() * with_one(&(&size_k * &size_g), 1.0);
+        let by_g = self.off * frobenius(&(k.transpose() * &self.c));
+        let slack = (0..n)
+            .map(|j| {
+                let square: f64 = (0..n).map(|i| sizes[(i, j)] * sizes[(i, j)]).sum();
+                up((rounding * square.sqrt() + by_g) / self.scale[j])
+            })
+            .collect();
+        let answers = Mat::from_fn(n, n, |i, j| answers[(i, j)] / self.scale[j]);
+        let forces = Mat::from_fn(n, n, |i, j| k[(i, j)] * self.scale[j]);
+        let forces = self.c.transpose() * forces;
+        let size_of_forces = Mat::from_fn(n, n, |i, j| size_k[(i, j)] * self.scale[j]);
+        let rounded = frobenius(&(c.transpose() * size_of_forces)) * rounding;
+        Some(Inverse { forces, rounded, norm, left, answers, slack })
+    }
+}
+
+/// What is known of the inverse of 1 + Z H Z^T.
+struct Inverse {
+    /// |Z K w| is at most the length of this times w, and the second times |w|.
+    forces: Mat<f64>,
+    rounded: f64,
+    /// The norm of 1 - Z K Z^T, at most, and that of what its product with 1 + Z H Z^T differs from 1 by.
+    norm: f64,
+    left: f64,
+    /// (1 - Z K Z^T) Z is V times this, and what its columns are off by, in length.
+    answers: Mat<f64>,
+    slack: Vec<f64>,
+}
+
+impl Inverse {
+    /// The norm of the inverse, at most.
+    fn bound(&self) -> f64 {
+        up(self.norm / (1.0 - self.left))
+    }
+
+    /// The reach of the answers to forces at points of a piece, but for `left`.
+    fn reach(&self, piece: &Piece<PreciseBall>) -> Reach {
+        let slack = piece.functionals().map(|j| self.slack[j]).fold(0.0, larger);
+        let n = self.answers.nrows();
+        let product = |i: usize, j: usize| -> f64 {
+            (0..n).map(|row| self.answers[(row, i)] * self.answers[(row, j)]).sum()
+        };
+        let most = piece.functionals().map(|j| product(j, j)).fold(0.0, larger);
+        let rounding = up(most * (n + 16) as f64 * f64::EPSILON);
+        Reach::with(piece, [rounding, slack], product)
+    }
+
+    /// The size of (1 + Z H Z^T)^-1 t, at most, where Z^T t = w: |t| <= `rho`, and of w it is known to `rest` in the length of t.
+    fn times(&self, w: &[PreciseBall], [rho, rest]: [f64; 2]) -> f64 {
+        let n = self.forces.nrows();
+        let heads: Vec<f64> = w.iter().map(|w| w.head()).collect();
+        let image = (0..n).map(|i| (0..n).map(|j| self.forces[(i, j)] * heads[j]).sum());
+        let image = norm(&image.collect::<Vec<f64>>());
+        let off: Vec<f64> =
+            w.iter().map(|w| up(w.radius() + w.head().abs() * f64::EPSILON)).collect();
+        let by_radius = frobenius(&self.forces) * norm(&off);
+        let by_rounding = (self.rounded + frobenius(&self.forces) * (n + 16) as f64 * f64::EPSILON)
+            * (norm(&heads) + norm(&off));
+        let sum = rho + (image + by_radius + by_rounding) * (1.0 + 1e-9) + (1.0 + self.norm) * rest;
+        up((sum + self.bound() * self.left * rho) * (1.0 + 1e-12))
+    }
+}
+
+/// The norm of a matrix, at most.
+fn longest(matrix: &Mat<f64>) -> Option<f64> {
+    let (n, size) = (matrix.ncols(), frobenius(matrix));
+    let square = matrix.transpose() * matrix;
+    let times = |x: &[f64]| -> Vec<f64> {
+        (0..n).map(|i| (0..n).map(|j| square[(i, j)] * x[j]).sum()).collect()
+    };
+    let rounding = 2.0 * (n + 8) as f64 * f64::EPSILON * size * size;
+    let near = power(n, times).max(f64::MIN_POSITIVE);
+    [1.01, 1.1, 1.5, 2.0, 4.0].into_iter().find_map(|more| {
+        let most = up(near * more + rounding);
+        let less = Mat::from_fn(n, n, |i, j| if i == j { most } else { 0.0 } - square[(i, j)]);
+        is_positive_definite(&less, rounding).then(|| up(most.sqrt()))
+    })
+}
+
+fn magnitudes(matrix: &Mat<f64>) -> Mat<f64> {
+    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)].abs())
 }
 
 /// What does not depend on the displacement.
@@ -419,77 +704,74 @@ impl Known {
     }
 }
 
-/// Decides around the displacement `u`, where the residual has the dual norm `rho`; `size` is that of the displacement. All of it is in
-/// the norm of A, or of A with the springs that are `known`; `by_a` is then what is known without.
+/// The residual at a displacement.
+pub(super) struct Rest<'a> {
+    /// Its dual norm, at most.
+    pub rho: f64,
+    /// A z with this z is the residual, up to a functional of at most this dual norm.
+    pub z: &'a [PreciseBall],
+    pub left: f64,
+    /// The norm of the displacement.
+    pub size: f64,
+}
+
+/// Decides around the displacement `u` with the residual `of`. All of it is in the norm of A, or of A with the springs that are `known`;
+/// `by_a` is then what is known without.
 ///
 /// # Errors
 /// Why nothing is proved.
 pub(super) fn isolate(
-    d: &Discretization,
     (known, by_a): (&Known, Option<&Known>),
     pieces: &[Piece<PreciseBall>],
     u: &[[PreciseBall; 2]],
-    [rho, size]: [f64; 2],
+    system: &System,
+    &Rest { rho, z, left, size }: &Rest,
 ) -> Result<Isolated, Unproved> {
-    let count = known.compliance.g.nrows();
-    let Known { compliance, root: root_of_g, springs, .. } = known;
-    let on_piece = |piece| {
-        let g = largest_eigenvalue(piece, compliance);
-        let mu = coefficient(piece).unwrap_or(0.0);
-        let weight = up((1.0 + 2.0 * mu) * piece.weight().upper() * g * (1.0 + 1e-12));
-        OnPiece { piece, p: piece.p(u), reach: up(g.sqrt()), weight }
-    };
-    let all: Vec<OnPiece> = pieces.iter().map(on_piece).collect();
-    // The blocks are rounded from balls: by some units in the last place.
-    let eta = |r: f64, rounding: f64| {
-        let sum: f64 = all.iter().map(|on| on.weight * on.uncertain(d, r)).sum();
-        up(sum * (1.0 + f64::EPSILON * (all.len() + 16) as f64) + rounding)
-    };
+    let d = system.d;
+    let Known { compliance, root, springs, .. } = known;
     let start = (8.0 * rho).max(f64::EPSILON * size);
-    let blocks: Vec<DMatrix<f64>> = all.iter().map(|on| on.block(d, start)).collect();
-    let stiffest = blocks.iter().map(|h| norm(h.as_slice())).fold(0.0, f64::max);
-    let rounding = up(1e-14 * stiffest * root_of_g.norm * root_of_g.norm);
-    let blocks = match springs {
-        Some(springs) => blocks.into_iter().zip(springs).map(|(h, s)| h - s).collect(),
-        None => blocks,
+    let on_piece = |piece| OnPiece::new(d, (piece, compliance), u, start);
+    let all: Vec<OnPiece> = pieces.iter().map(on_piece).collect();
+    let spring = |e: usize| springs.as_ref().map_or(0.0, |all| norm(all[e].as_slice()));
+    let rounding: f64 = all.iter().enumerate().map(|(e, on)| on.rounding(spring(e))).sum();
+    let blocks: Vec<DMatrix<f64>> = match springs {
+        Some(springs) => all.iter().zip(springs).map(|(on, s)| &on.block - s).collect(),
+        None => all.iter().map(|on| on.block.clone()).collect(),
     };
-    let (inner, off) = root_of_g.around(&blocks);
-    let k = Mat::from_fn(count, count, |i, j| inner[(i, j)] + if i == j { 1.0 } else { 0.0 });
-    let square = k.transpose() * &k;
-    let length = frobenius(&k);
-    let of_square = 2.0 * count as f64 * f64::EPSILON * length * length;
-    let at_least = |s: f64| {
-        let less =
-            Mat::from_fn(count, count, |i, j| square[(i, j)] - if i == j { s * s } else { 0.0 });
-        is_positive_definite(&less, of_square)
+    let inverse = root.inverse(&blocks).ok_or(Unproved::NotIsolated)?;
+    let answers: Vec<Reach> = pieces.iter().map(|piece| inverse.reach(piece)).collect();
+    // How much nearer two fields within r are after a step, at most, and the first step.
+    let nearer = |r: f64| {
+        let pairs = all.iter().zip(&answers);
+        let [sum, crude] = pairs.fold([0.0; 2], |[sum, crude], (on, answer)| {
+            let [by_answer, by_norm] = on.uncertain(d, r, answer);
+            [sum + by_answer, crude + by_norm]
+        });
+        let rest = inverse.bound() * (inverse.left * crude + rounding);
+        up((sum + rest) * (1.0 + f64::EPSILON * (all.len() + 16) as f64))
     };
-    let smallest =
-        SINGULAR_VALUES.into_iter().find(|&s| at_least(s)).ok_or(Unproved::NotIsolated)?;
-    let smallest = (smallest - off).min(1.0) * (1.0 - 1e-12);
-    if !(smallest > 0.0) {
-        return Err(Unproved::NotIsolated);
-    }
-    let beta = up(1.0 / smallest);
+    let v = field(system, |number, _, _| z[number], |_, _| 0.0);
+    let w: Vec<PreciseBall> = pieces.iter().flat_map(|piece| piece.p0(&v)).collect();
+    let step = inverse.times(&w, [rho, left]);
     let holds = |r: f64| {
-        let eta = eta(r, rounding);
-        (up(beta * (rho + eta * r)) <= r && up(beta * eta) < 1.0).then_some(eta)
+        let q = nearer(r);
+        (up(step + up(q * r)) <= r && q < 1.0).then_some(q)
     };
     let radii =
         (0..80).map(|k| start * 2.0_f64.powi(k)).take_while(|&r| r <= 1e3 * size.max(start));
     let mut found: Option<(f64, f64)> = None;
     for r in radii {
         match (holds(r), &mut found) {
-            (Some(eta), None) => found = Some((eta, r)),
+            (Some(q), None) => found = Some((q, r)),
             (Some(_), Some((_, within))) => *within = r,
             (None, Some(_)) => break,
             (None, None) => {}
         }
     }
-    let (eta, within) = found.ok_or(Unproved::NotIsolated)?;
-    let radius = up(beta * rho / (1.0 - up(beta * eta)) * (1.0 + 1e-12));
-    let stiffness: f64 = all.iter().map(|on| on.weight).sum();
-    let largest = pieces.iter().filter_map(coefficient).fold(0.0, f64::max);
-    let pressure = up((1.0 + largest) * (stiffness * (1.0 + 1e-9)).sqrt() * radius);
+    let (q, within) = found.ok_or(Unproved::NotIsolated)?;
+    let radius = up(step / (1.0 - q) * (1.0 + 1e-12));
+    let stiffness: f64 = all.iter().map(OnPiece::pressure).sum();
+    let pressure = up((stiffness * (1.0 + 1e-9)).sqrt() * radius);
     let of_a = if springs.is_some() { by_a } else { Some(known) };
     let within = of_a.map(|of_a| match springs {
         None => within,
@@ -509,7 +791,7 @@ pub(super) fn isolate(
 fn mass(d: &Discretization, piece: &Piece<PreciseBall>) -> DMatrix<f64> {
     let nodes = piece.degree.nodes_per_edge();
     let mut mass = DMatrix::zeros(nodes, nodes);
-    let whole = EdgePiece::positive((piece.degree, &d.rule), piece.radii, &[], (INSET, &[]));
+    let whole = where_positive(d, piece, &[]);
     for (part, a, b) in
         whole.iter().flat_map(|part| (0..nodes * nodes).map(move |k| (part, k / nodes, k % nodes)))
     {
@@ -518,8 +800,8 @@ fn mass(d: &Discretization, piece: &Piece<PreciseBall>) -> DMatrix<f64> {
     mass
 }
 
-/// G^(1/2) M G^(1/2), turned, and what it is off: M are the integrals of `weight`(mu) N_a N_b / gamma of the functionals that feel
-/// Coulomb's friction.
+/// C^T M C, and what it is off: M are the integrals of `weight`(mu) N_a N_b / gamma of the functionals that feel Coulomb's friction. Its
+/// largest eigenvalue is at least that of G^(1/2) M G^(1/2).
 fn of_friction(
     d: &Discretization,
     pieces: &[Piece<PreciseBall>],
@@ -535,7 +817,8 @@ fn of_friction(
         }
         block
     };
-    let (inner, off) = root.around(&pieces.iter().map(block).collect::<Vec<_>>());
+    let blocks: Vec<DMatrix<f64>> = pieces.iter().map(block).collect();
+    let (inner, off) = root.around(&root.scaled(&blocks));
     let n = inner.nrows();
     let mean = Mat::from_fn(n, n, |i, j| (inner[(i, j)] + inner[(j, i)]) / 2.0);
     (mean, up(off * (1.0 + 1e-9)))
@@ -657,4 +940,94 @@ fn power(n: usize, times: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
         }
     }
     largest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers between -1 and 1.
+    fn draws(seed: f64) -> impl FnMut() -> f64 {
+        let mut x = seed;
+        move || {
+            x = 3.99 * x * (1.0 - x);
+            2.0 * x - 1.0
+        }
+    }
+
+    /// G of some functionals, each of its own size.
+    fn compliance(z: &Mat<f64>) -> Compliance {
+        let g = z.transpose() * z;
+        let n = g.nrows();
+        let by = Mat::from_fn(n, n, |i, j| 1e-14 * (g[(i, i)] * g[(j, j)]).sqrt());
+        Compliance { entry: largest(&by), off: row_sum(&by), g, by }
+    }
+
+    fn length(matrix: &Mat<f64>, x: &[f64]) -> f64 {
+        let row = |i: usize| (0..x.len()).map(|j| matrix[(i, j)] * x[j]).sum::<f64>();
+        norm(&(0..matrix.nrows()).map(row).collect::<Vec<f64>>())
+    }
+
+    #[test]
+    fn what_is_said_of_an_inverse_holds_and_is_close() {
+        for seed in [0.1, 0.23, 0.37, 0.61] {
+            let mut next = draws(seed);
+            let (rows, n) = (9, 12);
+            // More functionals than there are directions, of sizes from 1e-3 to 1e3.
+            let sizes: Vec<f64> = (0..n).map(|_| 10.0_f64.powf(3.0 * next())).collect();
+            let z = Mat::from_fn(rows, n, |_, j| sizes[j] * next());
+            let blocks: Vec<DMatrix<f64>> = (0..n / 2)
+                .map(|e| {
+                    let (a, b) = (1.0 / sizes[2 * e], 1.0 / sizes[2 * e + 1]);
+                    let sticks = f64::from(u8::from(e % 2 == 0));
+                    let across = [0.8 * a * b * (1.0 - sticks), b * b * sticks];
+                    DMatrix::from_row_slice(2, 2, &[a * a, 0.0, across[0], across[1]])
+                })
+                .collect();
+            let mut h = Mat::<f64>::zeros(n, n);
+            for (e, block) in blocks.iter().enumerate() {
+                (0..4).for_each(|k| h[(2 * e + k / 2, 2 * e + k % 2)] = block[(k / 2, k % 2)]);
+            }
+            let one = Mat::<f64>::identity(rows, rows);
+            let whole = &z * &h * z.transpose() + &one;
+            let exact = whole.partial_piv_lu().solve(&one);
+            let inverse = Root::new(&compliance(&z)).unwrap().inverse(&blocks).unwrap();
+            let square = exact.transpose() * &exact;
+            let times = |x: &[f64]| -> Vec<f64> {
+                (0..rows).map(|i| (0..rows).map(|j| square[(i, j)] * x[j]).sum()).collect()
+            };
+            let found = power(rows, times).sqrt();
+            let close = |most: f64, found: f64| {
+                // The control: nothing much smaller would be true.
+                assert!(most >= found * (1.0 - 1e-6) && most <= 1.1 * found, "{most} {found}");
+            };
+            close(inverse.bound(), found.max(1.0));
+            let answers = &exact * &z;
+            for j in 0..n {
+                let mut unit = vec![0.0; n];
+                unit[j] = 1.0;
+                close(length(&inverse.answers, &unit) + inverse.slack[j], length(&answers, &unit));
+            }
+            let t: Vec<f64> = (0..rows).map(|_| next()).collect();
+            let w: Vec<PreciseBall> = (0..n)
+                .map(|j| PreciseBall::from((0..rows).map(|i| z[(i, j)] * t[i]).sum::<f64>()))
+                .collect();
+            let most = inverse.times(&w, [norm(&t), 1e-12]);
+            assert!(most >= length(&exact, &t) && most <= 3.0 * (norm(&t) + length(&exact, &t)));
+        }
+    }
+
+    #[test]
+    fn a_root_is_above_what_is_off_and_a_smaller_one_is_none() {
+        let mut next = draws(0.3);
+        let z = Mat::from_fn(5, 8, |_, j| 10.0_f64.powi(j as i32 - 4) * next());
+        let of = compliance(&z);
+        let root = Root::new(&of).unwrap();
+        let more = &root.c * root.c.transpose();
+        let above = |share: f64| {
+            let less = Mat::from_fn(8, 8, |i, j| more[(i, j)] - root.g[(i, j)] * share);
+            is_positive_definite(&less, root.off)
+        };
+        assert!(above(1.0) && !above(1.0 + 1e-9));
+    }
 }

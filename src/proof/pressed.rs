@@ -56,7 +56,7 @@ pub(super) type Row = Vec<PreciseBall>;
 /// A piece of an edge.
 pub(super) struct EdgePiece {
     /// Where it starts and ends; a point does both at once.
-    ends: [f64; 2],
+    pub(super) ends: [f64; 2],
     /// The coefficients on it, of a polynomial with given values at the nodes, that enclose the polynomial there (Bernstein's):
     /// first its values at the ends.
     coefficients: Vec<Row>,
@@ -64,8 +64,6 @@ pub(super) struct EdgePiece {
     square: PreciseBall,
     /// The integrals of N_a N_b over it.
     pub(super) mass: Vec<Row>,
-    /// Its share of the edge: its length, or the weight of the point.
-    pub(super) share: PreciseBall,
 }
 
 /// What is pressed of one component on a piece of Gamma_C, or stuck: P is surely where it is integrated itself.
@@ -100,16 +98,16 @@ type Measured = (f64, EdgePiece);
 type Found = (usize, Range<usize>, Vec<Measured>);
 
 impl EdgePiece {
-    /// The pieces of an edge on which all of these polynomials are positive; `inset` is the share of a stretch that is left out at a
-    /// root or a further cut.
+    /// The pieces of an edge on which all of these polynomials are positive; of a stretch the first of the `insets`, in parts of the
+    /// stretch, is left out at a root or a further cut with which they are.
     pub(super) fn positive(
         (degree, rule): (Degree, &EdgeRule),
         radii: Radii,
         all: &[Row],
-        (inset, cuts): (f64, &[f64]),
+        (insets, cuts): (&[f64], &[f64]),
     ) -> Vec<Self> {
         let EdgeRule::Gauss(points) = rule else {
-            return Self::between_roots(degree, radii, all, (inset, cuts));
+            return Self::between_roots(degree, radii, all, (insets, cuts));
         };
         let at = |&(s, weight): &(f64, f64)| {
             let (shapes, weight) = (
@@ -122,7 +120,6 @@ impl EdgePiece {
                 coefficients: vec![shapes],
                 square: PreciseBall::from(1) / weight,
                 mass,
-                share: weight,
             }
         };
         points.iter().map(at).filter(|piece| piece.least(all) > 0.0).collect()
@@ -133,20 +130,22 @@ impl EdgePiece {
         degree: Degree,
         radii: Radii,
         all: &[Row],
-        (inset, cuts): (f64, &[f64]),
+        (insets, cuts): (&[f64], &[f64]),
     ) -> Vec<Self> {
         let roots = |p: &Row| degree.roots(&p.iter().map(|p| p.head()).collect::<Vec<_>>());
         let mut cuts: Vec<f64> = all.iter().flat_map(roots).chain(cuts.iter().copied()).collect();
         cuts.extend([0.0, 1.0]);
         cuts.sort_unstable_by(f64::total_cmp);
         let stretch = |cut: &[f64]| {
-            let inset = inset * (cut[1] - cut[0]);
-            let start = if cut[0] > 0.0 { cut[0] + inset } else { 0.0 };
-            let end = if cut[1] < 1.0 { cut[1] - inset } else { 1.0 };
-            Self::between(degree, radii, [start, end])
+            insets.iter().find_map(|inset| {
+                let inset = inset * (cut[1] - cut[0]);
+                let start = if cut[0] > 0.0 { cut[0] + inset } else { 0.0 };
+                let end = if cut[1] < 1.0 { cut[1] - inset } else { 1.0 };
+                let piece = (start < end).then(|| Self::between(degree, radii, [start, end]))?;
+                (piece.least(all) > 0.0).then_some(piece)
+            })
         };
-        let stretches = cuts.windows(2).filter(|cut| cut[0] < cut[1]);
-        stretches.map(stretch).filter(|piece| piece.least(all) > 0.0).collect()
+        cuts.windows(2).filter(|cut| cut[0] < cut[1]).filter_map(stretch).collect()
     }
 
     /// The piece of an edge with these ends. Boole's rule is exact for the products. The square is at most the sum of 2 k + 1
@@ -178,7 +177,7 @@ impl EdgePiece {
             let weight = length * PreciseBall::from(weight) / PreciseBall::from(90);
             add(&mut mass, &products(weighted(radii, place(i), weight), &at(i)));
         }
-        EdgePiece { ends, coefficients, square, mass, share: length }
+        EdgePiece { ends, coefficients, square, mass }
     }
 
     /// The least coefficient of these polynomials, or less.
@@ -240,7 +239,7 @@ impl Pressed {
     ) -> Self {
         let degree = d.space.degree();
         let positive = |line: &Piece<PreciseBall>, all: &[Row]| -> Vec<Measured> {
-            let pieces = EdgePiece::positive((degree, &d.rule), line.radii, all, (INSET, &[]));
+            let pieces = EdgePiece::positive((degree, &d.rule), line.radii, all, (&[INSET], &[]));
             pieces.into_iter().map(|piece| (piece.least(all), piece)).collect()
         };
         let [mut pressed, mut sticking]: [Vec<Found>; 2] = Default::default();

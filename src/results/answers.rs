@@ -90,7 +90,7 @@ pub struct BoundaryFriction {
     pub sticks: f64,
     /// The measure of where it slides, at the bound.
     pub slides: f64,
-    /// The largest magnitude of u_t at a node.
+    /// The largest magnitude of the slip at a node: u_t, less that of the load step before.
     pub slip: f64,
     /// Where that is, in the undeformed body.
     pub slip_at: [f64; 2],
@@ -432,7 +432,9 @@ impl ContactBoundary {
         let forces = edge.across(&contact.force);
         friction.shear += forces.iter().sum::<f64>().abs();
         let jumps = edge.jumps(u);
-        for ((&slip, force), &place) in edge.across(&jumps).iter().zip(forces).zip(places) {
+        let since = edge.across(&jumps).iter().zip(&edge.geometry.nodes);
+        let slips = since.map(|(jump, node)| jump - node.slip);
+        for ((slip, force), &place) in slips.zip(forces).zip(places) {
             friction.dissipated += force * slip;
             if slip.abs() > friction.slip {
                 (friction.slip, friction.slip_at) = (slip.abs(), place);

@@ -327,6 +327,13 @@ impl Solution {
         obstacles.chain(sides).collect()
     }
 
+    /// The jumps across the direction of contact at the nodes of each piece of Gamma_C with friction: where the friction of a next load
+    /// step begins (`Problem::slip`).
+    pub fn slip(&self) -> Vec<Vec<f64>> {
+        let of = |piece: &Piece| piece.across(&piece.jumps(&self.displacement)).to_vec();
+        self.pieces.iter().map(of).collect()
+    }
+
     /// u^h at the point with the barycentric coordinates `l` of triangle `t`, as [`Mesh::locate`] finds them.
     ///
     /// [`Mesh::locate`]: crate::model::Mesh::locate

@@ -1,11 +1,13 @@
 //! Coulomb's friction: the discrete equations F(u) = 0 with the slip bound mu \[P_n\]+ of the same point. F is no gradient, so no energy
 //! leads Newton's method. docs/theory.md, 13.5:
 //!
-//! 1. two problems with Tresca's friction, each the minimum of an energy: first without a bound (where friction alone holds the
-//!    body, with one that is never reached), then with mu times the pressure at the ends of each piece;
+//! 1. two problems with a given slip bound, each the minimum of an energy: first without one (where friction alone holds the body,
+//!    with one that is never reached), then with mu times the pressure of the first;
 //! 2. Newton's method on F as long as its residual, in the dual norm of A, falls by a tenth in each step;
-//! 3. where it does not, the problem with Tresca's friction for the pressures of the step that was not taken, then 2. again;
-//! 4. where that leads nowhere, Newton's method from one coefficient to a larger one.
+//! 3. where it does not, the problem with the bound of the step that was not taken, then 2. again;
+//! 4. where that leads nowhere, problems with the pressure of the one before for a bound, whose fixed point is the solution, mixed
+//!    ([`Mixing`]), with 2. from what they come to;
+//! 5. where that leads nowhere, Newton's method from one coefficient to a larger one.
 //!
 //! The tangent of F is S + B^T D B: S is symmetric positive definite, with the springs of what is pressed and of what sticks, and is
 //! factored; D couples the friction of what slides to its pressure. With z = D B d the step is
@@ -13,6 +15,8 @@
 
 use std::sync::Arc;
 
+use faer::Mat;
+use faer::linalg::solvers::Solve;
 use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
@@ -32,6 +36,10 @@ use crate::linear::system::System;
 /// A step is taken where the residual falls to this share of what it was.
 const FALLS: f64 = 0.9;
 
+/// Newton's method is left where so many steps leave more than this share of the residual: they cross a kink to and fro.
+const SLOW_AFTER: usize = 8;
+const SLOW: f64 = 0.1;
+
 /// The shares of a step that are tried, one after the other: evaluations, no factorisations.
 const SHARES_OF_A_STEP: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
 
@@ -41,8 +49,13 @@ const ROUNDING: f64 = 3e-14;
 /// Below this it may be: of 12,000 unknowns the level of rounding is some 1e-13.
 const NEAR_ROUNDING: f64 = 1e-12;
 
-/// After so many factorisations beyond the start it is tried by continuation: of 45 problems none took more than 24.
+/// After so many factorisations beyond the start pressures are mixed, and after so many more it is tried by continuation: of 45
+/// problems of well-shaped bodies none took more than 24.
 const MOST_FACTORIZATIONS: usize = 40;
+const MOST_MIXED: usize = 160;
+
+/// A problem with a given bound that is not solved from where the last one ended with so many steps is begun with soft springs.
+const STEPS_FROM_HERE: usize = 12;
 
 /// The first and the least share of the coefficient by which continuation goes on, the steps that it may take for one, and the residual
 /// beside the size of the solution that is enough before it goes on.
@@ -50,6 +63,9 @@ const FIRST_SHARE: f64 = 0.25;
 const LEAST_SHARE: f64 = 1.0 / 512.0;
 const STEPS_OF_A_SHARE: usize = 12;
 const NEARLY_THERE: f64 = 1e-8;
+
+/// Newton's method is tried again where the pressures change by this share of what they did when it was tried last.
+const NEARER: f64 = 0.2;
 
 /// The share of the springs of all pieces that is added to a tangent without a factor.
 const SUPPORT: f64 = 1e-6;
@@ -123,6 +139,16 @@ impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
         let mut r = at.linear.clone();
         self.system.add_forces(&terms.gradient, &mut r);
         (r, terms)
+    }
+
+    /// A norm that rounding alone may give the residual, with that of P through the springs.
+    fn noise(&self, at: &Evaluation, terms: &Derivatives) -> f64 {
+        let hessian = terms.hessian.iter().map(DMatrix::abs).collect();
+        let springs = Derivatives { stiffness: 1.0, gradient: Vec::new(), hessian };
+        let forces = springs.hessian_times(&at.p_magnitudes);
+        let mut contact = vec![0.0; at.linear.len()];
+        self.system.each_functional(|row, i, entry| contact[row] += entry.abs() * forces[i]);
+        at.noise + f64::EPSILON * norm(&contact)
     }
 
     /// The dual norm of a residual.
@@ -202,43 +228,110 @@ impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
         Ok(d)
     }
 
-    /// Moves the iterate to the solution with Tresca's friction whose slip bound is mu times the `pressure` at the ends of each piece; one
-    /// that is never reached where that is infinite.
+    /// Moves the iterate to the solution whose slip bound is mu times the `pressure` at the nodes of each piece; one that is never reached
+    /// where that is infinite.
     fn tresca(
         &mut self,
         iterate: &mut Iterate,
         residuals: &mut Vec<f64>,
         until: Until,
-        (pressure, from_here): (&[[f64; 2]], bool),
+        (pressure, from_here): (&[[f64; 3]], bool),
     ) -> Result<(), SolveError> {
         let bound = |e: usize, mu: f64| pressure[e].map(|p| (mu * p).min(f64::MAX / 1e200));
         let d = self.system.d.with_slip_bounds(bound);
         let here = iterate.rounded();
-        let course = Course::default();
-        let course = if from_here { course.from_displacement(&here) } else { course };
-        let system = self.system.with_other_laws(&d, course);
-        let mut route = Assembled::new(&system, self.reference);
-        let mut other = Iterate::lift(&d);
-        let mut at = other.evaluate(&system, false);
-        let mut own = Vec::new();
-        let steps = until.steps.saturating_sub(residuals.len());
-        let end = Until { steps, ..until };
-        let passed = route.pass(&mut other, &mut at, &mut own, end);
-        self.factorizations += route.factorizations();
-        residuals.extend(own);
-        passed?;
-        *iterate = other;
+        let starts = if from_here { &[true, false][..] } else { &[false] };
+        for &from_here in starts {
+            let course = Course::default();
+            let course = if from_here { course.from_displacement(&here) } else { course };
+            let system = self.system.with_other_laws(&d, course);
+            let mut route = Assembled::new(&system, self.reference);
+            let mut other = Iterate::lift(&d);
+            let mut at = other.evaluate(&system, false);
+            let mut own = Vec::new();
+            let steps = if from_here { until.steps.min(STEPS_FROM_HERE) } else { until.steps };
+            let passed = route.pass(&mut other, &mut at, &mut own, Until { steps, ..until });
+            self.factorizations += route.factorizations();
+            let is_done = own.len() <= steps;
+            residuals.extend(own);
+            if from_here && !(is_done && passed.is_ok()) {
+                continue;
+            }
+            passed?;
+            *iterate = other;
+            break;
+        }
         Ok(())
     }
 
-    /// The pressure at the ends of each piece: with it for a slip bound Tresca's problem is that of Coulomb on all pieces that press all
-    /// along, of linear elements.
-    fn pressures(&self, at: &Evaluation) -> Vec<[f64; 2]> {
-        let at_ends = |piece: &Piece| {
-            let p = &at.p[piece.functionals()];
-            [0, 1].map(|a| p[a].head().max(0.0) / piece.gamma)
+    /// P_n / gamma at the start, the end and the middle of each piece; negative where it pulls. With this for a slip bound the problem is
+    /// that of Coulomb at its solution.
+    fn pressures(&self, at: &Evaluation) -> Vec<[f64; 3]> {
+        let nodes = self.system.d.space.degree().nodes_per_edge();
+        let of = |piece: &Piece| {
+            let p = &at.p[piece.functionals()][..nodes];
+            std::array::from_fn(|a| p.get(a).map_or(0.0, |p| p.head() / piece.gamma))
         };
-        self.system.d.contact.iter().map(at_ends).collect()
+        self.system.d.contact.iter().map(of).collect()
+    }
+}
+
+/// Anderson's mixing of the pressures p that problems with a given bound begin with, for their fixed point: of the last of these the
+/// combination, with weights that add up to 1, whose changes nearly cancel.
+#[derive(Default)]
+struct Mixing {
+    /// What each problem began with and what it came to.
+    steps: Vec<[Vec<[f64; 3]>; 2]>,
+}
+
+/// The problems that are remembered.
+const REMEMBERED: usize = 6;
+
+impl Mixing {
+    /// Remembers a problem: the pressures before and after it. Tells the size of the change.
+    fn remember(&mut self, before: Vec<[f64; 3]>, after: Vec<[f64; 3]>) -> f64 {
+        if self.steps.len() == REMEMBERED {
+            self.steps.remove(0);
+        }
+        self.steps.push([before, after]);
+        self.steps.last().map_or(0.0, |step| norm(&Self::change(step)))
+    }
+
+    /// What changes of the bound: what pulls is no bound.
+    fn change([before, after]: &[Vec<[f64; 3]>; 2]) -> Vec<f64> {
+        let pairs = before.as_flattened().iter().zip(after.as_flattened());
+        pairs.map(|(b, a)| a.max(0.0) - b.max(0.0)).collect()
+    }
+
+    /// The pressures to go on with.
+    fn next(&self) -> Vec<[f64; 3]> {
+        let Some(last) = self.steps.last() else { return Vec::new() };
+        let change = Self::change(last);
+        let others: Vec<&[Vec<[f64; 3]>; 2]> = self.steps.iter().rev().skip(1).collect();
+        let differences: Vec<Vec<f64>> = others
+            .iter()
+            .map(|step| change.iter().zip(Self::change(step)).map(|(c, o)| c - o).collect())
+            .collect();
+        // Least squares by the normal equations, which a little of their diagonal keeps definite.
+        let count = differences.len();
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let square = |i: usize| product(&differences[i], &differences[i]);
+        let matrix = Mat::from_fn(count, count, |i, j| {
+            let more = if i == j { 1e-10 * square(i) + f64::MIN_POSITIVE } else { 0.0 };
+            product(&differences[i], &differences[j]) + more
+        });
+        let right = Mat::from_fn(count, 1, |i, _| product(&differences[i], &change));
+        let weights = matrix.partial_piv_lu().solve(&right);
+        let weights = (0..count).map(|i| weights[(i, 0)]);
+        let mut next = last[1].clone();
+        for (weight, other) in weights.zip(&others) {
+            for (e, next) in next.iter_mut().enumerate() {
+                for a in 0..3 {
+                    next[a] -= weight * (last[1][e][a] - other[1][e][a]);
+                }
+            }
+        }
+        next
     }
 }
 
@@ -274,7 +367,7 @@ impl Route for Coulomb<'_, '_, '_> {
         } else if is_first {
             let start = if system.d.slides.is_some() { f64::INFINITY } else { 0.0 };
             let pieces = system.d.contact.len();
-            self.tresca(iterate, residuals, until, (&vec![[start; 2]; pieces], false))?;
+            self.tresca(iterate, residuals, until, (&vec![[start; 3]; pieces], false))?;
             *at = iterate.evaluate(system, precisely);
             let pressures = self.pressures(at);
             // A body that the bounds of this start do not hold is left where friction glued it.
@@ -289,10 +382,27 @@ impl Route for Coulomb<'_, '_, '_> {
         }
         let mut way = Way { is_first, precisely, ..Way::default() };
         let mut is_continued = false;
-        while let Some(next) = self.newton(iterate, at, residuals, until, &mut way)? {
-            if self.factorizations < self.at_start + MOST_FACTORIZATIONS {
+        let mut mixing = Mixing::default();
+        let mut tried = f64::INFINITY;
+        let mut rejected = self.newton(iterate, at, residuals, until, &mut way)?;
+        // What leads nowhere is not the way to the solution.
+        let mut aside = Vec::new();
+        while let Some(next) = rejected {
+            let beyond = self.factorizations - self.at_start;
+            if beyond < MOST_FACTORIZATIONS {
                 let pressures = self.pressures(&next);
-                self.tresca(iterate, residuals, until, (&pressures, true))?;
+                self.tresca(iterate, &mut aside, until, (&pressures, true))?;
+            } else if beyond < MOST_FACTORIZATIONS + MOST_MIXED {
+                let before =
+                    if mixing.steps.is_empty() { self.pressures(at) } else { mixing.next() };
+                self.tresca(iterate, &mut aside, until, (&before, true))?;
+                *at = iterate.evaluate(system, precisely);
+                let change = mixing.remember(before, self.pressures(at));
+                if change > NEARER * tried {
+                    rejected = Some(next);
+                    continue;
+                }
+                tried = change;
             } else if !std::mem::replace(&mut is_continued, true) {
                 self.continued(iterate, until)?;
             } else {
@@ -302,6 +412,16 @@ impl Route for Coulomb<'_, '_, '_> {
                 });
             }
             *at = iterate.evaluate(system, precisely);
+            let mut trial = Iterate { u: iterate.u.clone() };
+            let mut trial_at = trial.evaluate(system, precisely);
+            let mut own = Vec::new();
+            rejected = self.newton(&mut trial, &mut trial_at, &mut own, until, &mut way)?;
+            if rejected.is_none() {
+                residuals.extend(own);
+            }
+            if rejected.is_none() || mixing.steps.is_empty() {
+                (*iterate, *at) = (trial, trial_at);
+            }
         }
         Ok(Pass {
             energy: if way.taken > 0 { way.moved } else { way.size * way.size },
@@ -343,11 +463,17 @@ impl<'d, 'p> Coulomb<'_, 'd, 'p> {
         way.least = if way.least > 0.0 { way.least.min(first) } else { first };
         residuals.push(first / self.reference);
         let mut halved = true;
+        let mut sizes = vec![way.size];
         loop {
             let scale = system.size(at.energy.sqrt(), &iterate.rounded());
-            let is_rounding = way.size <= ROUNDING * scale;
-            if (is_rounding && (way.is_first || way.taken > 0)) || residuals.len() > until.steps {
+            let is_rounding = way.size <= ROUNDING * scale || norm(&r) <= self.noise(at, &terms);
+            if (is_rounding && (way.is_first || way.taken > 0)) || sizes.len() > until.steps {
                 return Ok(None);
+            }
+            let slow =
+                sizes.len() > SLOW_AFTER && way.size > SLOW * sizes[sizes.len() - 1 - SLOW_AFTER];
+            if slow && way.is_first {
+                return Ok(Some(iterate.evaluate(system, way.precisely)));
             }
             let d = self.step(&r, &terms)?;
             let is_near = way.size <= NEAR_ROUNDING * scale || !way.is_first;
@@ -370,6 +496,7 @@ impl<'d, 'p> Coulomb<'_, 'd, 'p> {
                     way.least = way.least.min(norm(&r));
                     residuals.push(norm(&r) / self.reference);
                     way.taken += 1;
+                    sizes.push(way.size);
                     rejected = None;
                     break;
                 }
@@ -393,7 +520,7 @@ impl<'d, 'p> Coulomb<'_, 'd, 'p> {
         let glued = self.system.d.slides.is_some();
         let pieces = self.system.d.contact.len();
         let start = if glued { f64::INFINITY } else { 0.0 };
-        self.tresca(iterate, &mut Vec::new(), until, (&vec![[start; 2]; pieces], false))?;
+        self.tresca(iterate, &mut Vec::new(), until, (&vec![[start; 3]; pieces], false))?;
         let (mut done, mut by) = (0.0, FIRST_SHARE);
         while done < 1.0 && by >= LEAST_SHARE {
             let next = f64::min(done + by, 1.0);
@@ -475,6 +602,54 @@ fn gmres(times: impl Fn(&[f64]) -> Vec<f64>, b: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::{Friction, law::EdgeRule};
+    use crate::kernel::{Material, Plane};
+    use crate::model::{Condition, Degree, Diagonal, Problem, Rectangle};
+
+    /// A block on a rough floor, pressed and dragged by its top.
+    fn block() -> Problem {
+        let mesh = Rectangle { width: 1.0, height: 1.0, nx: 6, ny: 6, diagonal: Diagonal::Crossed };
+        Problem::of(mesh.mesh().unwrap(), Material::lame(1.0, 1.0, Plane::Strain))
+            .with("top", Condition::displacement(|[x, _]| 0.02 + 0.01 * x, |_| -0.05))
+            .with("bottom", Condition::contact(|_| 0.0))
+            .with_friction("bottom", Friction::Coulomb(0.6))
+    }
+
+    #[test]
+    fn continuation_alone_leads_to_a_solution_and_mixing_to_a_fixed_point() {
+        let problem = block();
+        for degree in [Degree::One, Degree::Two] {
+            let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, EdgeRule::Exact);
+            let d = d.unwrap();
+            let system = System::new(&d).unwrap();
+            let mut route = Coulomb::new(&system, 1.0);
+            let size = |route: &mut Coulomb, iterate: &Iterate| {
+                let (r, _) = route.residual(&iterate.evaluate(&system, false));
+                route.dual(&r).unwrap()
+            };
+            let mut iterate = Iterate::lift(&d);
+            let first = size(&mut route, &iterate);
+            let until = Until { steps: 200, residual: 0.0 };
+            route.continued(&mut iterate, until).unwrap();
+            let last = size(&mut route, &iterate);
+            assert!(last <= 10.0 * NEARLY_THERE * first, "{degree:?}: {last:e} {first:e}");
+            // The fixed point of problems with given bounds, from afar.
+            let mut mixing = Mixing::default();
+            let mut before = vec![[0.0; 3]; d.contact.len()];
+            let mut changes = Vec::new();
+            for _ in 0..12 {
+                let mut other = Iterate::lift(&d);
+                route.tresca(&mut other, &mut Vec::new(), until, (&before, false)).unwrap();
+                let after = route.pressures(&other.evaluate(&system, false));
+                changes.push(mixing.remember(before, after));
+                before = mixing.next();
+                iterate = other;
+            }
+            assert!(changes[11] < 1e-6 * changes[0], "{degree:?}: {changes:?}");
+            let last = size(&mut route, &iterate);
+            assert!(last <= 1e-5 * first, "{degree:?}: {last:e} {first:e}");
+        }
+    }
 
     #[test]
     fn gmres_solves_what_is_not_symmetric_and_a_wrong_product_does_not() {

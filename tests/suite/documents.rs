@@ -98,9 +98,16 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
                 "method.allow_noncoercive=true",
             ],
         ),
+        (
+            "cases/slider.toml",
+            &["mesh.rectangle.nx=4", "mesh.rectangle.ny=2", "step=[{title=\"the first\"}]"],
+        ),
     ] {
         let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
-        let case = Case::parse(Path::new(file), &page(file), &settings).unwrap();
+        let mut case = Case::parse(Path::new(file), &page(file), &settings).unwrap();
+        if let Some(step) = case.steps.pop() {
+            case = step;
+        }
         let (case, mut solved) = run::solve(case, None, &|_| {}).unwrap();
         solved.certify(&case);
         let extra = Extra { certificate: true, report: false };
@@ -130,7 +137,7 @@ fn known_to(file: &str, text: &str, settings: &[&str], table: &str) -> BTreeSet<
 }
 
 /// The tables of a case, each with a case that has it and with its name on the page.
-const TABLES: [(&str, &[&str], &str, &str); 24] = [
+const TABLES: [(&str, &[&str], &str, &str); 25] = [
     ("cases/block.toml", &[], "", ""),
     ("cases/block.toml", &["body.thickness=2"], "body", "body"),
     ("cases/block.toml", &[], "mesh", "mesh"),
@@ -164,6 +171,7 @@ const TABLES: [(&str, &[&str], &str, &str); 24] = [
         "pair.friction",
     ),
     ("cases/block.toml", &["point.p.displacement=[0,0]"], "point.p", "point.NAME"),
+    ("cases/block.toml", &["step=[{title=\"one\"}]"], "step.0", "step"),
     ("cases/block.toml", &["output.probes=[]"], "output", "output"),
 ];
 

@@ -186,6 +186,7 @@ fn in_the_cases_with_pairs_points_of_both_boundaries_face_each_other() {
         ("pin_lug", &[std::f64::consts::PI * 10.025][..]),
         ("press_fit", &[std::f64::consts::FRAC_PI_2 * 30.0]),
         ("cylinders", &[]),
+        ("mindlin", &[]),
         ("stack", &[22.0, 22.0]),
     ] {
         let case = Case::read(&root.join(format!("cases/{name}.toml"))).unwrap();

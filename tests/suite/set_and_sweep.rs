@@ -61,7 +61,7 @@ fn a_mistake_in_a_setting_is_reported_with_the_setting_and_exit_code_2() {
     for (setting, message) in [
         (
             "metod.gamma0=1",
-            "unknown key 'metod'; expected title, mesh, material, load, exact, boundary, obstacle, pair, point, method, solver, adapt, certify, output, units or body",
+            "unknown key 'metod'; expected title, mesh, material, load, exact, boundary, obstacle, pair, point, method, solver, adapt, certify, output, units, body or step",
         ),
         (
             "method.gama0=1",
@@ -397,4 +397,52 @@ fn forces_reactions_and_energies_of_a_sweep_are_those_of_the_whole_thickness() {
     ];
     assert_eq!(wholes, expected);
     assert_eq!(thick.len(), thin.len());
+}
+
+#[test]
+fn load_steps_are_solved_one_after_the_other_and_have_a_table() {
+    let steps = "[[step]]\nboundary.top.displacement = [\"0\", \"-0.05\"]\n[[step]]\nboundary.top.displacement = [\"0.05\", \"-0.05\"]\n[[step]]\nboundary.top.displacement = [\"0.02\", \"-0.05\"]\ntitle = \"Back\"\n";
+    let edits = [
+        ["contact = { gap = \"0\" }", "contact = { gap = \"0\", friction = { coulomb = 0.2 } }"],
+        ["body = [\"0\", \"-4 + 10*x\"]", "body = [\"0\", \"0\"]"],
+        ["[output]", &format!("{steps}[output]")],
+    ];
+    let folder = folder("steps", &edits);
+    let output = signorini(&folder, &["solve", "case.toml"]);
+    assert_eq!(ended(&output), (Some(0), ""));
+    let said = text(&output.stdout);
+    assert!(!said.contains("one step") && said.contains("step  verdict"), "{said}");
+    let written = folder.join("out/case");
+    assert_eq!(names(&written), ["1", "2", "3", "steps.csv", "steps.pvd", "steps.svg"]);
+    let csv = fs::read_to_string(written.join("steps.csv")).unwrap();
+    let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+    let column = lines[0].iter().position(|name| *name == "bottom.force_x").unwrap();
+    let forces: Vec<f64> = lines[1..].iter().map(|line| line[column].parse().unwrap()).collect();
+    // Friction holds back what is dragged to the right, and what is dragged back.
+    assert!(forces[0].abs() < 0.1 * forces[1].abs() && forces[1] < 0.0, "{forces:?}");
+    assert!(forces[2] > forces[1] + 0.5 * forces[1].abs(), "{forces:?}");
+    let json = fs::read_to_string(written.join("3/result.json")).unwrap();
+    assert!(json.contains("\"step\": 3") && json.contains("\"title\": \"Back\""), "{json}");
+    // The last state at once is dragged to the right.
+    let last = ["--set", "boundary.top.displacement=[\"0.02\",\"-0.05\"]"];
+    let case = fs::read_to_string(folder.join("case.toml")).unwrap().replace(steps, "");
+    fs::write(folder.join("once.toml"), case).unwrap();
+    let once = signorini(&folder, &[&["solve", "once.toml"], &last[..]].concat());
+    assert_eq!(ended(&once), (Some(0), ""));
+    let said = text(&once.stdout);
+    assert!(said.contains("one step: friction is as if the loads grew in proportion"), "{said}");
+    let json = fs::read_to_string(folder.join("out/once/result.json")).unwrap();
+    assert!(!json.contains("\"step\"") && json.contains("\"sticks\""));
+    for (arguments, message) in [
+        (&["sweep", "case.toml", "--set", "method.degree=1,2"][..], "found [[step]] in the case"),
+        (&["solve", "case.toml", "--json"], "--json: the case has [[step]]"),
+        (
+            &["solve", "case.toml", "--within", "5 %"],
+            "step: found [[step]] beside [adapt]; expected one of both",
+        ),
+    ] {
+        let output = signorini(&folder, arguments);
+        let (code, said) = ended(&output);
+        assert!(code == Some(2) && said.contains(message), "{said}");
+    }
 }

@@ -1,9 +1,8 @@
 //! The keys that other programs have and this one has not: what they ask for is not computed, or has another key.
 
 /// What is not computed, and the keys that ask for it, alone or as the first part of a longer key (`yield_stress`).
-const BEYOND: [(&str, &[&str]); 7] = [
+const BEYOND: [(&str, &[&str]); 6] = [
     ("torsion", &["torsion", "torque", "twist"]),
-    ("one load after the other", &["step", "history", "cycle"]),
     (
         "plasticity",
         &["yield", "sigma_y", "plastic", "plasticity", "hardening", "hardness", "ultimate"],
@@ -44,7 +43,7 @@ const BEYOND: [(&str, &[&str]); 7] = [
 ];
 
 /// What other keys ask for, and the keys that other programs have for that.
-const ELSEWHERE: [(&str, &[&str]); 3] = [
+const ELSEWHERE: [(&str, &[&str]); 4] = [
     (
         "two boundaries that touch each other are a [[pair]]",
         &["master", "slave", "tie", "tied", "self_contact", "bodies"],
@@ -53,6 +52,7 @@ const ELSEWHERE: [(&str, &[&str]); 3] = [
         "friction stands in a contact = { friction = { coulomb = 0.3 } }, or in a [[pair]]",
         &["friction", "coulomb", "tresca", "mu_friction", "stick"],
     ),
+    ("loads one after the other are [[step]] tables", &["step", "history", "cycle"]),
     (
         "a body of revolution has body.plane = \"axisymmetric\"",
         &["axisymmetric", "axisymmetry", "axisym"],

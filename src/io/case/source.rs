@@ -76,6 +76,30 @@ impl<'s> Source<'s> {
         Ok(entries)
     }
 
+    /// Those of a load step, from 0: each \[\[step\]\] up to that one is laid over the rest of the file, one after the other.
+    pub fn entries_of_step(
+        self,
+        layers: &'s [String],
+        step: usize,
+    ) -> Result<DeTable<'s>, FileError> {
+        let mut entries = self.entries(layers)?;
+        let steps = entries.remove("step").map(|steps| steps.into_inner());
+        let Some(DeValue::Array(steps)) = steps else { return Ok(entries) };
+        for table in steps.into_iter().take(step + 1) {
+            let start = Some(table.span().start);
+            if let DeValue::Table(table) = table.into_inner() {
+                merge(&mut entries, table, "").map_err(|list| self.wrong(start, list.into()))?;
+            }
+        }
+        Ok(entries)
+    }
+
+    /// The text, with a comment for each setting.
+    pub fn said(self) -> String {
+        let comment = |setting: &String| format!("# --set {}\n", setting.replace('\n', " "));
+        self.text.to_owned() + &self.settings.iter().map(comment).collect::<String>()
+    }
+
     /// The settings as TOML, each behind so much space that a place in it is a place in no other, nor in the file.
     pub fn layers(&self) -> Vec<String> {
         let mut start = self.text.len();

@@ -210,9 +210,17 @@ fn friction_without_contact_between_bodies_is_refused() {
     );
 }
 
-/// Two equal cylinders of radius 1 that touch in the origin, pressed together and dragged; cells are finest there.
+/// Two equal cylinders of radius 1 that touch in the origin, pressed together and dragged. Cells are equal as far as they may touch, on
+/// 0.09 of the arc, which has 0.6 of the cells, and grow from there.
 fn cylinders(cells: [usize; 2], drag: f64, mu: f64) -> Problem {
-    let grow = |t: f64| (2.8 * t).sinh() / 2.8_f64.sinh();
+    let (share, arc) = (0.6, 0.09);
+    let grow = move |t: f64| {
+        let within = t.abs().min(share);
+        // So that the size goes on as it was, and the whole is 1.
+        let rate = 10.4;
+        let beyond = ((rate * (t.abs() - within)).exp() - 1.0) / (rate * share);
+        t.signum() * arc * (within / share + beyond)
+    };
     let place = move |s: f64, depth: f64| {
         let (angle, r) = (0.4 * grow(2.0 * s - 1.0), 1.0 - 0.6 * grow(depth));
         [r * angle.sin(), r * angle.cos() - 1.0]
@@ -224,16 +232,18 @@ fn cylinders(cells: [usize; 2], drag: f64, mu: f64) -> Problem {
     };
     let block = |name, n, map| Block { name, cells: [n, n / 2], material: young(1.0, 0.3), map };
     let pair = Pair::new("lower.top", "upper.bottom").with_friction(Friction::Coulomb(mu));
+    // What is further apart never touches.
+    let pair = Pair { reach: Some(0.004), ..pair };
     bodies(&[block("lower", cells[0], &lower), block("upper", cells[1], &upper)], &[pair])
         .with("lower.bottom", Condition::clamped())
-        .with("upper.top", Condition::displacement(move |_| drag, |_| -0.0085))
+        .with("upper.top", Condition::displacement(move |_| drag, |_| -0.003))
 }
 
 #[test]
 fn dragged_cylinders_stick_and_slide_as_cattaneo_and_mindlin_say() {
     let mu = 0.3;
-    for (degree, cells) in [(Degree::One, [64, 48]), (Degree::Two, [48, 36])] {
-        let problem = cylinders(cells, 0.0095, mu);
+    for (degree, cells) in [(Degree::One, [96, 72]), (Degree::Two, [48, 36])] {
+        let problem = cylinders(cells, 0.0033, mu);
         let s = proved(&problem, &method(degree));
         let [shear, force] = s.boundaries[0].resultant.map(f64::abs);
         let share = shear / (mu * force);
@@ -241,7 +251,6 @@ fn dragged_cylinders_stick_and_slide_as_cattaneo_and_mindlin_say() {
         let modulus = 1.0 / (2.0 * (1.0 - 0.09));
         let a = (4.0 * force * 0.5 / (std::f64::consts::PI * modulus)).sqrt();
         let c = a * (1.0 - share).sqrt();
-        let friction = s.boundaries[0].friction.unwrap();
         // int q x^2 = mu p0 (pi / 8) (a^3 - c^4 / a), p0 = 2 force / (pi a).
         let expected = mu * force / (4.0 * a) * (a.powi(3) - c.powi(4) / a);
         let d = discretize(&problem, &method(degree)).unwrap();
@@ -252,16 +261,30 @@ fn dragged_cylinders_stick_and_slide_as_cattaneo_and_mindlin_say() {
             piece.across(&force).iter().enumerate().map(|(i, f)| f * place(i).powi(2)).sum()
         };
         let second = d.contact.iter().map(of_piece).sum::<f64>().abs();
-        let off = [friction.sticks / 2.0 / c - 1.0, second / expected - 1.0];
+        // From the outermost point that sticks on the left to that on the right.
+        let ends = d.contact.iter().fold([0.0, 0.0], |[left, right]: [f64; 2], piece| {
+            let sticks = piece.contribution(&d.rule, &piece.p(&s.displacement)).friction[0];
+            let place = |i: usize| piece.geometry.stretches[0].place(d.space.mesh(), i)[0];
+            let (low, high) = (place(0).min(place(1)), place(0).max(place(1)));
+            match sticks > 0.0 {
+                true if low >= 0.0 => [left, right.max(low + sticks)],
+                true if high <= 0.0 => [left.min(high - sticks), right],
+                _ => [left, right],
+            }
+        });
+        let stuck_on = (ends[1] - ends[0]) / 2.0;
+        let off = [stuck_on / c - 1.0, second / expected - 1.0];
         println!(
             "{degree:?}: a {a:.4}, Q/(mu P) {share:.4}, c/a {:.4} for {:.4}, second moment off by {:.1e}, {} factorisations",
-            friction.sticks / 2.0 / a,
+            stuck_on / a,
             c / a,
             off[1],
             s.newton.factorizations
         );
-        // The stretch that sticks was 6 % short on these meshes; its end lies between two nodes.
-        assert!(off[0].abs() <= 0.08 && off[1].abs() <= 1e-2, "{degree:?}: {off:?}");
+        // The shear stress is c - |x| to the power 1/2 above the bound there, and what sticks ends short of that by a part of an edge:
+        // by half of one of the coarser body at most. On 20 edges to a that is 3.6 % of c.
+        let edge = 0.4 * 0.09 / (0.6 * cells[1] as f64 / 2.0);
+        assert!((stuck_on - c).abs() <= edge / 2.0 && off[1].abs() <= 1e-2, "{degree:?}: {off:?}");
         // The control: as if all of it slid.
         assert!((second / (mu * force * a * a / 4.0) - 1.0).abs() > 0.1);
     }
@@ -269,15 +292,37 @@ fn dragged_cylinders_stick_and_slide_as_cattaneo_and_mindlin_say() {
 
 #[test]
 fn below_a_coefficient_there_is_one_solution_for_all_loads() {
-    for (cells, ratio, least) in [([7, 11], 1.0, [0.1, 0.1]), ([7, 11], 10.0, [0.1, 0.03])] {
-        let problem = |mu: f64| dragged(cells, ratio, &Friction::Coulomb(mu), false);
+    // Squares with lambda = mu = 1, the upper one so many times stiffer, clamped below and above, kappa = 1/2; the two limits by another
+    // program, numpy.
+    for (cells, ratio, expected) in [
+        ([7, 11], 1.0, [0.124, 0.154]),
+        ([14, 22], 1.0, [0.086, 0.107]),
+        ([7, 11], 10.0, [0.136, 0.045]),
+        ([14, 22], 10.0, [0.094, 0.030]),
+    ] {
+        let (lower, upper) = (rectangle([0.0, 0.0], [1.0, 1.0]), rectangle([0.0, 1.0], [1.0, 2.0]));
+        let block = |name, n, stiffness, map| Block {
+            name,
+            cells: [n, n],
+            material: Material::lame(stiffness, stiffness, Plane::Strain),
+            map,
+        };
+        let blocks =
+            [block("lower", cells[0], 1.0, &lower), block("upper", cells[1], ratio, &upper)];
         let isolation = |mu: f64| {
-            let s = proved(&problem(mu), &method(Degree::One));
+            let pair = Pair::new("lower.top", "upper.bottom").with_friction(Friction::Coulomb(mu));
+            let problem = bodies(&blocks, &[pair])
+                .with("lower.bottom", Condition::clamped())
+                .with("upper.top", Condition::displacement(|_| 0.003, |_| -0.1));
+            let s = proved(&problem, &with_kappa(Degree::One, 0.5));
             s.enclosure.as_ref().unwrap().isolation.unwrap()
         };
         let limits = isolation(0.02).limits;
-        println!("E2/E1 = {ratio}: {limits:?}");
-        assert!(limits.iter().zip(least).all(|(found, least)| *found > least), "{limits:?}");
+        println!("{cells:?}, E2/E1 = {ratio}: {limits:?}");
+        for (found, expected) in limits.iter().zip(expected) {
+            // Three digits were printed, and the limits are proved to a thousandth.
+            assert!((found / expected - 1.0).abs() <= 0.02, "{limits:?} {expected:?}");
+        }
         let most = limits[0].max(limits[1]);
         assert!(isolation(0.99 * most).everywhere && !isolation(1.02 * most).everywhere);
     }
@@ -302,4 +347,74 @@ fn near_a_solution_there_is_one_for_small_and_large_coefficients_after_few_facto
         }
     }
     assert!(most <= 30, "{most}");
+}
+
+/// The load steps of two blocks: pressed and dragged to the right, dragged further, dragged back.
+fn back_and_forth(friction: &Friction, degree: Degree) -> Vec<Solution> {
+    let mut slip = Vec::new();
+    let mut solve = |drag: f64| {
+        let mut problem = dragged([7, 11], 2.0, friction, false)
+            .with("upper.top", Condition::displacement(move |_| drag, |_| 0.0));
+        problem.slip = std::mem::take(&mut slip);
+        let s = proved(&problem, &method(degree));
+        slip = s.slip();
+        s
+    };
+    [0.05, 0.1, 0.01].map(&mut solve).into_iter().collect()
+}
+
+#[test]
+fn friction_turns_round_when_the_drag_does() {
+    for degree in DEGREES {
+        // All of it slides: the shear force is the bound times the length of 1, or the coefficient times the force.
+        let bound = 0.004;
+        let steps = back_and_forth(&Friction::tresca(move |_| bound), degree);
+        let shear: Vec<f64> = steps.iter().map(|s| s.boundaries[0].resultant[0]).collect();
+        for (found, sign) in shear.iter().zip([1.0, 1.0, -1.0]) {
+            assert!((found - sign * bound).abs() < 1e-4 * bound, "{degree:?}: {shear:?}");
+        }
+        let mu = 0.1;
+        let steps = back_and_forth(&Friction::Coulomb(mu), degree);
+        for (s, sign) in steps.iter().zip([1.0, 1.0, -1.0]) {
+            let of = &s.boundaries[0];
+            let off = of.resultant[0] / (mu * of.force) - sign;
+            assert!(off.abs() < 1e-4, "{degree:?}: {:?} {}", of.resultant, of.force);
+            // The slip of the step, and the work that friction takes in it.
+            let friction = of.friction.unwrap();
+            let work = mu * of.force * friction.slip;
+            assert!((0.3 * work..=work).contains(&friction.dissipated), "{friction:?} {work}");
+        }
+        // The control: the last state in one step is dragged to the right.
+        let drag = Condition::displacement(|_| 0.01, |_| 0.0);
+        let at_once = dragged([7, 11], 2.0, &Friction::Coulomb(mu), false).with("upper.top", drag);
+        let at_once = proved(&at_once, &method(degree));
+        assert!(at_once.boundaries[0].resultant[0] > 0.0);
+    }
+}
+
+#[test]
+fn a_step_that_changes_nothing_leaves_everything_where_it_is() {
+    for friction in laws() {
+        let problem = dragged([9, 13], 2.0, &friction, false);
+        let first = proved(&problem, &method(Degree::One));
+        let mut again = problem.clone();
+        again.slip = first.slip();
+        let second = proved(&again, &method(Degree::One));
+        let off = apart(&first.displacement, &second.displacement) / largest(&first.displacement);
+        // Where it slides, the stress of the method is at the bound up to the error of the mesh.
+        assert!(off < 0.01, "{off:e}");
+        let shear = |s: &Solution| s.boundaries[0].resultant[0];
+        assert!((shear(&second) / shear(&first) - 1.0).abs() < 0.05);
+    }
+}
+
+#[test]
+fn a_slip_of_other_pieces_is_refused() {
+    let mut problem = dragged([3, 4], 1.0, &laws()[0], false);
+    problem.slip = vec![vec![0.0; 2]; 2];
+    let error = solve(&problem, &method(Degree::One), &Settings::default()).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "the slip that is carried over is that of 2 pieces of the contact line, and there are 6; expected as many from step to step: a clearance that leaves the same points of a pair within reach"
+    );
 }
