@@ -8,7 +8,11 @@
 //! [`newest-vertex bisection`](crate::model::mesh::bisection). Newton's method starts from the coarser solution.
 //!
 //! Every level has a certificate of its own, for the problem on its own mesh: nothing that is proved rests on the levels
-//! before. The body is the polygon of the first mesh: the middle of a straight edge lies on it, but for rounding.
+//! before. The body is the polygon of the first mesh: the middle of a straight edge lies on it, but for rounding. Where contact with an
+//! obstacle is taken for round, the middle of an edge is placed on the curve on which gaps are measured: chords of half the length in
+//! place of one chord, which would have a gap of its own.
+
+use std::collections::BTreeMap;
 
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
@@ -19,8 +23,8 @@ use super::quantities::Name;
 use super::{Asked, Continuous, certify_with};
 use crate::contact::ContactLine;
 use crate::contact::piece::PieceGeometry;
-use crate::model::Degree;
-use crate::model::{Condition, Mesh, Problem, Space};
+use crate::model::boundary_normals::SmoothBoundary;
+use crate::model::{BoundaryEdge, Condition, Degree, Mesh, Problem, Space};
 use crate::quote::quoted;
 use crate::results::Solution;
 use crate::solve::{Course, Method, Phase, Settings, SolveError, Times, solve_along};
@@ -220,7 +224,9 @@ pub fn adapt_to(
         } else if let Some(Err(reason)) = force.map(|boundary| force_of(&certified, boundary)) {
             Err(Some(reason))
         } else if relative.is_finite() {
-            let finer = problem.mesh.bisected(&newest, &marked(shares(&certified, force)));
+            let round = round_contact(&problem);
+            let marked = marked(shares(&certified, force));
+            let finer = problem.mesh.bisected_along(&newest, &marked, round);
             finer.map_err(|error| Some(error.to_string()))
         } else {
             Err(Some("the body is at rest, its energy is 0".to_owned()))
@@ -325,6 +331,22 @@ fn check_straight(problem: &Problem) -> Result<(), AdaptError> {
         Some(piece) => Err(AdaptError::CurvedPair { boundary: boundary(piece) }),
         None => Ok(()),
     }
+}
+
+/// Where the middles of edges lie on the curves that contact boundaries are taken for, on which their gaps are measured, too. The body
+/// of each level is the polygon of its mesh.
+fn round_contact(problem: &Problem) -> impl Fn(BoundaryEdge) -> Option<[f64; 2]> + use<> {
+    let mesh = &problem.mesh;
+    let smooth = SmoothBoundary::new(mesh);
+    let names = problem.conditions.iter().filter(|(_, condition)| condition.is_contact());
+    let edges = names.flat_map(|(name, _)| mesh.edges_of(name).unwrap_or_default());
+    let middles: BTreeMap<[usize; 2], [f64; 2]> = edges
+        .filter_map(|&edge| {
+            let [.., middle] = smooth.along(mesh, edge)?;
+            Some(([edge.triangle, edge.local], middle.place))
+        })
+        .collect();
+    move |edge| middles.get(&[edge.triangle, edge.local]).copied()
 }
 
 /// The fewest triangles whose shares make up [`THETA`] of the whole; `indicators` are the roots of the shares. Where all

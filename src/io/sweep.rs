@@ -598,6 +598,7 @@ mod tests {
             values: values(rows),
             results: Vec::new(),
             with_files: false,
+            names: NAMES,
         };
         let rows = [["[0, -1]", "1"], ["[0, -1]", "2"], ["[0, -1]", "3"], ["[0, -2]", "1"]];
         assert_eq!(sweep(&rows).abscissa(), Some((1, vec![1.0, 2.0, 3.0, 1.0])));

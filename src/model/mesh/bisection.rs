@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use super::{Mesh, MeshError, length};
+use super::{BoundaryEdge, Mesh, MeshError, length};
 
 /// A mesh made from another by bisection. The vertices of the old one keep their numbers; the newest vertex of each triangle
 /// is its first.
@@ -144,10 +144,34 @@ impl Mesh {
     /// # Errors
     /// Triangles too small for doubles, lack of memory.
     pub fn bisected(&self, newest: &[usize], marked: &[usize]) -> Result<Refinement, MeshError> {
+        self.bisected_along(newest, marked, |_| None)
+    }
+
+    /// As [`Mesh::bisected`], the middles of edges of the outline where `curve` says, as far as that is beside the edge by less than a
+    /// quarter of the triangle's height over it.
+    ///
+    /// # Errors
+    /// As [`Mesh::bisected`].
+    pub fn bisected_along(
+        &self,
+        newest: &[usize],
+        marked: &[usize],
+        curve: impl Fn(BoundaryEdge) -> Option<[f64; 2]>,
+    ) -> Result<Refinement, MeshError> {
         let mut halved = Halved::none(self);
         marked.iter().for_each(|&t| (0..3).for_each(|local| halved.halve(self, t, local)));
         halved.close(self, newest);
-        let Halved { middles, vertices, parents } = halved;
+        let Halved { middles, mut vertices, parents } = halved;
+        for &edge in self.outline() {
+            let middle = middles[self.triangle_edges()[edge.triangle][edge.local]];
+            let Some((vertex, place)) = middle.zip(curve(edge)) else { continue };
+            let beside = Vector2::from(place) - Vector2::from(vertices[vertex]);
+            let (edge_length, _) = self.length_and_normal(edge);
+            let height = self.triangle(edge.triangle).double_area() / edge_length;
+            if 4.0 * length(beside) < height {
+                vertices[vertex] = place;
+            }
+        }
         let mut triangles = Vec::with_capacity(self.triangles().len() + 3 * marked.len());
         let mut origin = Vec::with_capacity(triangles.capacity());
         // Where the parts of each triangle begin.
