@@ -10,8 +10,7 @@
 //! `examples`, where `first_contact.rs` is a tutorial.
 //!
 //! ```
-//! use signorini::{Condition, Diagonal, Material, Method, Obstacle, Plane, Problem, Rectangle, Settings};
-//! use crate::solve;
+//! use signorini::{Condition, Diagonal, Material, Method, Obstacle, Plane, Problem, Rectangle, Settings, solve};
 //!
 //! let (nx, ny, diagonal) = (16, 16, Diagonal::Right);
 //! let mesh = Rectangle { width: 1.0, height: 1.0, nx, ny, diagonal }.mesh()?;
@@ -32,8 +31,7 @@
 //! along the axis are those of the whole revolution.
 //!
 //! ```
-//! use signorini::{Condition, Diagonal, Material, Method, Plane, Problem, Rectangle, Settings};
-//! use crate::solve;
+//! use signorini::{Condition, Diagonal, Material, Method, Plane, Problem, Rectangle, Settings, solve};
 //!
 //! let (nx, ny, diagonal) = (8, 8, Diagonal::Right);
 //! let mesh = Rectangle { width: 1.0, height: 1.0, nx, ny, diagonal }.mesh()?;

@@ -720,7 +720,7 @@ mod tests {
         "newton: converged in 11 steps, 13 factorisations, relative residual from 3e-1 to 2.0e-12",
         "accuracy: condensed route, condition number at least 2e3, relative error of iteration and rounding 3e-13 (energy norm)",
         "energy: elastic energy 8.15 kN cm, a(u,u) = 16.3 kN cm, L(u) = 16.7 kN cm",
-        "balance: a(u,u) = loads 46.1 kN cm + supports 46.3 kN cm + contact 46.7 kN cm, relative imbalance 5e-6",
+        "balance: a(u,u) = loads 46.1 kN cm + supports 46.3 kN cm + contact 46.7 kN cm, of which friction takes 34.9 kN cm, relative imbalance 5e-6",
         "time: read 75.1 ms, assemble 75.7 ms, solve 7.61 s, certify 76.9 ms",
         "proved: the discrete equations have exactly one solution; this is within 1e-10 of it (relative, in the energy norm), rounding included",
         "solved: exactly for this mesh, to 10 digits, rounding included",

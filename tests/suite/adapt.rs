@@ -287,3 +287,22 @@ boundary.bottom.contact = { gap = "1" }
     let adapt = solved.adaptation.unwrap();
     assert!(adapt.met, "{:?}: {:?}", adapt.reason, adapt.levels);
 }
+
+/// Chords of half the length in place of one chord would have a gap of their own: with middles on the chords the bound grows.
+#[test]
+fn a_pin_in_a_hole_keeps_its_curve_on_finer_meshes_and_its_bound_falls_at_each_level() {
+    let case = case("pin.toml", &[]);
+    let Case { problem, method, settings, .. } = &case;
+    let target = Target { relative: 0.008, max_unknowns: 20_000 };
+    let (_, adapted) = adapt(problem.clone(), method, settings, target, &|_| {}).unwrap();
+    let bounds: Vec<f64> = adapted.levels.iter().map(|level| level.relative).collect();
+    assert!(adapted.unmet.is_none() && bounds.len() > 1, "{bounds:?}");
+    assert!(bounds.is_sorted_by(|a, b| b < a), "{bounds:?}");
+    let newest = problem.mesh.opposite_longest();
+    let on_hole = problem.mesh.edges_of("hole").unwrap().iter().map(|edge| edge.triangle);
+    let chords = problem.mesh.bisected(&newest, &on_hole.collect::<Vec<_>>()).unwrap();
+    let chords = problem.clone().refined(chords);
+    let (solution, _) = solve(&chords, method, settings).unwrap();
+    let control = certify(&chords, &solution).unwrap();
+    assert!(control.relative > bounds[0], "control: {} {bounds:?}", control.relative);
+}
