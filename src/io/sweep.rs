@@ -558,7 +558,7 @@ mod tests {
         assert_eq!(found, CELLS);
     }
 
-    const CELLS: [&str; 26] = [
+    const CELLS: [&str; 34] = [
         "verdict proved",
         "gamma0 0.0111",
         "kappa 0.127",
