@@ -224,7 +224,11 @@ pub fn adapt_to(
         } else if let Some(Err(reason)) = force.map(|boundary| force_of(&certified, boundary)) {
             Err(Some(reason))
         } else if relative.is_finite() {
-            let round = round_contact(&problem);
+            let round: BTreeMap<[usize; 2], [f64; 2]> = round_contact(&problem)
+                .into_iter()
+                .map(|(edge, middle)| ([edge.triangle, edge.local], middle))
+                .collect();
+            let round = |edge: BoundaryEdge| round.get(&[edge.triangle, edge.local]).copied();
             let marked = marked(shares(&certified, force));
             let finer = problem.mesh.bisected_along(&newest, &marked, round);
             finer.map_err(|error| Some(error.to_string()))
@@ -333,20 +337,18 @@ fn check_straight(problem: &Problem) -> Result<(), AdaptError> {
     }
 }
 
-/// Where the middles of edges lie on the curves that contact boundaries are taken for, on which their gaps are measured, too. The body
-/// of each level is the polygon of its mesh.
-fn round_contact(problem: &Problem) -> impl Fn(BoundaryEdge) -> Option<[f64; 2]> + use<> {
+/// The edges of contact with obstacles that are taken for round, each with the middle of the curve on which gaps are measured: there its
+/// middle is placed when it is halved. The body of each level is the polygon of its mesh.
+pub(super) fn round_contact(problem: &Problem) -> Vec<(BoundaryEdge, [f64; 2])> {
     let mesh = &problem.mesh;
     let smooth = SmoothBoundary::new(mesh);
     let names = problem.conditions.iter().filter(|(_, condition)| condition.is_contact());
     let edges = names.flat_map(|(name, _)| mesh.edges_of(name).unwrap_or_default());
-    let middles: BTreeMap<[usize; 2], [f64; 2]> = edges
-        .filter_map(|&edge| {
-            let [.., middle] = smooth.along(mesh, edge)?;
-            Some(([edge.triangle, edge.local], middle.place))
-        })
-        .collect();
-    move |edge| middles.get(&[edge.triangle, edge.local]).copied()
+    let middle = |&edge: &BoundaryEdge| {
+        let [.., middle] = smooth.along(mesh, edge)?;
+        Some((edge, middle.place))
+    };
+    edges.filter_map(middle).collect()
 }
 
 /// The fewest triangles whose shares make up [`THETA`] of the whole; `indicators` are the roots of the shares. Where all

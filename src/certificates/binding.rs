@@ -7,13 +7,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::build;
 use super::certificate::{Certificate, Edge, Lift, Role, is_oblique, place};
 use super::data::{Data, length_and_normal};
 use super::errors::CertifyError;
 use super::forces::Evidence;
 use super::oscillation::{self, Oscillation};
 use super::parts::{Boundary, ProblemParts};
+use super::{adapt, build};
 use crate::contact::contact_line;
 use crate::kernel::{Material, Triangle};
 use crate::model::mesh::bisection::Refinement;
@@ -33,6 +33,36 @@ fn room(mesh: &Mesh, t: usize) -> f64 {
     let far = triangle.vertices.iter().fold(0.0, |far: f64, x| far.max(x.amax()));
     let longest = (0..3).map(|i| length(triangle.edge(i))).fold(0.0, f64::max);
     ROUNDING + 16.0 * f64::EPSILON * far * longest / triangle.double_area()
+}
+
+/// Between chord and curve of the round contact edges of a mesh, where `[adapt]` places vertices: for each triangle with such edges how far
+/// the curve lies beside each of them, in heights of the triangle.
+struct Round(BTreeMap<usize, [f64; 3]>);
+
+impl Round {
+    fn of(problem: &Problem) -> Round {
+        let mesh = &problem.mesh;
+        let mut beside: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
+        for (edge, middle) in adapt::round_contact(problem) {
+            let [a, b] = mesh.places_of_ends(edge).map(Vector2::from);
+            let height = mesh.triangle(edge.triangle).double_area() / length(b - a);
+            let sagitta = length(Vector2::from(middle) - (a + b) / 2.0);
+            // Curves through the vertices of a finer mesh differ from those of this one.
+            let share = 1.25 * sagitta / height;
+            if share < 0.5 {
+                beside.entry(edge.triangle).or_default()[edge.local] = share;
+            }
+        }
+        Round(beside)
+    }
+
+    fn beside(&self, triangle: usize) -> [f64; 3] {
+        self.0.get(&triangle).copied().unwrap_or_default()
+    }
+
+    fn whole(&self, triangle: usize) -> f64 {
+        self.beside(triangle).iter().sum()
+    }
 }
 
 /// Why a certificate is not one of a problem.
@@ -129,6 +159,7 @@ fn refinement(
     let mut found: Vec<([usize; 3], usize)> = Vec::new();
     let mut origins = Vec::with_capacity(certificate.pieces.len());
     let mut areas = vec![0.0; mesh.triangles().len()];
+    let round = Round::of(problem);
     for (i, piece) in certificate.pieces.iter().enumerate() {
         let Ok([a, b, c]) = <[usize; 3]>::try_from(corners(certificate, &piece.vertices)) else {
             return Err(outside("triangle", i, "is no part of one between three vertices"));
@@ -140,12 +171,15 @@ fn refinement(
                 let whole = if (y - x).perp(&(z - x)) > 0.0 { [a, b, c] } else { [a, c, b] };
                 let beyond = || outside("triangle", i, "lies in no triangle of the case's mesh");
                 let middle = (x + y + z) / 3.0;
-                let (origin, _) = mesh.locate(middle.into()).ok_or_else(beyond)?;
-                let room = room(mesh, origin);
-                let inside = |x| coordinates(mesh, origin, x).iter().all(|&l| l >= -room);
-                if ![x, y, z].into_iter().all(inside) {
-                    return Err(beyond());
-                }
+                let within = |t: usize| {
+                    let room = room(mesh, t) + round.whole(t);
+                    let inside = |x| coordinates(mesh, t, x).iter().all(|&l| l >= -room);
+                    [x, y, z].into_iter().all(inside)
+                };
+                let located = mesh.locate(middle.into()).map(|(origin, _)| origin);
+                // The middle of a triangle between chord and curve may lie in no triangle, or in the next one.
+                let mut candidates = located.into_iter().chain(round.0.keys().copied());
+                let origin = candidates.find(|&t| within(t)).ok_or_else(beyond)?;
                 numbers.insert([a, b, c], found.len());
                 found.push((whole, origin));
                 found.len() - 1
@@ -157,7 +191,7 @@ fn refinement(
     }
     for (t, area) in areas.iter().enumerate() {
         let whole = mesh.triangle(t).double_area();
-        if !((area - whole).abs() <= 4.0 * room(mesh, t) * whole) {
+        if !((area - whole).abs() <= (4.0 * room(mesh, t) + 2.0 * round.whole(t)) * whole) {
             return Err(outside("triangle", t, "of the case's mesh is not covered once"));
         }
     }
@@ -167,7 +201,7 @@ fn refinement(
     order.iter().enumerate().for_each(|(to, &from)| place_of[from] = to);
     origins.iter_mut().for_each(|number| *number = place_of[*number]);
     let (triangles, origin): (Vec<_>, Vec<_>) = order.iter().map(|&k| found[k]).unzip();
-    let named = named(mesh, certificate, &triangles, &origin)?;
+    let named = named((mesh, &round), certificate, &triangles, &origin)?;
     let vertices = certificate.vertices.clone();
     let fine = Mesh::with_pairs(vertices, triangles, named, &problem.pairs)?;
     Ok((Refinement { mesh: fine, parents: Vec::new(), origin }, origins))
@@ -182,7 +216,7 @@ fn coordinates(mesh: &Mesh, t: usize, x: Vector2<f64>) -> [f64; 3] {
 
 /// The boundaries of `mesh` by the edges of triangles that are parts of its own.
 fn named(
-    mesh: &Mesh,
+    (mesh, round): (&Mesh, &Round),
     certificate: &Certificate,
     triangles: &[[usize; 3]],
     origin: &[usize],
@@ -209,8 +243,10 @@ fn named(
     let mut named: BTreeMap<String, Vec<[usize; 2]>> = BTreeMap::new();
     for (t, ends) in alone.into_values() {
         let l = ends.map(|k| coordinates(mesh, origin[t], certificate.vertices[k].into()));
-        let room = room(mesh, origin[t]);
-        let side = (0..3).find(|&i| l.iter().all(|l| l[i].abs() <= room));
+        let (room, beside) = (room(mesh, origin[t]), round.beside(origin[t]));
+        let off = |i: usize| l.iter().map(|l| l[i].abs()).fold(0.0, f64::max);
+        let nearest = (0..3).min_by(|&i, &j| off(i).total_cmp(&off(j)));
+        let side = nearest.filter(|&i| off(i) <= room + beside[i]);
         let names = side.and_then(|local| names.get(&(origin[t], local))).ok_or_else(|| {
             outside("vertex", ends[0], "begins an edge that is on no boundary of the case")
         })?;

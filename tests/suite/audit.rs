@@ -264,3 +264,20 @@ fn without_forces(header: &Header, arrays: &[u8]) -> (Header, Vec<u8>) {
     let hash = certificate::hash(&bytes);
     (Header { arrays: kept, boundaries: Vec::new(), hash, ..header.clone() }, bytes)
 }
+
+/// Of `[adapt]`, whose vertices lie between chord and curve of the round contact; a vertex off the curve by as much again is noticed.
+#[test]
+fn a_certificate_on_an_adapted_pin_is_one_of_its_case() {
+    let of_pin = || case("pin.toml", &["adapt.target=\"1 %\""]);
+    let (_, solved) = run::solve(of_pin(), None, &|_| {}).unwrap();
+    let mut certificate = solved.certified.unwrap().unwrap().certificate;
+    let of_case = |certificate: &_| compare(of_pin().problem, certificate, &Evidence::default());
+    assert!(of_case(&certificate).is_ok());
+    let radius = |x: &[f64; 2]| x[0].hypot(x[1]);
+    let first = of_pin().problem.mesh.vertices().len();
+    let moved = certificate.vertices.iter().enumerate().skip(first);
+    let k = moved.map(|(k, x)| (k, radius(x))).find(|(_, r)| (r - 20.0).abs() < 1e-4).unwrap().0;
+    let away = 20.05 / radius(&certificate.vertices[k]);
+    certificate.vertices[k] = certificate.vertices[k].map(|x| x * away);
+    assert!(of_case(&certificate).is_err());
+}
