@@ -6,7 +6,7 @@
 //! 2. Newton's method on F as long as its residual, in the dual norm of A, falls by a tenth in each step;
 //! 3. where it does not, the problem with the bound of the step that was not taken, then 2. again;
 //! 4. where that leads nowhere, problems with the pressure of the one before for a bound, whose fixed point is the solution, mixed
-//!    ([`Mixing`]), with 2. from what they come to;
+//!    (`Mixing`), with 2. from what they come to;
 //! 5. where that leads nowhere, Newton's method from one coefficient to a larger one.
 //!
 //! The tangent of F is S + B^T D B: S is symmetric positive definite, with the springs of what is pressed and of what sticks, and is
