@@ -14,7 +14,7 @@ CONTACT = '[boundary.bottom]\ncontact = { gap = "0" }\n'
 
 # (what is replaced in BLOCK, by what, message behind the file's name)
 REFUSED = [
-    ("[mesh]", "titel = 1\n[mesh]", "titel: unknown key; known here: pair, body, material, exact, load, method, solver, output, units, title, mesh, boundary, obstacle, point"),
+    ("[mesh]", "titel = 1\n[mesh]", "titel: unknown key; known here: pair, step, body, material, exact, load, method, solver, output, units, title, mesh, boundary, obstacle, point"),
     ("[mesh]", "[mesh", "not a TOML file: Expected ']' at the end of a table declaration (at line 2, column 6)"),
     ("[material]\nlambda = 1.0\nmu = 1.0\n", "", "material: found nothing, expected a table"),
     ("mu = 1.0", "mu = -1.0", "material.mu: found -1.0, expected a positive number"),
