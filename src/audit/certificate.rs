@@ -162,7 +162,7 @@ pub enum Role {
     Facing,
 }
 
-/// What an edge's values at both ends are on the edge that faces it, which runs the other way, with the opposite sign.
+/// Turns values at both ends of an edge into those of the edge that faces it, which runs the other way, with the opposite sign.
 pub(super) fn opposite<S: Enclosing>([a, b]: [Vector2<S>; 2]) -> [Vector2<S>; 2] {
     [-b, -a]
 }

@@ -80,7 +80,7 @@ pub enum Refused {
 pub struct ProvedForce {
     /// In words.
     pub name: String,
-    /// Whether it is a moment.
+    /// True for a moment, false for a force.
     pub is_moment: bool,
     /// The numbers that it lies between, for a body that is 1 thick.
     pub between: [f64; 2],

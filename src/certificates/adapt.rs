@@ -277,7 +277,7 @@ struct Best {
     certified: Result<Continuous, CertifyError>,
     level: usize,
     off: f64,
-    /// What the target compares.
+    /// The number that the target is compared with.
     reached: f64,
 }
 

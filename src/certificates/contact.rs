@@ -350,7 +350,7 @@ impl Contact {
         })
     }
 
-    /// Those of a field, on a pair less those on the other body.
+    /// The coefficients of a field along the contact, on a pair less those on the other body.
     pub fn jump(&self, mesh: &Mesh, field: &Field) -> [Vector2<f64>; 3] {
         let sides = (0..self.sides.len())
             .map(|i| self.along_side(mesh, i, field).map(|value| value * Contact::sign(i)));

@@ -221,7 +221,7 @@ pub struct SolveOptions {
 /// The target of an adaptive solve.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Within {
-    /// The same as a key of the case file with its value.
+    /// The key of the case file that says the same, with its value.
     pub setting: String,
 }
 

@@ -248,7 +248,7 @@ impl ContactLine {
     }
 }
 
-/// What a side of a piece adds to kappa on its triangle, were it the only one on its edge.
+/// The part of kappa on a triangle that comes from a side of a piece, were that side the only one on its edge.
 pub(crate) struct Share<S> {
     /// The triangle, its edge, and the boundary on the other side, if there is one.
     place: (usize, usize, Option<Arc<str>>),

@@ -24,7 +24,7 @@ pub enum Law {
 }
 
 impl Law {
-    /// What it answers to each component of the jump by itself: along the direction of contact, and across if it feels that, but
+    /// Responses to each component of the jump by itself: along the direction of contact, and across if the law feels that, but
     /// for friction.
     pub fn responses(self) -> &'static [Response] {
         match self {

@@ -6,11 +6,13 @@
 
 pub(super) mod reader;
 
+use std::io::Write;
 use std::iter::repeat_n;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
-use flate2::{Compress, Compression, FlushCompress};
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
 
 use super::files::{NotFinite, check_finite};
 use crate::model::Degree;
@@ -176,16 +178,10 @@ impl Writer {
 
 /// A block by zlib, fast: doubles do not get much smaller by more effort.
 fn compressed(block: &[u8]) -> Vec<u8> {
-    let mut zlib = Compress::new(Compression::fast(), true);
-    // What zlib's documentation gives as its bound for any data.
-    let mut to = Vec::with_capacity(block.len() + block.len() / 1000 + 64);
-    // With room for everything a single call is the end.
-    while let Ok(flate2::Status::Ok | flate2::Status::BufError) =
-        zlib.compress_vec(&block[zlib.total_in() as usize..], &mut to, FlushCompress::Finish)
-    {
-        to.reserve(block.len() / 8 + 64);
-    }
-    to
+    let mut zlib = ZlibEncoder::new(Vec::with_capacity(block.len() / 2), Compression::fast());
+    // Writing to memory cannot fail.
+    let _ = zlib.write_all(block);
+    zlib.finish().unwrap_or_default()
 }
 
 /// Appends the base64 code of `data`.
