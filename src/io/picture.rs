@@ -20,7 +20,7 @@ pub mod plot;
 mod scene;
 
 use svg::Node;
-use svg::node::element::{Circle, Group};
+use svg::node::element::{Circle, Group, Use};
 
 use super::case::Case;
 use super::files::{NotFinite, check_finite};
@@ -108,12 +108,15 @@ fn picture(scene: &Scene) -> Result<String, NotFinite> {
         .add(definitions(scene, &deformed))
         .add(headline(scene, width));
     if scene.of_revolution {
-        document.append(other_half(scene, &deformed, (&frame, &colours)));
+        document.append(other_half(&frame));
     }
-    let mut document = document
-        .add(body(scene, &deformed, &colours))
-        .add(outlines(scene, &deformed, &frame))
-        .add(colour_bar(&colours, unit, [MARGIN + frame.width + GAP, HEADER], frame.height));
+    let half = Group::new().set("id", "half").add(body(scene, &deformed, &colours));
+    let mut document = document.add(half.add(outlines(scene, &deformed, &frame))).add(colour_bar(
+        &colours,
+        unit,
+        [MARGIN + frame.width + GAP, HEADER],
+        frame.height,
+    ));
     let drawn = [obstacle, supports, pressure, motions, forces, cross];
     drawn.into_iter().flatten().for_each(|group| document.append(group));
     let length = scene.units.as_ref().map(|[_, length]| &**length);
@@ -169,13 +172,12 @@ fn pointed(colour: &str) -> Group {
 }
 
 /// The mirror image of a body of revolution, paler, and the axis between the two.
-fn other_half(scene: &Scene, deformed: &[Point], (frame, colours): (&PageMap, &Colours)) -> Group {
+fn other_half(frame: &PageMap) -> Group {
     let [axis, _] = frame.page([0.0; 2]);
-    let mirrored = Group::new()
+    let mirrored = Use::new()
+        .set("href", "#half")
         .set("transform", format!("translate({} 0) scale(-1 1)", draw::rounded(2.0 * axis)))
-        .set("opacity", 0.4)
-        .add(body(scene, deformed, colours))
-        .add(outlines(scene, deformed, frame));
+        .set("opacity", 0.4);
     let mut line = PathData::default();
     line.line([[axis, HEADER - 6.0], [axis, HEADER + frame.height + 6.0]]);
     let line = stroke(line, DARK, 1.0).set("stroke-dasharray", "14 4 3 4");

@@ -126,6 +126,38 @@ fn a_tube_in_a_sleeve_converges_as_it_should() {
     }
 }
 
+/// The largest displacement of a hollow ball, 1 to 2, under a pressure of 1 inside over Lame's, of n x 2 n cells in the quarter of the meridian
+/// above z = 0, in a rigid shell that it does not reach; the polygon of the mesh is the body.
+pub(super) fn hollow_ball(n: usize, degree: Degree) -> f64 {
+    let (inner, outer, young, poisson) = (1.0_f64, 2.0_f64, 1e3, 0.3);
+    let flat = meridian([inner, outer], 1.0, [n, 2 * n], false);
+    let turned = moved_to(&flat, |[radius, turn]| {
+        let (sine, cosine) = (turn * PI / 2.0).sin_cos();
+        // No r of 1e-17 on the axis.
+        [if turn == 1.0 { 0.0 } else { radius * cosine }, radius * sine]
+    });
+    let problem = Problem::of(turned, elastic(young, poisson))
+        .with("left", Condition::pressure(|_| 1.0))
+        .with("right", Condition::contact(|_| 1.0))
+        .with("bottom", flat_roller());
+    let s = solved(&problem, degree);
+    let bulk = inner.powi(3) / (young * (outer.powi(3) - inner.powi(3)));
+    let exact = (1.0 - 2.0 * poisson) * bulk * inner
+        + (1.0 + poisson) * bulk * outer.powi(3) / (2.0 * inner * inner);
+    let found = s.displacement.iter().map(|[r, z]| r.hypot(*z)).fold(0.0, f64::max);
+    found / exact - 1.0
+}
+
+#[test]
+fn a_hollow_ball_widens_as_lame_says() {
+    for degree in DEGREES {
+        let [coarse, fine] = [8, 16].map(|n| hollow_ball(n, degree).abs());
+        // The largest is found at the axis, where a value has no weight: less than order 2 for P1.
+        assert!(order(coarse, fine) > if degree == Degree::One { 1.4 } else { 0.9 });
+        assert!(fine < [1e-2, 1e-4][degree.number() - 1], "{fine:e}");
+    }
+}
+
 /// The smooth solution with an end of contact at r = c: q = 8 [r - c]+^5, k = 3 [c^2 - r^2]+^3, (lambda + 2 mu) p = -k,
 /// u = (-z q', q + z p).
 pub(super) fn with_an_end_of_contact(n: usize, degree: Degree) -> (f64, [f64; 2]) {

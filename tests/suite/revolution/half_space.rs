@@ -5,13 +5,12 @@
 //! u_r = F / (4 pi mu) Re int w (z r / R^3 - (1 - 2 nu) r / (R (R + zeta))) dt,   zeta = z + i a t,   R = (r^2 + zeta^2)^(1/2)
 //! u_z = F / (4 pi mu) Re int w (z zeta / R^3 + 2 (1 - nu) / R) dt
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use approx::assert_abs_diff_eq;
 use signorini::model::quadrature::gauss;
 use signorini::model::{Condition, Degree, Mesh, Problem};
 use signorini::results::Solution;
-use signorini::results::solution::ContactEdgeValues;
 
 use super::*;
 
@@ -152,11 +151,10 @@ pub(super) fn before_the_cut(values: impl Iterator<Item = [f64; 3]> + Clone) -> 
     values.map(at).collect()
 }
 
-/// a by a^2 = 5/2 of the mean of r^2 with the pressure -lambda^h, for which no end of contact has to be found; of its values at the nodes of
-/// each edge.
-pub(super) fn contact_radius(edges: impl Iterator<Item = Vec<(f64, f64)>>, force: f64) -> f64 {
+/// The integral over the edges of r f(r, pressure), of the pressure's values at the nodes of each edge, (r, value).
+fn over_edges(edges: impl Iterator<Item = Vec<(f64, f64)>>, f: impl Fn(f64, f64) -> f64) -> f64 {
     let rule = gauss(4);
-    let mut moment = 0.0;
+    let mut integral = 0.0;
     for edge in edges {
         let (from, to) = (edge[0].0, edge[edge.len() - 1].0);
         for &(s, weight) in &rule {
@@ -171,10 +169,44 @@ pub(super) fn contact_radius(edges: impl Iterator<Item = Vec<(f64, f64)>>, force
                 _ => panic!("{} nodes on an edge", edge.len()),
             };
             let r = from + (to - from) * s;
-            moment += weight * (to - from).abs() * 2.0 * PI * r * r * r * pressure.max(0.0);
+            integral += weight * (to - from).abs() * r * f(r, pressure.max(0.0));
         }
     }
-    (2.5 * moment / force).sqrt()
+    integral
+}
+
+/// a by a^2 = 5/2 of the mean of r^2 with the pressure -lambda^h, for which no end of contact has to be found.
+pub(super) fn contact_radius(edges: impl Iterator<Item = Vec<(f64, f64)>>, force: f64) -> f64 {
+    (2.5 * TAU * over_edges(edges, |r, pressure| r * r * pressure) / force).sqrt()
+}
+
+/// The pressure before the cut at the nodes of each edge, with their radii.
+fn pressures(s: &Solution) -> impl Iterator<Item = Vec<(f64, f64)>> {
+    s.contact.iter().map(|edge| {
+        let values = edge.points.iter().map(|p| [p.lambda, p.u_n - p.gap, p.sigma_n]);
+        let radii = edge.points.iter().map(|p| s.nodes[p.node][0]);
+        radii.zip(before_the_cut(values)).collect()
+    })
+}
+
+/// The L^2 norm with the weight r of [P]+ / gamma less Hertz's pressure p0 (1 - r^2)^(1/2), over that of Hertz's.
+pub(super) fn off_hertz(n: usize, degree: Degree) -> f64 {
+    let peak = 2.0 * REDUCED / (PI * 20.0);
+    let s = hertz(n, degree);
+    let square = over_edges(pressures(&s), |r, pressure| {
+        (pressure - peak * (1.0 - r * r).max(0.0).sqrt()).powi(2)
+    });
+    // The integral of r (1 - r^2) is 1/4.
+    square.sqrt() / (peak / 2.0)
+}
+
+#[test]
+fn the_pressure_converges_in_the_mean_with_order_one() {
+    for (sizes, degree) in [([8, 16], Degree::One), ([4, 8], Degree::Two)] {
+        let [coarse, fine] = sizes.map(|n| off_hertz(n, degree));
+        // The root at the end of contact leaves an order next to 1 to both degrees.
+        assert!((0.7..1.2).contains(&(coarse / fine).log2()), "{coarse:e} {fine:e}");
+    }
 }
 
 /// The ball between two plates of cases/sphere.toml, by its force: peak pressure, contact radius and approach as Hertz and Tatara say.
@@ -193,12 +225,7 @@ fn a_ball_between_plates_has_hertzs_pressure_and_tataras_approach() {
         let a = (3.0 * force * RADIUS / (4.0 * reduced)).cbrt();
         let peak = 3.0 * force / (2.0 * PI * a * a);
         assert_abs_diff_eq!(s.boundaries[0].peak_pressure / peak, 1.0, epsilon = of_peak);
-        let of_node = |edge: &ContactEdgeValues| {
-            let values = edge.points.iter().map(|p| [p.lambda, p.u_n - p.gap, p.sigma_n]);
-            let radii = edge.points.iter().map(|p| s.nodes[p.node][0]);
-            radii.zip(before_the_cut(values)).collect()
-        };
-        let found = contact_radius(s.contact.iter().map(of_node), force);
+        let found = contact_radius(pressures(&s), force);
         assert_abs_diff_eq!(found / a, 1.0, epsilon = of_radius);
         let far = a * a + 4.0 * RADIUS * RADIUS;
         let f = 2.0 * 1.3 * RADIUS * RADIUS / far.powf(1.5) + 0.91 / far.sqrt();

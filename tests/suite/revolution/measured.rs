@@ -2,8 +2,8 @@
 
 use signorini::model::Degree;
 
-use super::answers::{sleeve, with_an_end_of_contact};
-use super::half_space::{beside_hertz, flat_punch};
+use super::answers::{hollow_ball, sleeve, with_an_end_of_contact};
+use super::half_space::{beside_hertz, flat_punch, off_hertz};
 use super::pairs::{shrink_fit, two_spheres};
 use super::*;
 
@@ -46,6 +46,10 @@ fn the_table_of_bodies_of_revolution() {
         with_an_end_of_contact,
     );
     orders("sleeve, n = 8, 16, 32", [&[8, 16, 32], &[8, 16, 32]], sleeve);
+    row(
+        "hollow ball, n = 8, 16, 32: largest displacement / Lame's - 1",
+        each([&[8, 16, 32]; 2], |n, degree| format!("{:.1e}", hollow_ball(n, degree))),
+    );
     let fit = each([&[1, 2, 4], &[1, 2, 4]], |m, degree| {
         off(shrink_fit(degree, m, [20, 10][degree.number() - 1] * m)[0])
     });
@@ -62,6 +66,10 @@ fn the_table_of_bodies_of_revolution() {
     row(
         "the same: -lambda^h at r = 0 / p0",
         each(sizes, |n, degree| format!("{:.4}", beside_hertz(n, degree)[2])),
+    );
+    row(
+        "the same: [P]+ / gamma less Hertz's pressure in L2 (weight r), over it",
+        each(sizes, |n, degree| format!("{:.3}", off_hertz(n, degree))),
     );
     row(
         "flat punch, the same a / h: F / (2 a E* depth) - 1",
