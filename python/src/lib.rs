@@ -15,7 +15,7 @@ use pyo3::types::{PyBytes, PyDict};
 use signorini::contact::Pair;
 use signorini::io::Case;
 use signorini::io::outputs::{self, Extra};
-use signorini::io::picture::draw;
+use signorini::io::picture::{Scene, draw};
 use signorini::io::raw_mesh::{Kind, Made, Node, RawMesh};
 use signorini::io::result::{Results, result_json};
 use signorini::io::summary;
@@ -302,7 +302,9 @@ impl Solved {
 
     /// The text of picture.svg.
     fn picture(&self, py: Python<'_>) -> PyResult<String> {
-        py.detach(|| draw(&self.case, &self.solved.solution, &self.results)).map_err(no_results)
+        let scene = || Scene::of(&self.case, &self.solved.solution, &self.results);
+        let drawn = py.detach(|| draw(&[scene()])).map_err(no_results)?;
+        Ok(drawn.concat())
     }
 
     /// Writes the files that the command writes, and returns their paths.
@@ -310,7 +312,7 @@ impl Solved {
         let extra = Extra { report, certificate: self.certificate };
         let written =
             py.detach(|| outputs::write(&folder, &self.case, &self.solved, self.read, extra));
-        Ok(written.map_err(|error| PyOSError::new_err(error.to_string()))?.0)
+        Ok(written.map_err(|error| PyOSError::new_err(error.to_string()))?.files)
     }
 }
 

@@ -149,7 +149,7 @@ pub enum Task {
         /// material.young=1000:3000:5, also as an entry of a list; may be repeated
         #[arg(long = "set", value_name = "KEY=VALUE,VALUE,...", required = true)]
         axes: Vec<ParameterAxis>,
-        /// Also write the files of each run, into folders 1, 2, ..., and sweep.pvd for ParaView
+        /// Also write the files of each run, into folders 1, 2, ..., their pictures on one scale, and sweep.pvd for ParaView
         #[arg(long)]
         files: bool,
         /// Solve so many runs at the same time, each with memory of its own

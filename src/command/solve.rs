@@ -116,7 +116,8 @@ fn solve(
     }
     phases.enter("writing the files");
     let remark = remark_of_another_case(folder, &case.file);
-    let (files, results) = outputs::write(folder, &case, &solved, read, extra)?;
+    let outputs::Written { files, results, .. } =
+        outputs::write(folder, &case, &solved, read, extra)?;
     drop(phases);
     if let (Some(remark), false) = (remark, quiet) {
         complain(&remark);

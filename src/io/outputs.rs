@@ -9,7 +9,7 @@ use super::certificate;
 use super::fields::stage_fields;
 use super::files::{NotFinite, Output};
 use super::input::Failure;
-use super::picture::draw;
+use super::picture::{Scene, draw};
 use super::remarks::{Words, remarks};
 use super::report;
 use super::result::{
@@ -57,7 +57,18 @@ pub struct Extra {
     pub report: bool,
 }
 
-/// Writes the files of a case into `folder`; returns their paths and the content of result.json. Where there is no
+/// The files of a case as they were written.
+#[derive(Debug)]
+pub struct Written {
+    /// The paths of the files.
+    pub files: Vec<PathBuf>,
+    /// The content of result.json.
+    pub results: Results,
+    /// The content of the picture.
+    pub scene: Scene,
+}
+
+/// Writes the files of a case into `folder`. Where there is no
 /// certificate that was asked for, or no picture, all else is written.
 pub fn write(
     folder: &Path,
@@ -65,7 +76,7 @@ pub fn write(
     solved: &Solved,
     read: Duration,
     extra: Extra,
-) -> Result<(Vec<PathBuf>, Results), Failure> {
+) -> Result<Written, Failure> {
     let start = Instant::now();
     let solution = &solved.solution;
     memory::check(bytes_to_write(solution))
@@ -73,10 +84,12 @@ pub fn write(
     let mut output = Output::new(folder)?.replacing(&FILES);
     let continuous = solved.certified.as_ref().and_then(|c| c.as_ref().ok());
     let mut results = results(case, solved, read, extra)?;
-    let picture = draw(case, solution, &results).unwrap_or_else(|error| {
+    let scene = Scene::of(case, solution, &results);
+    let picture = draw(std::slice::from_ref(&scene)).unwrap_or_else(|error| {
         results.missing.push(format!("picture: {error}"));
-        String::new()
+        Vec::new()
     });
+    let picture = picture.concat();
     let indicators = continuous.map(|c| c.indicators.as_slice());
     stage_fields(&mut output, solution, &case.problem, indicators)?;
     if extra.report {
@@ -91,7 +104,49 @@ pub fn write(
     }
     results.seconds.write = start.elapsed().as_secs_f64();
     output.stage_made("result.json", result_json(&results))?;
-    Ok((output.publish()?, results))
+    Ok(Written { files: output.publish()?, results, scene })
+}
+
+/// The pictures of the runs of a series, which are drawn again on one scale when all are solved.
+#[derive(Debug, Default)]
+pub struct Series {
+    scenes: Vec<(PathBuf, Scene)>,
+    triangles: usize,
+}
+
+/// The most triangles of a series that are kept to be drawn again, about 100 bytes each; the pictures of a longer series have each their own
+/// scale.
+const MOST_KEPT: usize = 5_000_000;
+
+impl Series {
+    /// Keeps the scene of the picture in `folder`.
+    pub fn add(&mut self, folder: PathBuf, scene: Scene) {
+        self.triangles += scene.triangles();
+        if self.triangles <= MOST_KEPT {
+            self.scenes.push((folder, scene));
+        } else {
+            self.scenes.clear();
+        }
+    }
+
+    /// Draws all pictures again on one scale, where there are several; one that cannot be drawn by itself is left out.
+    ///
+    /// # Errors
+    /// A picture that can't be written.
+    pub fn draw(self) -> Result<(), Failure> {
+        if self.scenes.len() < 2 {
+            return Ok(());
+        }
+        let drawn = self.scenes.into_iter().filter(|(folder, _)| folder.join(PICTURE).exists());
+        let (folders, scenes): (Vec<PathBuf>, Vec<Scene>) = drawn.unzip();
+        // Each by itself could be drawn: what the largest one asks for keeps the others within the range of doubles, too.
+        for (folder, picture) in folders.iter().zip(draw(&scenes).unwrap_or_default()) {
+            let mut output = Output::new(folder)?;
+            output.stage(PICTURE, picture.as_bytes())?;
+            output.publish()?;
+        }
+        Ok(())
+    }
 }
 
 /// Writes what is certified of a displacement from elsewhere: certified.vtu with the `field`, its admissible part and the

@@ -17,50 +17,51 @@ mod draw;
 mod loads;
 mod panel;
 pub mod plot;
+mod scale;
 mod scene;
 
 use svg::Node;
 use svg::node::element::{Circle, Group, Use};
 
-use super::case::Case;
 use super::files::{NotFinite, check_finite};
-use super::result::Results;
-use crate::results::Solution;
-use body::{BAR, Colours, body, colour_bar, definitions, outlines};
+use body::{BAR, body, colour_bar, definitions, outlines};
 use contact::{ContactLine, arrow, hatched, obstacle, pressure, tags};
 use draw::{
     DARK, GREY, LEGEND_LINE, PageMap, PathData, Point, SAMPLE, clean, fitting, legend, page,
-    red_area, stroke, text, wrapped,
+    red_area, short, stroke, text, wrapped,
 };
 use loads::{FORCE, MOTION};
-use scene::Scene;
+use scale::Scale;
+pub use scene::Scene;
 
 /// The page around the drawing.
 const MARGIN: f64 = 36.0;
 const HEADER: f64 = 88.0;
 const GAP: f64 = 20.0;
 
-/// The picture of a solved case.
-pub fn draw(case: &Case, solution: &Solution, results: &Results) -> Result<String, NotFinite> {
-    picture(&Scene::of(case, solution, results))
+/// The pictures of solved cases, on one scale.
+///
+/// # Errors
+/// What is drawn lies beyond the range of doubles.
+pub fn draw(scenes: &[Scene]) -> Result<Vec<String>, NotFinite> {
+    let scale = Scale::of(scenes)?;
+    scenes.iter().map(|scene| picture(scene, &scale)).collect()
 }
 
-fn picture(scene: &Scene) -> Result<String, NotFinite> {
-    let (factor, magnification) = scene.magnification();
-    let deformed = scene.deformed(factor);
-    check_finite("deformed points", deformed.iter().map(Point::as_slice))?;
-    let lines = ContactLine::all(scene, factor);
-    let drawn = scene.points.iter().chain(&deformed).copied();
-    let around = lines.iter().flat_map(|line| line.tip.iter().chain(line.wall.iter().flatten()));
-    let halves: &[f64] = if scene.of_revolution { &[1.0, -1.0] } else { &[1.0] };
-    let drawn = drawn.flat_map(|[x, y]| halves.iter().map(move |side| [side * x, y]));
-    let frame = PageMap::around(drawn.chain(around.copied()), [MARGIN, HEADER]);
+fn picture(scene: &Scene, scale: &Scale) -> Result<String, NotFinite> {
+    let deformed = scene.deformed(scale.factor);
+    let lines = ContactLine::all(scene, scale);
+    let frame = PageMap::around(scale.frame, [MARGIN, HEADER]);
     check_finite("page", [frame.page([0.0; 2]).as_slice(), &[frame.width, frame.height]])?;
     let deformed: Vec<Point> = deformed.into_iter().map(|p| frame.page(p)).collect();
     let lines: Vec<ContactLine> = lines.into_iter().map(|line| line.on(&frame)).collect();
-    let colours = Colours::of(scene);
+    let colours = &scale.colours;
     let (pressure, obstacle) = (pressure(&lines), obstacle(&lines));
 
+    let magnified = match scale.factor {
+        1.0 => "deformation at true scale".to_owned(),
+        factor => format!("deformation and gap × {}", short(factor)),
+    };
     let width = frame.width + GAP + BAR;
     let mut entries: Vec<(Option<Group>, &str)> =
         vec![(Some(sample(GREY, 1.2).set("stroke-dasharray", "6 4")), "undeformed")];
@@ -97,7 +98,7 @@ fn picture(scene: &Scene) -> Result<String, NotFinite> {
         Some(_) => (Some(pressed()), "contact pressure"),
         None => (None, "no contact pressure"),
     });
-    entries.push((None, &magnification));
+    entries.push((None, &magnified));
     let legend_at = [MARGIN, HEADER + frame.height + 30.0];
     let (legend, bottom) = legend(entries, legend_at, MARGIN + width);
     let panels_at = bottom + LEGEND_LINE;
@@ -110,9 +111,9 @@ fn picture(scene: &Scene) -> Result<String, NotFinite> {
     if scene.of_revolution {
         document.append(other_half(&frame));
     }
-    let half = Group::new().set("id", "half").add(body(scene, &deformed, &colours));
+    let half = Group::new().set("id", "half").add(body(scene, &deformed, colours));
     let mut document = document.add(half.add(outlines(scene, &deformed, &frame))).add(colour_bar(
-        &colours,
+        colours,
         unit,
         [MARGIN + frame.width + GAP, HEADER],
         frame.height,
@@ -126,7 +127,7 @@ fn picture(scene: &Scene) -> Result<String, NotFinite> {
         document.append(tags(&lines, scene.contact.len()));
     }
     document.append(legend);
-    document.append(panel::panels(scene, [MARGIN, panels_at], width));
+    document.append(panel::panels(scene, scale, [MARGIN, panels_at], width));
     check_numbers(&document)?;
     Ok(format!("{document}\n"))
 }
@@ -202,6 +203,7 @@ fn pressed() -> Group {
 
 #[cfg(test)]
 mod tests {
+    use super::body::Colours;
     use super::draw::{RED, distance, short, viridis};
     use super::scene::{ContactSample, ContactSurface};
     use super::*;
@@ -328,7 +330,11 @@ mod tests {
     }
 
     fn drawn(scene: &Scene) -> String {
-        picture(scene).unwrap()
+        draw(std::slice::from_ref(scene)).unwrap().concat()
+    }
+
+    fn lines(scene: &Scene) -> Vec<ContactLine> {
+        ContactLine::all(scene, &Scale::of(std::slice::from_ref(scene)).unwrap())
     }
 
     #[test]
@@ -420,11 +426,12 @@ mod tests {
         let mut scene = block(4);
         scene.contact.push(scene.contact[0].clone());
         scene.contact[1].parts[0].iter_mut().for_each(|s| s.pressure *= 1e-3);
-        let lines = ContactLine::all(&scene, 1.0);
-        let heights = [0, 1].map(|i| distance(lines[i].base[0], lines[i].tip[0]));
+        scene.contact[1].name = "wall".to_owned();
+        let drawn = lines(&scene);
+        let heights = [0, 1].map(|i| distance(drawn[i].base[0], drawn[i].tip[0]));
         assert!((heights[0] - heights[1]).abs() < 1e-12 && heights[0] > 0.1, "{heights:?}");
         let hollow = hole(1.0, 0.0, 0.05, |_| 1.0);
-        for tip in &ContactLine::all(&hollow, 1.0)[0].tip {
+        for tip in &lines(&hollow)[0].tip {
             assert!(distance(*tip, [0.5, 0.5]) > 0.39 * 0.05, "{tip:?}");
         }
     }
@@ -498,7 +505,8 @@ mod tests {
             (0.0, "deformation at true scale"),
             (1e-13, "deformation at true scale"),
         ] {
-            assert_eq!(stretched(factor).magnification().1, expected, "{factor}");
+            let words = words(&drawn(&stretched(factor)));
+            assert!(words.iter().any(|word| word == expected), "{factor}: {words:?}");
         }
     }
 
@@ -507,7 +515,8 @@ mod tests {
         let mut scene = block(4);
         samples(&mut scene).for_each(|s| (s.displacement, s.gap) = ([0.01, -0.03], 0.03));
         for factor in [0.5, 1.0, 5.0] {
-            let line = &ContactLine::all(&scene, factor)[0];
+            scene.stretch = Some(factor);
+            let line = &lines(&scene)[0];
             for (base, wall) in line.base.iter().zip(&line.wall) {
                 assert_eq!(Some(base[1]), wall.map(|wall| wall[1]));
             }
@@ -534,6 +543,24 @@ mod tests {
     }
 
     #[test]
+    fn pictures_of_a_series_have_one_scale_and_each_by_itself_its_own() {
+        let (large, mut small) = (block(4), block(4));
+        small.displacement.iter_mut().for_each(|u| *u = u.map(|c| 1e-3 * c));
+        small.von_mises.iter_mut().for_each(|value| *value *= 0.1);
+        samples(&mut small).for_each(|s| s.pressure *= 0.1);
+        let [both, by_itself] = [[&large, &small], [&large, &large]]
+            .map(|of| Scale::of(&of.map(Scene::clone)).unwrap());
+        assert_eq!(both.factor, by_itself.factor);
+        assert_eq!(both.colours.top, by_itself.colours.top);
+        assert_eq!(both.colours.min, 0.1 * by_itself.colours.min);
+        assert_eq!(both.pressures(&small.contact[0]), by_itself.pressures(&large.contact[0]));
+        let series = draw(&[large, small.clone()]).unwrap();
+        let said = |svg: &str| words(svg).into_iter().find(|word| word.starts_with("deformation"));
+        assert_eq!(said(&series[0]), said(&series[1]));
+        assert_ne!(said(&series[1]), said(&drawn(&small)), "the control");
+    }
+
+    #[test]
     fn no_number_that_is_none_gets_into_a_picture() {
         let line = |to: f64| {
             let mut path = PathData::default();
@@ -552,20 +579,21 @@ mod tests {
         let not_finite = "is NaN or infinite; expected a finite number";
         let mut scene = block(1);
         scene.displacement[2][1] = f64::NAN;
-        let error = picture(&scene).unwrap_err().to_string();
+        let error = draw(&[scene]).unwrap_err().to_string();
         assert_eq!(error, format!("deformed points[2] {not_finite}"));
         let mut scene = block(1);
         samples(&mut scene).for_each(|s| s.pressure = f64::INFINITY);
-        let error = picture(&scene).unwrap_err().to_string();
+        let error = draw(&[scene]).unwrap_err().to_string();
         assert!(error.ends_with(not_finite), "{error}");
         let mut far = stretched(1e3);
         for factor in [f64::MAX, 1e307, 1e306, 1e305, 1e304] {
             far.stretch = Some(factor);
-            let error = picture(&far).unwrap_or_else(|error| error.to_string());
+            let error = draw(&[far.clone()]).map(|all| all.concat());
+            let error = error.unwrap_or_else(|error| error.to_string());
             assert!(error.ends_with(not_finite) || !words(&error).is_empty(), "{factor}");
         }
         far.stretch = Some(1e3);
-        assert!(picture(&far).is_ok(), "control");
+        assert!(draw(&[far]).is_ok(), "control");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::case::Case;
 use super::input::Failure;
-use super::outputs::{self, Extra};
+use super::outputs::{self, Extra, Series};
 use super::run;
 use super::sweep::{Names, Sweep, clear, of_run};
 use crate::certificates::adapt::Stage;
@@ -35,6 +35,7 @@ pub fn run(
     let mut table =
         Sweep { title, keys, values, results: Vec::new(), with_files: true, names: NAMES };
     let mut last: Option<Vec<Vec<f64>>> = None;
+    let mut series = Series::default();
     for (i, mut case) in steps.into_iter().enumerate() {
         if let Some(slip) = last.take() {
             case.problem.slip = slip;
@@ -49,9 +50,12 @@ pub fn run(
         if extra.certificate {
             solved.certify(&case);
         }
-        let written = outputs::write(&of_run(folder, i), &case, &solved, Duration::ZERO, extra)?;
-        table.results.push(Ok(written.1));
+        let to = of_run(folder, i);
+        let written = outputs::write(&to, &case, &solved, Duration::ZERO, extra)?;
+        series.add(to, written.scene);
+        table.results.push(Ok(written.results));
         last = Some(solved.solution.slip());
     }
+    series.draw()?;
     Ok(table)
 }

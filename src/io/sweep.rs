@@ -15,7 +15,8 @@ use super::csv;
 use super::files::Output;
 use super::input::{Failure, reason};
 use super::numbers::short;
-use super::outputs::{self, Extra};
+use super::outputs::{self, Extra, Series};
+use super::picture::Scene;
 use super::picture::plot::{COLOURS, Figure, Panel, Style, figure};
 use super::result::Results;
 use super::run;
@@ -202,6 +203,7 @@ pub fn run(
         let folder = files.then(|| of_run(folder, i));
         solve(case, folder.as_deref(), last)
     };
+    let mut series = Series::default();
     thread::scope(|scope| {
         let (sender, receiver) = mpsc::channel();
         for first in (0..runs).step_by(in_a_row) {
@@ -229,7 +231,11 @@ pub fn run(
             early.insert(i, result);
             while let Some(next) = early.remove(&sweep.results.len()) {
                 let so_far = next.and_then(|next| {
-                    sweep.results.push(next);
+                    let (results, scene) = next;
+                    if let Some(scene) = scene {
+                        series.add(of_run(folder, sweep.results.len()), scene);
+                    }
+                    sweep.results.push(results);
                     done(&sweep)
                 });
                 if so_far.is_err() {
@@ -238,6 +244,7 @@ pub fn run(
                 so_far?;
             }
         }
+        series.draw()?;
         Ok(sweep)
     })
 }
@@ -268,25 +275,26 @@ fn combinations(axes: &[ParameterAxis]) -> Vec<Vec<String>> {
     })
 }
 
+/// The results of a run or why there are none, and the content of its picture if it has files.
+type Ended = (Result<Results, Failure>, Option<Scene>);
+
 /// Solves from the `last` solution, and leaves its own there.
-fn solve(
-    case: Case,
-    folder: Option<&Path>,
-    last: &mut Option<Solution>,
-) -> Result<Result<Results, Failure>, Failure> {
+fn solve(case: Case, folder: Option<&Path>, last: &mut Option<Solution>) -> Result<Ended, Failure> {
     let (case, mut solved) = match run::solve(case, last.as_ref(), &|_| {}) {
         Ok(solved) => solved,
-        Err(error) => return Ok(Err(error)),
+        Err(error) => return Ok((Err(error), None)),
     };
-    let results = match folder {
+    let (results, scene) = match folder {
         Some(folder) => {
             solved.certify(&case);
-            outputs::write(folder, &case, &solved, Duration::ZERO, Extra::default())?.1
+            let extra = Extra::default();
+            let written = outputs::write(folder, &case, &solved, Duration::ZERO, extra)?;
+            (written.results, Some(written.scene))
         }
-        None => outputs::results(&case, &solved, Duration::ZERO, Extra::default())?,
+        None => (outputs::results(&case, &solved, Duration::ZERO, Extra::default())?, None),
     };
     *last = Some(solved.solution);
-    Ok(Ok(results))
+    Ok((Ok(results), scene))
 }
 
 /// The numbers in the value of a key, in their order.

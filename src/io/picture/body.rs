@@ -99,6 +99,7 @@ pub(super) fn outlines(scene: &Scene, deformed: &[Point], frame: &PageMap) -> Gr
 pub(super) const LEVELS: usize = 128;
 
 /// The range of the von Mises stress, and where the colours end.
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Colours {
     pub(super) min: f64,
     pub(super) top: f64,
@@ -134,6 +135,15 @@ impl Colours {
             Colours { min, top: quantile, max }
         } else {
             Colours { min, top: max, max }
+        }
+    }
+
+    /// The colours of two pictures together.
+    pub(super) fn with(self, other: Colours) -> Colours {
+        Colours {
+            min: self.min.min(other.min),
+            top: self.top.max(other.top),
+            max: self.max.max(other.max),
         }
     }
 

@@ -8,6 +8,7 @@ use super::draw::{
     DARK, GREY, PageMap, PathData, Point, RED, anchored, between, direction, distance, moved,
     places, red_area, stroke, thinned,
 };
+use super::scale::Scale;
 use super::scene::{ContactSample, Scene};
 
 /// A connected part of a contact boundary as it is drawn: for each sample the deformed point, the end of its pressure, and
@@ -36,7 +37,8 @@ pub(super) const FURTHEST_WHERE_BENT: f64 = 0.06;
 
 impl ContactLine {
     /// All parts of the contact boundaries, in the plane.
-    pub(super) fn all(scene: &Scene, factor: f64) -> Vec<ContactLine> {
+    pub(super) fn all(scene: &Scene, scale: &Scale) -> Vec<ContactLine> {
+        let factor = scale.factor;
         let size = scene.size();
         let base = |s: &ContactSample| moved(s.position, s.displacement, factor);
         let mut lines = Vec::new();
@@ -59,7 +61,8 @@ impl ContactLine {
                 }
             }
             // The height of a unit of pressure.
-            let height = boundary.peak().map_or(0.0, |peak| highest / peak.pressure);
+            let [_, peak] = scale.pressures(boundary);
+            let height = if peak > 0.0 { highest / peak } else { 0.0 };
             for (samples, normals) in parts {
                 let turns = turns(samples);
                 let bent = factor != 1.0 && turns;

@@ -238,9 +238,8 @@ pub(super) struct PageMap {
 const AROUND: f64 = 34.0;
 
 impl PageMap {
-    /// Makes the map of a drawing around some points of the plane, its upper left corner on the page at `corner`.
-    pub(super) fn around(points: impl IntoIterator<Item = Point>, corner: Point) -> PageMap {
-        let Bounds { low, high } = Bounds::around(points);
+    /// Makes the map of a drawing in a box of the plane, its upper left corner on the page at `corner`.
+    pub(super) fn around(Bounds { low, high }: Bounds, corner: Point) -> PageMap {
         let extent = [0, 1].map(|c| high[c] - low[c]);
         let room = [800.0, 520.0].map(|most| most - 2.0 * AROUND);
         let scale = (room[0] / extent[0]).min(room[1] / extent[1]);

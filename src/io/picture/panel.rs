@@ -12,6 +12,7 @@ use super::draw::{
     Axes, GREY, LIGHT, PageAxis, PathData, Point, RED, anchored, clean, dot, fitting, range,
     rectangle, red_area, short, stroke, text, thinned, width_of,
 };
+use super::scale::Scale;
 use super::scene::{ContactSample, ContactSurface, Scene};
 use crate::certificates::quantities::{Limit, Zone};
 use crate::io::numbers::{self, ticks};
@@ -40,14 +41,15 @@ pub(super) fn height(scene: &Scene) -> f64 {
     HEIGHT * scene.contact.len().div_ceil(COLUMNS) as f64
 }
 
-pub(super) fn panels(scene: &Scene, corner: Point, width: f64) -> Group {
+pub(super) fn panels(scene: &Scene, scale: &Scale, corner: Point, width: f64) -> Group {
     let columns = scene.contact.len().clamp(1, COLUMNS);
     let step = (width + BETWEEN) / columns as f64;
     let mut group = Group::new();
     for (i, surface) in scene.contact.iter().enumerate() {
         let [column, row] = [i % columns, i / columns].map(|place| place as f64);
         let corner = [corner[0] + column * step, corner[1] + row * HEIGHT];
-        group.append(panel(surface, &scene.units, corner, step - BETWEEN));
+        let [top, _] = scale.pressures(surface);
+        group.append(panel((surface, top), &scene.units, corner, step - BETWEEN));
         if scene.contact.len() > 1 {
             group.append(tag(i, [corner[0] + LEFT - 2.0 * RADIUS, corner[1] + 12.0]));
         }
@@ -68,15 +70,15 @@ fn shown(surface: &ContactSurface) -> [f64; 2] {
     }
 }
 
+/// The panel of a boundary, whose plot ends at the pressure `top`.
 fn panel(
-    surface: &ContactSurface,
+    (surface, top): (&ContactSurface, f64),
     units: &Option<[String; 2]>,
     [x, y]: Point,
     width: f64,
 ) -> Group {
     let peak = surface.peak();
     let (left, bottom, width) = (x + LEFT, y + TOP + PLOT, width - LEFT - RIGHT);
-    let top = surface.top();
     let axes = Axes {
         x: PageAxis { range: shown(surface), page: [left, left + width] },
         y: PageAxis { range: [0.0, top * (PLOT / (PLOT - ABOVE))], page: [bottom, bottom - PLOT] },

@@ -14,8 +14,9 @@ use crate::quote;
 use crate::results::solution::{ContactEdgeValues, ContactValues, PieceNodeValues, PieceValues};
 use crate::results::{ContactBoundary, Solution, Verdict};
 
+/// The content of the picture of a solved case.
 #[derive(Clone, Debug)]
-pub(super) struct Scene {
+pub struct Scene {
     /// The headline, and a line below it.
     pub(super) title: String,
     pub(super) subtitle: String,
@@ -125,7 +126,7 @@ impl ContactSurface {
 
 impl Scene {
     /// The content of the picture of a solved case. A quadratic triangle is drawn as four, its edges as two.
-    pub(super) fn of(case: &Case, s: &Solution, results: &Results) -> Scene {
+    pub fn of(case: &Case, s: &Solution, results: &Results) -> Scene {
         let mesh = &case.problem.mesh;
         let linear = s.degree == Degree::One;
         let parts = |edge: BoundaryEdge| {
@@ -204,25 +205,34 @@ impl Scene {
         self.points.iter().zip(&self.displacement).map(|(&x, &u)| moved(x, u, factor)).collect()
     }
 
-    /// The amount by which displacement and gap are magnified, and the words for it. True scale if the largest displacement is
+    /// The number of triangles that are drawn.
+    pub fn triangles(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Returns whether the body moves by more than rounding.
+    pub(super) fn moves(&self) -> bool {
+        self.largest_move() > 1e-12 * self.size()
+    }
+
+    fn largest_move(&self) -> f64 {
+        self.displacement.iter().map(|&u| distance(u, [0.0; 2])).fold(0.0, f64::max)
+    }
+
+    /// The amount by which displacement and gap are magnified. True scale if the largest displacement is
     /// between 1% and 30% of the body, so that one sees it and the body keeps its shape, or if it is mere rounding; else the
     /// largest round factor that keeps it within 10%, and what is left between bodies that touch within [`HARDLY_SEEN`].
-    pub(super) fn magnification(&self) -> (f64, String) {
-        let words = |factor: &str| format!("deformation and gap × {factor}");
-        let largest = self.displacement.iter().map(|&u| distance(u, [0.0; 2])).fold(0.0, f64::max);
-        let part = largest / self.size();
-        match self.stretch {
-            Some(factor) if factor != 1.0 => (factor, words(&short(factor))),
-            None if !(0.01..=0.3).contains(&part) && part > 1e-12 => {
-                let most = 1.0 + HARDLY_SEEN * self.size() / self.apart;
-                let factor = round_below((0.1 / part).min(most));
-                if factor == 1.0 || self.bends(factor) {
-                    return (1.0, "deformation at true scale".to_owned());
-                }
-                (factor, words(&short(factor)))
-            }
-            _ => (1.0, "deformation at true scale".to_owned()),
+    pub(super) fn magnification(&self) -> f64 {
+        if let Some(factor) = self.stretch {
+            return factor;
         }
+        let part = self.largest_move() / self.size();
+        if (0.01..=0.3).contains(&part) || !self.moves() {
+            return 1.0;
+        }
+        let most = 1.0 + HARDLY_SEEN * self.size() / self.apart;
+        let factor = round_below((0.1 / part).min(most));
+        if self.bends(factor) { 1.0 } else { factor }
     }
 }
 
