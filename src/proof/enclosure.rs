@@ -1,5 +1,5 @@
 //! How far the computed displacement u~ is from the exact solution u^h of (8), whatever Newton's method, the factorisation and
-//! rounding did: an enclosure of u^h and of what is reported of it. docs/theory.md, 7.5, has the proofs.
+//! rounding did: an enclosure of u^h and of what is reported of it. docs/a-posteriori.md, 7.5, has the proofs.
 //!
 //! The problem (8) that is meant has these data: the vertices, the Lame coefficients as they act in the plane, gamma on each
 //! contact edge, the gap at the nodes, the prescribed components, the directions of contact where they are not the normal, the

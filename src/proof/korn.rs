@@ -1,5 +1,5 @@
 //! Korn's inequality on V^h with a number for its constant: a bound of |v| at each node by |v|_a, for all v that vanish at the
-//! prescribed components. docs/theory.md, 7.6, has the proof; the bound is crude (it adds up magnitudes along a tree of
+//! prescribed components. docs/a-posteriori.md, 7.6, has the proof; the bound is crude (it adds up magnitudes along a tree of
 //! triangles), and it is used where that does no harm: times residuals that are far below rounding.
 //!
 //! On a triangle v is a rigid motion r_T up to c_T |v|_{a,T}. Motions of neighbours differ on their common edge by what both

@@ -1,6 +1,6 @@
 //! Strong contact: the pieces of Gamma_C that are surely pressed around the computed displacement, and the matrix A_S of (8)
 //! there. Where contact alone stops a rigid motion of the body, A is singular; A_S = A + the springs of those pieces S is not,
-//! and on a ball around the displacement in which they stay pressed (8) is strongly monotone in its norm. docs/theory.md, 7.5,
+//! and on a ball around the displacement in which they stay pressed (8) is strongly monotone in its norm. docs/a-posteriori.md, 7.5,
 //! has the proofs.
 //!
 //! |v|_S^2 = A(v, v) + int over S of P0(v)^2 / gamma

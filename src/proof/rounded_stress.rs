@@ -1,4 +1,4 @@
-//! Forces of a displacement from stresses in doubles, off by no more than a proved norm: docs/theory.md, 7.5. They take a
+//! Forces of a displacement from stresses in doubles, off by no more than a proved norm: docs/a-posteriori.md, 7.5. They take a
 //! fraction of the time of [`add_internal_forces`](crate::contact::residual::add_internal_forces) in balls.
 
 use nalgebra::{Matrix2, Vector2, Vector3};
@@ -14,7 +14,7 @@ use crate::model::element::with_element;
 use crate::model::material::{Materials, largest_entry, least_eigenvalue};
 
 /// Adds int s:eps(v) for every basis function v, where s is the stress of `u` that doubles give. Returns a b with
-/// |int (s - sigma(u)):eps(v)| <= b |v|_a for all v: docs/theory.md, 7.5. Infinite or NaN where there is none.
+/// |int (s - sigma(u)):eps(v)| <= b |v|_a for all v: docs/a-posteriori.md, 7.5. Infinite or NaN where there is none.
 pub fn add_forces(
     d: &Discretization,
     u: &[[PreciseBall; 2]],

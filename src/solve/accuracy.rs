@@ -1,6 +1,6 @@
 //! From a first answer to one that is proved: passes of a route, each from the true residual of the one before, until a pass has
 //! nothing left to correct; then the enclosure of the exact solution says how far that is from it. Where it is not near enough,
-//! residuals are evaluated in double-doubles, and the passes go on. docs/theory.md, 5.7.
+//! residuals are evaluated in double-doubles, and the passes go on. docs/theory.md, 5.6.
 //!
 //! The correction of a pass is the error of what it corrects, but for the error of the correction, which is smaller by the
 //! same factor again: it says when there is nothing left to correct in the numbers at hand, and nothing more. The verdict is the

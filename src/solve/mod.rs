@@ -8,7 +8,7 @@
 //!    (8) is as narrow as asked for ([`crate::proof::enclosure`]); the other route where the first proves too little.
 //! 5. Report ([`crate::results`]): stresses, contact pressure, resultants, and the verdict, which is the proof.
 //!
-//! docs/theory.md: 4 has Newton's method, 5 the routes and the refinement, 7.5 the enclosure.
+//! docs/theory.md: 4 has Newton's method, 5 the routes and the refinement; docs/a-posteriori.md, 7.5, has the enclosure.
 
 #[doc(hidden)]
 pub mod accuracy;
