@@ -3,8 +3,7 @@
 //! or holds control characters; and what is accepted keeps its promises (see each target).
 //!
 //! A long run, on other inputs each time: `FUZZ_SECONDS=3600 cargo test --release --test suite fuzz::`, so many seconds for
-//! each of the four targets. An input that fails is kept in the folder that the message names. What long runs have found is
-//! in docs/robustness.md.
+//! each of the four targets. An input that fails is kept in the folder that the message names.
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
