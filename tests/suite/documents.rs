@@ -412,3 +412,36 @@ fn every_section_of_the_theory_that_code_and_pages_name_is_there() {
         sections_named("[a.md](a.md), 7.7). Not a.md. Part 6, 8, a.md, section 10.", "a.md");
     assert_eq!(named, ["7.7", "10"]);
 }
+
+/// The words of a picture, numbers included.
+fn words_of(picture: &str) -> Vec<&str> {
+    let before_ends = picture.split("</text>");
+    before_ends.filter_map(|text| text.rsplit('>').next()).map(str::trim).collect()
+}
+
+#[test]
+fn pictures_of_the_gallery_have_the_words_and_numbers_of_their_commands() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = std::env::temp_dir().join(format!("signorini-{}-gallery", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    let gallery = page("docs/gallery.md");
+    let mut shown = BTreeSet::new();
+    for line in gallery.lines().filter_map(|line| line.strip_prefix("signorini solve cases/")) {
+        let (name, settings) = line.split_once(".toml").unwrap();
+        let case = root.join(format!("cases/{name}.toml"));
+        let words = settings.split(' ').filter(|word| !word.is_empty());
+        let command: Vec<&str> =
+            ["solve", case.to_str().unwrap()].into_iter().chain(words).collect();
+        let run = signorini(&folder, &command);
+        assert!(run.status.success(), "{run:?}");
+        let drawn = fs::read_to_string(folder.join(format!("out/{name}/picture.svg"))).unwrap();
+        let stored = page(&format!("docs/gallery/{name}.svg"));
+        assert_eq!(words_of(&stored), words_of(&drawn), "copy the picture.svg of {line} there");
+        assert!(gallery.contains(&format!("](gallery/{name}.svg)")), "{name} is not shown");
+        assert!(words_of(&stored).len() > 20, "{:?}", words_of(&stored));
+        shown.insert(words_of(&stored).concat());
+    }
+    fs::remove_dir_all(folder).unwrap();
+    // No two have the same words, so that one in the place of another would be noticed.
+    assert_eq!(shown.len(), 8);
+}
