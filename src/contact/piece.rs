@@ -183,7 +183,7 @@ impl<S: Scalar> Chords<S> {
     }
 }
 
-/// What a side of a piece is made from, in any numbers.
+/// The data of a side of a piece, in any numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct SideData<S> {
     /// The triangle.
@@ -242,7 +242,7 @@ pub struct Piece<S = f64> {
     pub sigma_n: Vec<Vec<Vector2<S>>>,
 }
 
-/// What a piece adds to (8) and to J_h, with the weight |E| / gamma inside.
+/// The contribution of a piece to (8) and to J_h, the weight |E| / gamma included.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contribution {
     /// Its share of J_h.
@@ -675,7 +675,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     }
 }
 
-/// For each node of a piece the node of the triangle that is next to it on the edge.
+/// For each node of a piece, the nearest node of the triangle on the edge.
 fn nearest(degree: Degree, stretch: &Stretch) -> Vec<usize> {
     let (nodes, places) = (degree.edge_nodes(stretch.edge.local), degree.edge_positions());
     let next_to = |&s: &f64| {

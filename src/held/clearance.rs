@@ -9,8 +9,8 @@ use crate::contact::piece::Piece;
 use crate::kernel::{DoubleDouble, Response};
 use crate::linear::dense::{dot, norm};
 
-/// An edge presses where P is above this share of the largest; below it P is what the tolerance of Newton's method leaves. With a
-/// hundredth of it, edges that touch without a force are taken to hold the body.
+/// The share of the largest P above which an edge presses; smaller P may be left by the tolerance of Newton's method. At a
+/// hundredth of this share, edges that touch without a force would count as holding the body.
 const PRESSES: f64 = 1e-8;
 
 impl Slides {
@@ -81,12 +81,12 @@ impl Slides {
     }
 }
 
-/// Returns whether a piece pulls as well as it pushes: it never lets go.
+/// Returns whether a piece pulls as well as it pushes, and so never lets go.
 fn pulls(piece: &Piece) -> bool {
     piece.responses().all(|(response, _)| response == Response::Bilateral)
 }
 
-/// The motions of `d` that neither supports nor the contact edges stop that are pressing, or where friction stops what slides along them.
+/// The motions of `d` that are stopped neither by supports, nor by contact edges that press, nor by friction along these.
 pub(crate) fn free_where(
     d: &Discretization,
     parts: &Parts,

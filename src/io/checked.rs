@@ -10,10 +10,10 @@ use crate::model::{BoundaryEdge, Condition, Degree, Mesh, Problem, Space, loads}
 use crate::quote::{self, quoted};
 use crate::solve::{ContactQuadrature, Outline};
 
-/// The boundaries that are listed; more are counted.
+/// The largest number of boundaries that are listed; more are counted.
 const MOST: usize = 100;
 
-/// The summary of a case that is sound.
+/// The summary of a valid case.
 pub fn checked(case: &Case, outline: &Outline) -> String {
     let mut lines = Lines::default();
     let mesh = MeshSizes::new(&case.problem.mesh, outline.nodes, outline.contact_edges);

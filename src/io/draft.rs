@@ -10,7 +10,7 @@ use crate::model::tree::Bounds;
 use crate::model::{BoundaryEdge, Mesh};
 use crate::quote::{self, number};
 
-/// The boundaries that are listed; more are counted.
+/// The largest number of boundaries that are listed; more are counted.
 const MOST: usize = 100;
 
 /// A part of the boundary that the draft puts to use.

@@ -10,8 +10,8 @@
 //! | `$Elements` | triangles and quadrangles: the body, by physical surface; lines: the boundary parts; physical points |
 //!
 //! The format is described in the Gmsh reference manual, section "MSH file format". In a binary file an `int` has 4
-//! bytes, a `size_t` and a `double` have 8; in a text file all are words between white space. Nothing is allocated because
-//! a file announces it, only because it is there. How bytes are read is in `cursor`, which mesh they make in `raw_mesh`.
+//! bytes, a `size_t` and a `double` have 8; in a text file all are words between white space. Memory is allocated for data that
+//! are there, never for data that a file announces. How bytes are read is in `cursor`, which mesh they make in `raw_mesh`.
 
 mod cursor;
 
@@ -40,7 +40,7 @@ pub fn read(file: &Path, share: Option<f64>, pairs: &[Pair]) -> Result<Made> {
 /// # Errors
 /// As [`read`].
 pub fn from_bytes(bytes: &[u8], file: &Path, share: Option<f64>, pairs: &[Pair]) -> Result<Made> {
-    // Names and entities: what is kept of one is no more than this many times what the file says of it.
+    // The memory kept per name or entity, at most this many times its size in the file.
     const MOST_TIMES: u64 = 4;
     let mut cursor = Cursor { bytes, file, at: 0, version: Version::Four, binary: false };
     memory::check(MOST_TIMES * bytes.len() as u64).map_err(|lack| cursor.in_the_file(lack))?;
@@ -69,7 +69,7 @@ pub fn read_with_pairs(file: &Path) -> Result<(Made, Vec<Pair>)> {
     Ok((with(&touching)?, touching))
 }
 
-/// Of more named curves no pairs are tried.
+/// The largest number of named curves for which pairs are tried.
 const MOST_NAMES: usize = 40;
 
 /// The physical groups of each entity.
@@ -221,7 +221,7 @@ fn read_names(cursor: &mut Cursor) -> Result<Names> {
     Ok(names)
 }
 
-/// The names of all entities. A group without a name is called by its number, unless another one has that for a name.
+/// The names of all entities. A group without a name is called by its number, unless that is the name of another group.
 fn named(names: &Names, groups: Groups) -> ByDimension<BTreeMap<i32, Vec<String>>> {
     let mut dimension = 0..;
     groups.map(|entities| {
@@ -239,10 +239,10 @@ fn named(names: &Names, groups: Groups) -> ByDimension<BTreeMap<i32, Vec<String>
     })
 }
 
-/// What kinds of entities there are, in messages.
+/// The kinds of entities, in messages.
 const KINDS: ByDimension<&str> = ["point", "curve", "surface"];
 
-/// The most groups of an entity: each of its elements is kept once for each of them.
+/// The largest number of groups of an entity, whose elements are kept once for each group.
 const MOST_GROUPS: usize = 100;
 
 /// Refuses elements on entities that are not in the list, and entities in too many groups.

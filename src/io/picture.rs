@@ -279,7 +279,7 @@ mod tests {
         scene
     }
 
-    /// All words of a picture. Every element that starts also ends, no number is none, and all words are on the page.
+    /// All words of a picture. Checks that tags are balanced, no coordinate is NaN, and all words are inside the page.
     fn words(svg: &str) -> Vec<String> {
         let (mut open, mut words) = (Vec::new(), Vec::new());
         let mut page = [0.0; 2];

@@ -1,5 +1,5 @@
-//! report.html: picture, numbers, what is proved and the case as it was read, in one file without scripts that loads
-//! nothing, to send to somebody.
+//! report.html: picture, numbers, what is proved and the case as read, in one file that has no scripts and
+//! loads nothing, to send to somebody.
 
 use std::fmt::Write;
 

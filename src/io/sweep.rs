@@ -24,10 +24,10 @@ use crate::quote;
 use crate::results::Solution;
 use crate::results::answers::label;
 
-/// The most runs of a sweep: more are a mistake of the person who asks for them.
+/// The largest number of runs of a sweep: more are a mistake.
 pub const MOST_RUNS: usize = 10_000;
 
-/// The most remarks below the table.
+/// The largest number of remarks below the table.
 const MOST_REMARKS: usize = 20;
 
 /// A key of the case file and the values that it takes, such as `method.gamma0=1e-3,1e-2`, or `material.young=1000:3000:5`: five
@@ -110,7 +110,7 @@ pub const FILES: [&str; 2] = ["sweep.csv", "sweep.svg"];
 /// files.
 pub(crate) type Names = [&'static str; 3];
 
-/// Those of a sweep.
+/// The files of a sweep.
 const NAMES: &Names = &[FILES[0], FILES[1], "sweep.pvd"];
 
 /// A case and its results for the combinations of the values of some keys.
@@ -145,7 +145,7 @@ pub fn count(axes: &[ParameterAxis]) -> Result<usize, Failure> {
     Ok(runs)
 }
 
-/// What a sweep does beside the table.
+/// Options of a sweep beside the table.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
     /// The files of each run are written, too.

@@ -6,8 +6,7 @@
 //! A demand at a node is u . d = value for a unit vector d: a coordinate direction, or the normal or tangent of a support.
 //! Two that are not parallel fix the node. One alone in an oblique direction d turns the node's unknowns into the frame
 //! (d, t), t being d turned to the left: u = u_d d + u_t t, with u_d prescribed. The blocks of the matrix at such a node are
-//! R^T K R with R = (d, t), a rotation: symmetry, definiteness and the matrix's norm are what they were, and no entry is
-//! added to its pattern.
+//! R^T K R with R = (d, t), a rotation: symmetry, definiteness and norm of the matrix stay, and its pattern does, too.
 
 use std::collections::BTreeMap;
 
@@ -233,7 +232,7 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// The amount by which the normals of all supports may be off.
+/// The rounding error that the normals of all supports may have.
 fn rounding_of_supports(problem: &Problem) -> Result<f64, DataError> {
     let mut rounding: f64 = 0.0;
     for (name, condition) in &problem.conditions {

@@ -28,7 +28,7 @@ use super::tree::{Bounds, Tree};
 use crate::contact::pairs::Pair;
 use crate::held::rigid::connected_by_edges;
 
-/// The outline of a mesh, with what it takes to look at what is near.
+/// The outline of a mesh, with the trees that find what is near.
 struct SearchableOutline<'m> {
     mesh: &'m Mesh,
     /// Start and end of each edge of the outline.
@@ -79,7 +79,7 @@ impl Mesh {
     }
 }
 
-/// Checks all of it.
+/// Checks the whole outline.
 ///
 /// # Errors
 /// [`MeshError::Hanging`], [`MeshError::Near`], [`MeshError::Overlapping`], [`MeshError::JoinedAtVertex`].

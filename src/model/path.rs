@@ -11,7 +11,7 @@ use super::boundary_normals::{SmoothEdge, left_of, smooth_normals, unit};
 use super::mesh::{NO_ANGLE, ROUNDED, length};
 use crate::quote::{number, short};
 
-/// Why points are no line.
+/// Errors of points that make no line.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]

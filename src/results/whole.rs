@@ -1,5 +1,5 @@
-//! The results of a body of revolution: energies, forces along the axis and contact forces are those of the whole revolution, 2 pi
-//! times what a radian has. Radial forces cancel all round: they are left for a radian.
+//! The results of a body of revolution: energies, forces along the axis and contact forces are those of the whole revolution, 2
+//! pi times those of a radian. Radial forces, which cancel all round, stay those of a radian.
 
 use std::f64::consts::TAU;
 

@@ -2,9 +2,8 @@
 //! nothing left to correct; then the enclosure of the exact solution says how far that is from it. Where it is not near enough,
 //! residuals are evaluated in double-doubles, and the passes go on. docs/theory.md, 5.6.
 //!
-//! The correction of a pass is the error of what it corrects, but for the error of the correction, which is smaller by the
-//! same factor again: it says when there is nothing left to correct in the numbers at hand, and nothing more. The verdict is the
-//! proof.
+//! The correction of a pass estimates the error before it, up to an error smaller by the same factor again. So passes end when
+//! nothing is left to correct; the verdict is the proof's.
 
 use std::sync::Arc;
 
@@ -21,7 +20,7 @@ use crate::proof::enclosure::{Enclosure, Unproved, Verifier};
 use crate::proof::intervals::Arithmetic;
 use crate::results::Status;
 
-/// A way to better an iterate.
+/// A way to improve an iterate.
 pub trait Route {
     /// L of A, if it is at hand.
     fn factor_of_a(&self) -> Option<Arc<Factor>>;
@@ -129,7 +128,8 @@ impl Outcome {
     }
 }
 
-/// No more passes than these. It bounds the time, and decides nothing: each pass takes the error down by a factor, or the passes end.
+/// The largest number of passes. This bounds the time and decides nothing: each pass takes the error down by a factor, or the
+/// passes end.
 const MOST_PASSES: usize = 12;
 
 /// Passes of `route` from the lift of the prescribed data on, until the enclosure of the exact solution is as small as asked
@@ -146,7 +146,7 @@ pub fn refine(
 ) -> Result<Outcome, SolveError> {
     let mut refinement = IterativeRefinement::new(system, reference, settings);
     refinement.pass(route)?;
-    // It came from nowhere: what it moved is no error.
+    // The first pass starts from the lift, so its step says nothing about the error.
     refinement.correction = f64::INFINITY;
     for _ in 1..MOST_PASSES {
         if refinement.is_out_of_steps() {

@@ -107,7 +107,7 @@ pub fn solve_along(
     Ok((solution, Times { discretize, evaluate: watch.lap(), ..times }))
 }
 
-/// Energies that are more out of balance than this are no result.
+/// The relative imbalance of energies above which there is no result.
 const MOST_IMBALANCE: f64 = 0.1;
 
 /// Solves a discretization: the displacement with its forces, how it was found, and how long that took.

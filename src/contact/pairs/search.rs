@@ -84,7 +84,7 @@ impl Facing {
     }
 }
 
-/// Where the line through `from` along `direction` meets the chord of an edge, 0 being its start and 1 its end.
+/// The place where the line through `from` along `direction` meets the chord of an edge, from 0 at its start to 1 at its end.
 pub(super) fn cut(from: Vector2<f64>, direction: Vector2<f64>, curve: &SmoothEdge) -> f64 {
     let [a, b] = curve.ends;
     (from - a).perp(&direction) / (b - a).perp(&direction)
@@ -108,7 +108,7 @@ pub(crate) struct Boundary {
 /// The least cosine of the angle between a normal and the opposite of its partner's: the head of `pairs`.
 const OPPOSITE: f64 = 0.5;
 
-/// Distances that differ by less than this share are equal: far above rounding, far below what can be seen.
+/// The relative difference below which two distances are equal: far above rounding, far below what can be seen.
 const EQUAL: f64 = 1e-9;
 
 impl Boundary {
@@ -296,7 +296,7 @@ pub(super) struct Stretch {
     pub ends: [Facing; 2],
 }
 
-/// All of them, along the edges of boundary 1.
+/// All stretches, along the edges of boundary 1.
 pub(super) fn stretches(sides: &[Boundary; 2], reach: f64) -> Vec<Stretch> {
     let mut breaks: Vec<Vec<(f64, [Point; 2])>> = vec![Vec::new(); sides[0].edges.len()];
     for of in [0, 1] {
@@ -337,7 +337,7 @@ pub(super) fn stretches(sides: &[Boundary; 2], reach: f64) -> Vec<Stretch> {
 }
 
 /// The stretch on edge `e` from a break towards `end`, as far as the partner stays on its edge: it ends where another one becomes
-/// the nearest. `None` if it does at once.
+/// the nearest. `None` if that happens at once.
 fn towards(
     sides: &[Boundary; 2],
     reach: f64,

@@ -18,10 +18,11 @@ use crate::results::{ContactBoundary, Solution};
 /// measured on a block of 32 x 32 cells.
 const LOCKING: f64 = 0.48;
 
-/// A material is stiff against a change of area alone if it is by so much more than against any shear.
+/// The ratio of the stiffness against a change of area to that against shear from which a material counts as nearly
+/// incompressible.
 const STIFFER: f64 = 10.0;
 
-/// A stress below this share of the largest is none.
+/// The share of the largest stress below which a stress counts as zero.
 const NO_STRESS: f64 = 1e-12;
 
 /// An interior angle of so many degrees more than a right one, or a law as much out of line, makes a peak unbounded.

@@ -8,7 +8,7 @@ use crate::model::{Condition, Obstacle, Problem};
 use crate::quote;
 use crate::results::Solution;
 
-/// The distance from the obstacle may differ from the linearised one by this share of the motion.
+/// The allowed difference between the distance from the obstacle and the linearised gap, as a share of the motion.
 const MOST_OFF: f64 = 0.1;
 
 /// The depth, beside the motion, at which a vertex is inside an obstacle; and the number of times that it is deeper than what the
