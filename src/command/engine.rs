@@ -1,9 +1,9 @@
 //! The engine past one machine: hands a case to the reference in FEniCSx (`reference/fenicsx`), which runs under MPI.
 //!
-//! The engine that runs is the one this program was told to run, or what lies beside it. Python, PETSc and DOLFINx all read
-//! files of the folder in which they are started (modules, `.petscrc`, `dolfinx_jit_options.json`): so they are started in a
-//! fresh folder, where they also write, with paths from the root, and Python does not look for modules where it is started.
-//! The files that they have written there are then published as this program's own files are.
+//! The engine is the package that this program was told to run, or the package beside the program. Python, PETSc and DOLFINx
+//! all read files of the folder in which they are started (modules, `.petscrc`, `dolfinx_jit_options.json`): so they are
+//! started in a fresh folder, where they also write, with absolute paths, and Python does not look for modules there. Their
+//! files are then published as this program's own files are.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};

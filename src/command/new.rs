@@ -53,7 +53,7 @@ fn name_for(mesh: &Path, out: &Path) -> PathBuf {
     }
 }
 
-/// Writes a file that was not there.
+/// Writes a new file, and overwrites none.
 fn write(out: &Path, text: &str) -> Result<(), Failure> {
     let failed = |error: std::io::Error| {
         let name = quote::path(out);

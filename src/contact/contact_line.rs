@@ -173,7 +173,7 @@ impl ContactLine {
         sorted.sort_unstable_by(f64::total_cmp);
         let typical = sorted.get(sorted.len() / 2).copied().ok_or(DataError::NoContact)?;
         let constant = sorted.last().copied().ok_or(DataError::NoContact)?;
-        // Equal edges differ by rounding: the choice must not.
+        // Equal edges differ by rounding, which must not decide the choice.
         let stretches = self.pieces.iter().flat_map(|piece| &piece.stretches);
         let equal = stretches.filter(|s| constants[&s.edge.triangle] >= constant * (1.0 - ROUNDED));
         let ends = |stretch: &Stretch| {

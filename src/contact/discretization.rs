@@ -121,7 +121,7 @@ impl<'a> Discretization<'a> {
             let rounding = rounding_of_directions(&constraints, &space, &contact);
             let sliding = solvability::slides(&motions, &parts, &space, &load, &contact, rounding)
                 .map_err(|NotHeld { motions, drive }| {
-                    // That of the whole body, where loads are those of a radian.
+                    // The force is that of the whole body, the loads are those of a radian.
                     let whole = if problem.material.are_of_revolution() { TAU } else { 1.0 };
                     DataError::RigidMotion { motions, drive: drive.map(|drive| whole * drive) }
                 })?;

@@ -227,14 +227,14 @@ impl Parabola {
         if monotone || curvature.lower() >= 0.0 {
             return ends;
         }
-        // A parabola whose curvature is zero to rounding has no vertex to be near to: any point will do.
+        // A parabola whose curvature is zero to rounding has no vertex: any point will do.
         let vertex = -self.0[1].head() / (2.0 * self.0[2].head());
         let vertex = if vertex.is_nan() { a.head() } else { vertex };
         let near = PreciseBall::from(vertex.clamp(a.head(), b.head()));
         let (slope, length) = (PreciseBall::from((sign * self.slope(near)).magnitude()), b - a);
         let bend = PreciseBall::from(larger(curvature.upper(), 0.0)) * length * length;
         let tangent = sign * self.at(near) + slope * length + bend;
-        // A point a rounding error outside [a, b] would be at most |b - a| away, too, but for that error.
+        // A point outside [a, b] by a rounding error is still at most |b - a| away, up to this error.
         let slack = slope.magnitude() * 4.0 * f64::EPSILON;
         larger(ends, tangent.upper() + slack)
     }

@@ -108,7 +108,7 @@ impl PieceGeometry {
                 let place = <S as From<f64>>::from(stretch.positions[a]);
                 edge_integral::radius([start, end], place)
             };
-            // The whole edge: no product with 1, which is not exact in balls.
+            // On the whole edge a product with 1 is left out, since it is not exact in balls.
             Some(if self.stretches.len() == 1 { [start, end] } else { [at(0), at(1)] })
         };
         let each: Option<Vec<[S; 2]>> = self.stretches.iter().map(at_ends).collect();
@@ -379,7 +379,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
             sigma_n: vec![Vec::new(); 2 * geometry.law.components()],
         };
         for (i, (stretch, data)) in geometry.stretches.iter().zip(data).enumerate() {
-            // The stress of the only side is that of the piece: no product with 1, which is not exact in balls.
+            // The stress of the only side is that of the piece; a product with 1 would not be exact in balls.
             let shares = chords.map(|chords| (data.gamma / gamma, chords.ratio(i, radii_of(i))));
             let own_gamma = shares.map_or(data.gamma, |(_, ratio)| data.gamma * ratio);
             let first = piece.nodes.len();

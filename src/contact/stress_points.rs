@@ -125,7 +125,7 @@ fn each_stress_of<E, const N: usize, const M: usize, S>(
             continue;
         }
         let law = material.map(<S as From<f64>>::from);
-        // As `Triangle::barycentric_gradients` has them, with one division: in most numbers they are dear.
+        // As in `Triangle::barycentric_gradients`, with one division, which is expensive in most number types.
         let triangle = in_numbers(doubles);
         let double_area = triangle.double_area();
         let inverse = one / double_area;

@@ -280,7 +280,7 @@ where
         }
     }
     if of_revolution {
-        // The rows of a part are affine in the height: those of the lowest and of the highest triangle say what all of them say.
+        // The rows of a part are affine in the height: those of the lowest and of the highest triangle span all.
         let mut ends: Vec<Option<[[f64; 2]; 2]>> = vec![None; parts.count()];
         for (t, &part) in parts.of_triangle.iter().enumerate() {
             let middle: [f64; 2] = space.mesh().triangle(t).point([1.0 / 3.0; 3]).into();
@@ -388,7 +388,7 @@ fn point(x: [f64; 2], size: f64) -> String {
 
 fn rounded(c: f64, size: f64) -> String {
     let decimals = (5.0 - size.log10().floor()).clamp(0.0, 400.0) as usize;
-    // What the decimals read back to is the shortest number that says the same; adding 0.0 spares the reader a -0.
+    // Reading the decimals back gives the shortest number; adding 0.0 avoids -0.
     let short = format!("{c:.decimals$}").parse().unwrap_or(c) + 0.0;
     if short == 0.0 || (1e-5..1e16).contains(&short.abs()) {
         format!("{short}")

@@ -390,7 +390,7 @@ pub(super) fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -
         let fresh =
             (0..rows.len()).filter(|i| norm(&rows[*i]) > 0.0 && used.iter().all(|(u, _)| u != i));
         let best = fresh.max_by(|i, j| gain(i).total_cmp(&gain(j)));
-        // Of a row that gains rounding only, the weight would be rounding, or no number where the row depends on those in use.
+        // The weight of a row that gains rounding only would be rounding, or not finite where the row depends on those in use.
         let Some(best) = best.filter(|i| gain(i) > rounding) else { break };
         used.push((best, 0.0));
         loop {
@@ -402,7 +402,7 @@ pub(super) fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -
             }
             let columns = used.iter().map(|(i, _)| rows[*i].clone()).collect();
             let weights = least_squares(columns, target);
-            // How far the weights may go towards these until one of them is 0; that one is, however it is rounded.
+            // The weights go towards the new ones until one of them is 0; this weight is set to 0, whatever its rounding.
             let until = |j: usize| {
                 let old = used[j].1;
                 if old > 0.0 { old / (old - weights[j]) } else { 0.0 }

@@ -240,7 +240,7 @@ impl LowerTriangle {
             if let Some(row) = row
                 && row >= column
             {
-                // A column has few rows: to look at one after the other is quicker than a binary search.
+                // A column has few rows: a linear search is faster than a binary one.
                 let step = self.rows[place..end].iter().position(|&other| other == row);
                 place += step.ok_or(OutsidePattern { row, column })?;
                 self.values[place] += entry;

@@ -148,7 +148,7 @@ impl<'d, 'p> System<'d, 'p> {
             return norm;
         }
         let most = self.energy_of_unrelated(u).sqrt();
-        // A strain of this size is that of rounding u.
+        // A smaller strain may be that of rounding u.
         if norm > f64::EPSILON * most { norm } else { most }
     }
 

@@ -53,7 +53,7 @@ pub(super) fn kappa(d: &Discretization, pieces: &[Piece<PreciseBall>]) -> f64 {
                 let off = along.iter().map(|&n| (dot(n, n) - PreciseBall::from(1)).magnitude());
                 let off = PreciseBall::from(8.0 * off.fold(0.0, larger));
                 let cosine = dot(along[0], along[1]);
-                // The root of the factor for both is steep where the direction turns little.
+                // The square root of the factor is steep where the direction turns little.
                 let cosine = if both && geometry.turns() {
                     PreciseBall::from((cosine - off).lower())
                 } else {

@@ -255,7 +255,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         if loose.basis.len() <= stopped && loose.stopping.is_empty() {
             return self.around(u, &reported, near, arithmetic);
         }
-        // Motions that only edges stop which do not press: of all solutions one that is away from these.
+        // Of all solutions take one that is away from edges that do not press but stop motions.
         let Some(inside) = loose.to_inside(u) else { return Err(Unproved::HeldByContact) };
         let mut u = u.to_vec();
         loose.move_by(&inside, &mut u);
@@ -393,7 +393,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
                 }),
             };
             let product = Product { system, lines: &self.lines, pressed, arithmetic };
-            // With Coulomb's friction each digit of it widens the ball without another solution.
+            // With Coulomb's friction every further digit of the norm widens the ball without another solution.
             let negligible = if coulomb { 0.0 } else { negligible };
             dual = dual_norm(&product, factor, r, &crude, coercivity, negligible);
         }
@@ -451,7 +451,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         let hardly_strains = up(root(at.energy) + radius) <= NEGLIGIBLE * if_strained;
         let is_measured = !hardly_strains && norm > 0.0;
         let isolation = isolated.map(|Isolated { within, everywhere, limits, .. }| {
-            // From where the residual is known to the displacement that is reported.
+            // The distance from the displacement whose residual is known to the one that is reported.
             let within = within.map(|within| (within - at.moved) * (1.0 - f64::EPSILON));
             let within = within.filter(|within| radius <= *within);
             let relative = |within: f64| within / up(root(at.energy)) * (1.0 - f64::EPSILON);

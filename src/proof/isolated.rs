@@ -106,7 +106,7 @@ impl Body<'_, '_, '_> {
             let mut left = vec![zero; system.numbering.count];
             row.iter().for_each(|&(k, b)| left[k] = b);
             let mut rest = f64::INFINITY;
-            // Once, and once more from what is left.
+            // Solves, and corrects once by the residual.
             for _ in 0..2 {
                 let mut correction: Vec<f64> = left.iter().map(|t| t.head()).collect();
                 self.factor.solve(&mut correction);
@@ -131,7 +131,7 @@ impl Body<'_, '_, '_> {
                 radii[(i, j)] = up(entry.radius() + (entry.head() * f64::EPSILON).abs());
             }
         }
-        // Symmetric as G is: the mean of two entries is off by no more than the larger one.
+        // The mean of an entry and its mirror is off by no more than the larger of their errors, as G is symmetric.
         let mean = Mat::from_fn(count, count, |i, j| (g[(i, j)] + g[(j, i)]) / 2.0);
         let by = |i: usize, j: usize| up(radii[(i, j)] + sizes[i] * rests[j]);
         let by = Mat::from_fn(count, count, |i, j| {
@@ -741,7 +741,7 @@ pub(super) fn isolate(
     };
     let inverse = root.inverse(&blocks).ok_or(Unproved::NotIsolated)?;
     let answers: Vec<Reach> = pieces.iter().map(|piece| inverse.reach(piece)).collect();
-    // How much nearer two fields within r are after a step, at most, and the first step.
+    // Bounds of the contraction of two fields within r by a step, and of the first step.
     let nearer = |r: f64| {
         let pairs = all.iter().zip(&answers);
         let [sum, crude] = pairs.fold([0.0; 2], |[sum, crude], (on, answer)| {
@@ -891,7 +891,7 @@ fn coupling(
         }
         inverses.push(inverse);
     }
-    // What a mass matrix of order 3 makes of rounding.
+    // The factor by which a mass matrix of order 3 enlarges rounding.
     let stiffest = inverses.iter().map(frobenius).fold(0.0, f64::max);
     let rounding = 64.0 * f64::EPSILON * 20.0 * stiffest;
     let all: Vec<(usize, usize, usize)> = normal.iter().chain(&across).copied().collect();
@@ -926,7 +926,7 @@ fn coupling(
 
 /// An estimate of the largest eigenvalue of the matrix that `times` multiplies by, if real and not negative.
 fn power(n: usize, times: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
-    // In no plane of symmetry.
+    // A start in no plane of symmetry.
     let mut x: Vec<f64> = (0..n).map(|i| 1.0 + 0.5 * (1.7 * i as f64).sin()).collect();
     let mut largest = 0.0;
     for _ in 0..300 {

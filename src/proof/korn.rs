@@ -107,7 +107,7 @@ impl Korn {
             all.extend(hoops(mesh, materials, &part, roots.len()));
         }
         let of = |t: usize| left[t].sqrt() + along[t].sqrt();
-        // A hold of several parts holds them together.
+        // A constraint on several parts joins them.
         let together = all.iter().flat_map(|hold| {
             hold.terms.windows(2).map(|pair| [0, 1].map(|i| part[pair[i].triangle]))
         });
@@ -327,7 +327,7 @@ fn motions_of_roots(
     let most: Vec<f64> = holds.iter().map(most).collect();
     let middle = |c: &Ball| c.lower() / 2.0 + c.upper() / 2.0;
     let doubles: Vec<Vec<f64>> = rows.iter().map(|row| row.iter().map(middle).collect()).collect();
-    // Those that say most.
+    // The rows that restrict most.
     let weighted = |(row, most): (&Vec<f64>, &f64)| row.iter().map(|c| c / most).collect();
     let chosen = independent(doubles.iter().zip(&most).map(weighted).collect(), unknowns)?;
     // With M q = t and any R: q = R t + (1 - R M) q. R is the inverse of M in doubles.

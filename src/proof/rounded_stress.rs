@@ -386,7 +386,7 @@ impl<const N: usize> RoundedStrain<N> {
             (u[c].head() - first[c].head()) + (u[c].centre().tail() - first[c].centre().tail())
         };
         let differences = nodal.map(|u| Vector2::new(difference(u, 0), difference(u, 1)));
-        // What the differences are off by, beside what is relative to them.
+        // The absolute part of the error of the differences.
         let off: f64 = nodal
             .iter()
             .flat_map(|u| u.iter().zip(&first))

@@ -15,7 +15,7 @@ pub(super) fn of_the_whole(mut s: Solution) -> Solution {
     }
     q.contact_resultant[1] *= TAU;
     q.reactions.values_mut().for_each(|force| force[1] *= TAU);
-    // Moments about the origin of the meridian say nothing of the body.
+    // Moments about the origin of the meridian have no meaning for the body.
     q.reaction_moments.values_mut().for_each(|moment| *moment = 0.0);
     for part in &mut s.boundaries {
         part.force *= TAU;

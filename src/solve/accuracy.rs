@@ -222,11 +222,11 @@ impl<'a, 'd, 'p> IterativeRefinement<'a, 'd, 'p> {
 
     fn pass(&mut self, route: &mut dyn Route) -> Result<(), SolveError> {
         let size = self.system.size(self.at.energy.sqrt(), &self.iterate.rounded());
-        // The first pass goes as far as it can; a correction need not better what is good enough.
+        // The first pass goes as far as it can; corrections stop at what is good enough.
         let residual = if self.residuals.is_empty() { 0.0 } else { self.settings.tolerance };
         let until = Until { steps: self.settings.max_iterations, residual };
         let pass = route.pass(&mut self.iterate, &mut self.at, &mut self.residuals, until)?;
-        // What was proved is proved of another displacement.
+        // The earlier proof is of another displacement.
         self.enclosure = Err(Unproved::NotReached);
         self.softness = self.softness.max(pass.softness);
         let moved = pass.energy.max(pass.left).sqrt();
@@ -302,7 +302,7 @@ impl TrueResidual {
         forces += one(&contact);
         system.add_forces(&contact, &mut r);
         if forces == 0.0 {
-            // Where a body moves as a whole there is nothing but rounding.
+            // Only rounding is left where a body moves as a whole.
             forces = one(at.forces.as_flattened()).max(f64::EPSILON * reference);
         }
         let unbalanced = if forces > 0.0 { one(&r) / forces } else { 0.0 };

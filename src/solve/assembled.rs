@@ -203,7 +203,7 @@ impl Body for Full<'_, '_, '_, '_, '_> {
             self.advance(1.0, &step);
             return Ok(None);
         }
-        // What cannot let go acts all the same.
+        // Springs that cannot let go act in any case.
         let none = no_springs(edges).pulling(&self.at.p);
         if self.route.system.d.slides.is_none() {
             match self.step(&none) {

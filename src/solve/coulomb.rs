@@ -312,7 +312,7 @@ impl Mixing {
             .iter()
             .map(|step| change.iter().zip(Self::change(step)).map(|(c, o)| c - o).collect())
             .collect();
-        // Least squares by the normal equations, which a little of their diagonal keeps definite.
+        // Least squares by the normal equations, kept definite by a small multiple of their diagonal.
         let count = differences.len();
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let square = |i: usize| product(&differences[i], &differences[i]);

@@ -115,7 +115,7 @@ impl Iterate {
         let mut p: Vec<DoubleDouble> = d.contact.iter().flat_map(in_doubles).collect();
         let mut p_magnitudes: Vec<f64> =
             d.contact.iter().flat_map(|piece| piece.p0_magnitudes(&heads)).collect();
-        // gamma times the pressure is small beside displacement and gap: doubles hardly know it.
+        // gamma times the pressure is small beside displacement and gap, and has few digits in doubles.
         let is_lost = |(p, size): (&DoubleDouble, &f64)| {
             p.head() > 0.0 && p.head() < FEW_DIGITS * f64::EPSILON * size
         };

@@ -142,7 +142,7 @@ fn solve_discrete_along<'d>(
         };
         let is_final = match &best {
             Ok((_, outcome)) => outcome.is_final(settings),
-            // Contact may hold what the supports hardly hold: the next route knows it.
+            // Contact may hold what the supports hardly hold, and the next route includes contact.
             Err(error) => *error != SolveError::Singular,
         };
         if is_final {

@@ -80,7 +80,7 @@ pub fn minimise(
     }
     let mut at = derivatives(edges, 1.0, &body.y());
     let mut residual = body.residual(&at);
-    // A later call makes a step wherever there is a residual: its size is what tells how good the end of the first was.
+    // A later call makes a step wherever there is a residual, for the size of the step tells how good the first end was.
     let mut may_end = first;
     let mut left = 0.0;
     while residuals.len() <= until.steps {

@@ -70,9 +70,9 @@ impl Facing {
     pub fn on_chord(&self, i: usize, e: usize, curve: &SmoothEdge) -> f64 {
         let s = self.at[i].iter().flatten().find(|place| place.edge == e).map(|place| place.s);
         match s {
-            // A node is where it is.
+            // The place of a node is exact.
             Some(s) if s <= 0.0 || s >= 1.0 => s.clamp(0.0, 1.0),
-            // The line goes through the node of the other boundary, or, where that is none, through the partners.
+            // The line goes through the node of the other boundary or, without a node there, through the partners.
             _ => cut(self.node(), self.direction, curve).clamp(0.0, 1.0),
         }
     }
@@ -186,7 +186,7 @@ impl Boundary {
 
     /// Calls `f` with each edge that may come closer to a place than `radius`.
     fn near(&self, place: Vector2<f64>, radius: f64, mut f: impl FnMut(usize)) {
-        // In the order of the edges: the first of several that are equally near counts.
+        // In the order of the edges, for the first of several equally near points counts.
         let mut edges = Vec::new();
         self.tree.meeting(Bounds::around([place.into()]).widened(radius), |e| edges.push(e));
         edges.sort_unstable();
@@ -350,7 +350,7 @@ fn towards(
         return None;
     }
     let partner = |s: f64| mutual(sides, 0, &sides[0].point(e, s), reach);
-    // A hair away from the break: which edge of the other boundary goes on with it.
+    // Slightly beyond the break, to see which edge of the other boundary continues the stretch.
     let hair = start + (end - start) * (4.0 * none / (end - start).abs()).min(0.5);
     let f = partner(hair)?[1].at().find(|place| points[1].on(place.edge).is_some())?.edge;
     let on_it = |s: f64| partner(s).filter(|points| points[1].on(f).is_some());
