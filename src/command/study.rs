@@ -52,7 +52,7 @@ pub fn run(
     Ok(summarised(&summary::studied(&case, &studies, &files), quiet))
 }
 
-/// The wanted items, or the item of the case.
+/// The wanted ones, or one that the case decides.
 fn or_none<T>(wanted: Vec<T>) -> Vec<Option<T>> {
     if wanted.is_empty() { vec![None] } else { wanted.into_iter().map(Some).collect() }
 }

@@ -18,10 +18,10 @@ use crate::model::tree::{Bounds, Tree};
 use crate::model::{Degree, Mesh, Space};
 use crate::quote;
 
-/// The largest size of a file: the text of some ten million points.
+/// The most bytes of a file: the text of some ten million points.
 const MOST: u64 = 2 << 30;
 
-/// The distance, in units of the body's extent, within which a point is a vertex: coordinates in single precision pass.
+/// A point is a vertex when it is this near, in units of the body's extent: coordinates written in single precision pass.
 const NEAR: f64 = 1e-6;
 
 /// The displacement in the file at the vertices of `mesh` and, if it is quadratic, at the middles of its edges: at the nodes of
@@ -121,7 +121,7 @@ fn pair([x, y]: [f64; 2]) -> String {
     format!("({x}, {y})")
 }
 
-/// Checks that the triangles of a file are those of the mesh: on others, as along the other diagonals of a grid, the same
+/// The triangles of a file are those of the mesh: on others, such as those along the other diagonals of a grid, the same
 /// values are another field. `node_of` tells the node of each point.
 fn check_triangles(triangles: &Triangles, node_of: &[usize], mesh: &Mesh) -> Result<(), String> {
     let sorted = |mut corners: [usize; 3]| {
