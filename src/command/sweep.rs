@@ -29,7 +29,7 @@ pub fn run(
     let phases = Phases::start(quiet);
     let enter = |done| phases.enter(format!("{done} of {runs} runs"));
     enter(0);
-    // A sweep that is stopped leaves the table of what it has solved.
+    // A stopped sweep leaves the table of its solved runs.
     let mut written = Instant::now();
     let done = |sweep: &Sweep| {
         enter(sweep.results.len());

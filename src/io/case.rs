@@ -240,7 +240,7 @@ fn parse(source: Source, mesh: Option<Mesh>) -> Result<Case, FileError> {
 
 fn text(bytes: Vec<u8>, file: &Path) -> Result<String, FileError> {
     let wrong = |error: Failure| error.at(file, Position::File);
-    // What the TOML reader and the expressions make of it.
+    // The memory of the TOML reader and the expressions.
     memory::check(MEMORY_PER_BYTE * bytes.len() as u64).map_err(|lack| wrong(lack.into()))?;
     String::from_utf8(bytes).map_err(|error| {
         let byte = error.utf8_error().valid_up_to() + 1;

@@ -60,7 +60,7 @@ fn held(outline: &Outline) -> String {
 fn boundaries(case: &Case, lines: &mut Lines) {
     let (problem, mesh) = (&case.problem, &case.problem.mesh);
     let space = Space::new(mesh, Degree::One);
-    // What they cannot say is an error of the case, which is reported as such.
+    // A failure of these sums is an error of the case, which is reported as such.
     let loads = loads::resultants(problem, &space).unwrap_or_default();
     let loads = match problem.material.are_of_revolution() {
         true => loads.of_the_revolution(),

@@ -58,7 +58,8 @@ pub fn read_with_pairs(file: &Path) -> Result<(Made, Vec<Pair>)> {
     let mut cursor = Cursor { bytes: &bytes, file, at: 0, version: Version::Four, binary: false };
     let names = read_sections(&mut cursor)?.curve_names();
     let with = |pairs: &[Pair]| from_bytes(&bytes, file, None, pairs);
-    // A mesh in which bodies touch is refused but for pairs: all are taken for some first, unless these are too many to look at.
+    // A mesh in which bodies touch is refused without pairs: so all pairs of named curves are tried first, unless there are too
+    // many.
     let count = if names.len() <= MOST_NAMES { names.len() } else { 0 };
     let all: Vec<Pair> = (0..count)
         .flat_map(|j| (0..j).map(move |i| (i, j)))
@@ -158,7 +159,7 @@ fn read_format(cursor: &mut Cursor) -> Result<()> {
             }
             None if !cursor.rest().is_empty() => {}
             _ => {
-                // Without its words: a case of somebody else may name a file that is none of his business.
+                // Quote no words of the file: somebody else's case may name a private file.
                 let said = "this is no Gmsh mesh: expected a section $MeshFormat; gmsh -2 PART.geo makes PART.msh from a geometry";
                 return Err(cursor.wrong_at(0, said.to_owned()));
             }
@@ -207,7 +208,7 @@ fn read_names(cursor: &mut Cursor) -> Result<Names> {
         let dimension = text.int_within(0..=3, "a dimension from 0 to 3")?;
         let tag = text.int("the tag of a physical group")?;
         let (start, line) = text.line();
-        // Of a name in another encoding what can be read: it matters only if the case uses it.
+        // Names in another encoding are read as far as possible: they matter only if the case uses them.
         let name = String::from_utf8_lossy(line);
         let name = name.strip_prefix('"').and_then(|name| name.strip_suffix('"'));
         let name = name.ok_or_else(|| {

@@ -16,7 +16,7 @@ pub fn round_below(x: f64) -> f64 {
 /// The smallest of the numbers 1, 2, 5 times powers of ten that is not below `x`.
 fn round_above(x: f64) -> f64 {
     let below = round_below(x);
-    // The next one is 2 or 2.5 times as large.
+    // The next round number is 2 or 2.5 times as large.
     if below == x { x } else { round_below(2.6 * below) }
 }
 

@@ -301,7 +301,7 @@ type NumberFormat<'a> = &'a dyn Fn(f64) -> String;
 /// that are rounding are 0.
 fn cells(r: &Results, shown: NumberFormat) -> Vec<(String, String)> {
     let q = &r.quantities;
-    // That of the summary: the recovered one.
+    // The recovered pressure, as in the summary.
     let peak = r.contact.iter().map(|part| part.peak_pressure).reduce(f64::max);
     let von_mises = r.stress.as_ref().map(|stress| stress.von_mises.value);
     let is_rounding = von_mises.is_some_and(|stress| summary::is_no_stress(r, stress));
@@ -369,7 +369,7 @@ impl Sweep {
         let mut runs: Vec<(Vec<(String, String)>, String)> =
             self.results.iter().map(of_run).collect();
         runs.resize_with(self.values.len(), || (Vec::new(), NOT_SOLVED.to_owned()));
-        // gamma0 as a key stands there already.
+        // gamma0 as a swept key has a column already.
         let is_new = |name: &str| !self.keys.iter().any(|key| key == &format!("method.{name}"));
         let mut columns: Vec<&str> = Vec::new();
         for (name, _) in runs.iter().flat_map(|(cells, _)| cells) {

@@ -143,7 +143,7 @@ impl Constraints {
                 }
             }
             [one, other] => {
-                // The dual basis: each across the other's direction.
+                // The dual basis: each vector is perpendicular to the other direction.
                 let sine = cross(one.direction, other.direction);
                 let [first, second] = [other.direction, one.direction].map(|[x, y]| [y, -x]);
                 let duals = [first.map(|c| c / sine), second.map(|c| c / -sine)];
@@ -272,7 +272,7 @@ fn independent<'d, 'a>(
         };
         if !((demand.value - value).abs() <= tolerance) {
             let (first, second) = (first.to_owned(), demand.name.to_owned());
-            // Of the outward normal of a side along an axis it is the component that is said.
+            // For a side along an axis the message has the component, not that along the outward normal.
             let sign = demand.axis().map_or(1.0, |c| d[c]);
             let direction = d.map(|c| sign * c + 0.0);
             let values = [value, demand.value].map(|value| sign * value);

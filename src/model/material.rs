@@ -186,7 +186,7 @@ pub fn stable_orthotropic(moduli: Orthotropic) -> Result<Material<f64>, Material
             return Err(MaterialError::Modulus { name, value, expected });
         }
     }
-    // sigma_zz that keeps eps_3 = 0, and the strains in the plane of a stress there, with that.
+    // The sigma_zz that keeps eps_3 = 0, and the strains in the plane with this sigma_zz.
     let across = across.map(|Across { e3, nu13, nu23 }| [nu13 * (e3 / e1), nu23 * (e3 / e2)]);
     let [along, aside] = across.unwrap_or_default();
     let [xx, xy, yy] = match moduli.across {

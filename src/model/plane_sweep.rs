@@ -139,7 +139,7 @@ impl<'a> Sweep<'a> {
             at = self.column.first_not(|e| self.side(e, p) > 0.0);
         }
         let far = |e: usize| self.place(self.ranks[e][1]);
-        // From below. Few edges begin at a vertex.
+        // Sorted from below; few edges begin at a vertex.
         let mut beginning: Vec<usize> = Vec::new();
         for &e in self.at[rank].iter().filter(|&&e| self.ranks[e][0] == rank) {
             // Of two that lie on each other, the one with the body below comes first: a vertex that hangs there is no overlap.

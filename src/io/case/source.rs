@@ -153,7 +153,7 @@ fn merge<'s>(below: &mut DeTable<'s>, above: DeTable<'s>, path: &str) -> Result<
                 ));
             }
             _ => {
-                // With the key, so that the place is the new one.
+                // Insert with the key, so that messages have the place of the setting.
                 below.remove(name);
                 below.insert(key, value);
             }
@@ -206,7 +206,7 @@ const REMEDIES: [(&str, &str); 11] = [
         "a backslash in \"...\" begins an escape; expected '/' in a path, or the text in '...'",
     ),
     ("invalid mantissa", "expected a digit before the decimal point (0.5, not .5)"),
-    // It says so where there is no value at all, too.
+    // The TOML reader has this message for a missing value, too.
     (NO_QUOTES, "expected a value; a text must be in quotes"),
     ("invalid boolean", "expected a value; a text must be in quotes"),
     ("invalid time", NO_RANGE),

@@ -90,7 +90,7 @@ impl Number for Dual {
             Unary::Exp => value,
             Unary::Abs => 1.0_f64.copysign(a.value),
         };
-        // A factor is not asked for where the operand is constant: it may be infinite there.
+        // A factor is not computed where the operand is constant, as it may be infinite there.
         let constant = a.slope == [0.0; 2];
         Dual { value, slope: if constant { a.slope } else { a.slope.map(|slope| factor * slope) } }
     }

@@ -108,7 +108,7 @@ fn locking_ratio(material: &Material<f64>) -> Option<String> {
     let (a, b, c) = ((c11 - 2.0 * c12 + c22) / 4.0, c66, (c16 - c26) / 2.0);
     let [least, most] = [-1.0, 1.0].map(|sign| (a + b) / 2.0 + sign * ((a - b) / 2.0).hypot(c));
     let ratio = area / least;
-    // A fibre is stiff against a change of area and against a shear alike.
+    // A fibre resists a change of area and a shear alike.
     let locks = ratio * (1.0 + ROUNDED) >= 1.0 / (1.0 - 2.0 * LOCKING) && area > STIFFER * most;
     let poisson = short((1.0 - 1.0 / ratio) / 2.0, 6);
     locks.then(|| match material.is_isotropic() {

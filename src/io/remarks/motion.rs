@@ -40,7 +40,7 @@ pub(super) fn off_the_obstacle(
         };
         let mut worst: Option<(f64, usize, f64, f64)> = None;
         for edge in edges {
-            // The vertices: on a curved edge the gap at its middle is that of a place off the chord.
+            // Vertices only: on a curved edge the gap in the middle is that of a place off the chord.
             for point in [edge.points.first(), edge.points.last()].into_iter().flatten() {
                 let (x, motion) = moved(solution, point.node);
                 let Some(found) = distance(obstacle, x) else { continue };
