@@ -572,8 +572,8 @@ struct Dual {
     left: f64,
 }
 
-/// A bound of |r|_A*, where |t|_A* <= sum of `crude`_i |t_i| for every t, and |v|_a^2 <= |v|_A^2 / `coercivity`. A bound below
-/// `negligible` is not improved.
+/// A bound of |r|_A*, where |t|_A* <= sum of `crude`_i |t_i| for every t, and |v|_a^2 <= |v|_A^2 / `coercivity`. A rest of r whose
+/// norm is below `negligible` is not corrected any further.
 fn dual_norm(
     a: &Product,
     factor: &Factor,

@@ -869,7 +869,7 @@ fn limits(
     [first, second.max(0.0)]
 }
 
-/// The relative amount by which the limits are rounded down.
+/// The relative amount by which the limits may be below the best provable ones.
 const CLOSE: f64 = 1e-3;
 
 /// An upper bound of c of Theorem 13.3a, if known and below 1.
