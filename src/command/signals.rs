@@ -30,7 +30,7 @@ mod unix {
     /// A signal has come, and ends this program.
     static ENDING: AtomicBool = AtomicBool::new(false);
 
-    /// If a termination signal is being handled, blocks until exit, so that no errors that follow from the signal are printed.
+    /// Waits for the end where a signal ends this program: nothing that fails because of it is worth a word.
     pub fn give_way() {
         while ENDING.load(Ordering::SeqCst) {
             thread::park();

@@ -28,8 +28,8 @@ use crate::study::Errors;
 
 const PICTURE: &str = "picture.svg";
 
-/// The names of all files that a solve may write into its folder, by this program or by the engine fenicsx. A run removes those
-/// of an earlier run that it does not write itself. The last name says that a set is whole.
+/// The names of all files that a solve may write into its folder, by this program or by the engine fenicsx. Those of an earlier
+/// run that a run does not write itself are removed. The last one says that a set is whole.
 pub const FILES: [&str; 11] = [
     "solution.vtu",
     "contact.vtu",
@@ -57,8 +57,8 @@ pub struct Extra {
     pub report: bool,
 }
 
-/// Writes the files of a case into `folder`; returns their paths and the content of result.json. A certificate or a picture
-/// that can't be made keeps back no other file.
+/// Writes the files of a case into `folder`; returns their paths and the content of result.json. Where there is no
+/// certificate that was asked for, or no picture, all else is written.
 pub fn write(
     folder: &Path,
     case: &Case,
@@ -263,7 +263,7 @@ pub fn results(
     Ok(results)
 }
 
-/// The reason why errors are missing although there is an exact solution.
+/// The reason why there are no errors where there is an exact solution.
 const NO_ERRORS: &str = "the errors are not given: near its singular point the exact solution is beyond the range of doubles";
 
 /// The largest stresses with the names of the physical surfaces that they are in.

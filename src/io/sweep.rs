@@ -24,7 +24,7 @@ use crate::quote;
 use crate::results::Solution;
 use crate::results::answers::label;
 
-/// The largest number of runs of a sweep: more are a mistake.
+/// The most runs of a sweep: more are a mistake of the person who asks for them.
 pub const MOST_RUNS: usize = 10_000;
 
 /// The largest number of remarks below the table.

@@ -21,7 +21,7 @@ use nalgebra::Vector2;
 
 use super::mesh::{BoundaryEdge, Mesh, NO_ANGLE, length};
 
-/// The largest bend, in degrees, that is no corner: that of a circle of nine edges. A chamfer bends by 45.
+/// A bend of more degrees is a corner: a circle of nine edges turns by as much at a vertex, a chamfer by 45.
 pub const SMOOTH: f64 = 40.0;
 
 /// The normals at the ends of all boundary edges.

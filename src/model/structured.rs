@@ -39,7 +39,7 @@ pub struct Rectangle {
     pub diagonal: Diagonal,
 }
 
-/// The largest number of cells of a rectangle: the factorisation of more would not fit into the memory of one machine.
+/// The most cells that a rectangle may have: beyond it the factorisation would not fit into the memory of one machine.
 pub const MOST_CELLS: usize = 4_000_000;
 
 impl Rectangle {
