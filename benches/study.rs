@@ -405,6 +405,45 @@ fn theorem(text: &mut String, samples: &[Sample]) -> Result<()> {
     Ok(())
 }
 
+/// The page with each table that stands directly above a figure `NAME.svg` moved into the file NAME.csv beside that figure.
+fn tables_beside_figures(text: &str, figures: &Path) -> Result<String> {
+    let paragraphs: Vec<&str> = text.split("\n\n").collect();
+    let mut page = Vec::new();
+    for (i, paragraph) in paragraphs.iter().enumerate() {
+        let below = paragraphs.get(i + 1).and_then(|next| next.split_once("](figures/"));
+        let figure = below.and_then(|(_, link)| link.split_once(".svg)"));
+        match figure.filter(|_| paragraph.starts_with('|')) {
+            Some((name, _)) => {
+                fs::write(figures.join(format!("{name}.csv")), csv_of_table(paragraph))?;
+                page.push(format!("All numbers: [{name}.csv](figures/{name}.csv)."));
+            }
+            None => page.push((*paragraph).to_owned()),
+        }
+    }
+    Ok(page.join("\n\n"))
+}
+
+/// A table of Markdown in CSV, with a row for each of the lines that `<br>` makes in its cells.
+fn csv_of_table(table: &str) -> String {
+    let mut text = String::new();
+    for row in table.lines().filter(|row| !row.starts_with("| ---")) {
+        let row = row.trim();
+        let row = row.strip_prefix('|').unwrap_or(row);
+        let row = row.strip_suffix('|').unwrap_or(row);
+        let cells: Vec<Vec<&str>> =
+            row.split('|').map(|cell| cell.trim().split("<br>").collect()).collect();
+        for line in 0..cells.iter().map(Vec::len).max().unwrap_or(0) {
+            let entries = cells.iter().filter_map(|cell| cell.get(line).or(cell.first()));
+            let quoted = entries.map(|entry| match entry.contains(',') {
+                true => format!("\"{entry}\""),
+                false => (*entry).to_owned(),
+            });
+            text += &(quoted.collect::<Vec<String>>().join(",") + "\n");
+        }
+    }
+    text
+}
+
 /// The mesh with all lengths multiplied by `factor`.
 fn scaled(mesh: &Mesh, factor: f64) -> Result<Mesh> {
     let names: Vec<String> = mesh.boundary_names().map(str::to_owned).collect();
@@ -678,6 +717,6 @@ fn main() -> Result<()> {
     theorem(&mut text, &samples)?;
     eprintln!("Hertz and the disk");
     literature(&mut text)?;
-    fs::write("docs/convergence.md", text)?;
+    fs::write("docs/convergence.md", tables_beside_figures(&text, figures)?)?;
     Ok(())
 }

@@ -3,7 +3,7 @@
 
     python3 reference/check_bound.py CERTIFICATE.json [...]
 
-It reads certificate.json and the arrays beside it, verifies the conditions of the theorem (docs/theory.md, 7.2) in doubles
+It reads certificate.json and the arrays beside it, verifies the conditions of the theorem (docs/a-posteriori.md, 7.2) in doubles
 with room for rounding, and evaluates the bound with a stress of its own: on each of the three parts of a triangle of degree
 2, and of all stresses with the forces of the file the one that is nearest to C eps(v). So what it finds is at most what
 `signorini audit` finds, and it shares no formula of stresses with that. Likewise for the forces that a certificate has, which lie

@@ -72,7 +72,7 @@ pub fn run() -> ExitCode {
     ended(done.and_then(|Done { text, code }| say(&text).map(|()| code)))
 }
 
-/// The exit code, after a word about a failure.
+/// The exit code, after the message of a failure.
 fn ended(said: Result<u8, Failure>) -> ExitCode {
     match said {
         Ok(code) => ExitCode::from(code),
@@ -88,13 +88,13 @@ fn code(failure: &Failure) -> u8 {
     if failure.is_wrong() { WRONG } else { FAILED }
 }
 
-/// Says it on standard output.
+/// Writes a text to standard output.
 fn say(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     heard(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
 
-/// A reader who has left has heard enough; the files are written in any case.
+/// A closed pipe is no failure: the files are written in any case.
 fn heard(written: io::Result<()>) -> Result<(), Failure> {
     match written {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
@@ -104,7 +104,7 @@ fn heard(written: io::Result<()>) -> Result<(), Failure> {
     }
 }
 
-/// Says it on standard error. Where there is none, the exit code says it alone.
+/// Writes a text to standard error. Where there is none, the exit code stands alone.
 fn complain(text: &str) {
     let _ = writeln!(io::stderr(), "{}", quote::lines(text));
 }
@@ -120,7 +120,7 @@ fn read(CaseArguments { file, settings }: &CaseArguments) -> Result<Case, Failur
     Ok(Case::parse(&file, &text, settings)?)
 }
 
-/// The text of a case, and what messages call its file.
+/// The text of a case, and the name of its file in messages.
 fn read_text(file: &Path) -> Result<(PathBuf, String), Failure> {
     let (name, text) = if is_standard_input(file) {
         let name = Path::new(STANDARD_INPUT);

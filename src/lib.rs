@@ -3,7 +3,7 @@
 //!
 //! Linear elastic, small displacements and rotations, plane strain, plane stress or bodies of revolution. Contact is with rigid obstacles
 //! and between deformable bodies, without friction or with Tresca's or Coulomb's: they push and never pull; gap and direction are those of
-//! the undeformed bodies. Not computed: 3D, large displacements or sliding, loads one after the other, friction in bodies of revolution,
+//! the undeformed bodies. Not computed: 3D, large displacements or sliding, friction in bodies of revolution,
 //! plasticity and other nonlinear materials, dynamics, thermal strain.
 //!
 //! A block on a rigid floor, whose right half the load lifts off; more in the folder

@@ -1,5 +1,5 @@
-//! Memory, asked for before it is taken. An allocation that fails ends a Rust program, and a system that has
-//! promised too much ends it without a word: so what grows with the input is predicted and refused in time.
+//! Memory, checked before allocation. An allocation that fails ends a Rust program, and a system that has promised too much
+//! kills the program without a word: so memory that grows with the input is predicted, and refused in time.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,14 +19,13 @@ pub struct OutOfMemory {
     pub available: Option<u64>,
 }
 
-/// The bytes that are always there, or nothing works.
+/// The number of bytes that need no check.
 const LITTLE: u64 = 1 << 20;
 
 /// Checks that so many bytes, beside those already taken, can be had now.
 ///
 /// # Errors
-/// [`OutOfMemory`] if the process may not have them (`ulimit -v`), or the system, or the group of processes that this one
-/// belongs to, does not have them.
+/// [`OutOfMemory`] if the limit of the process (`ulimit -v`), the system or the control group does not allow so many bytes.
 pub fn check(bytes: u64) -> Result<(), OutOfMemory> {
     if bytes < LITTLE {
         return Ok(());

@@ -7,16 +7,16 @@
 use std::cmp::Ordering;
 use std::path::Path;
 
-/// The most characters of a word; more are cut.
+/// The largest number of characters of a word; longer words are cut.
 const MOST: usize = 60;
 
-/// The most characters of a title; more are cut.
+/// The largest number of characters of a title; longer titles are cut.
 const MOST_OF_A_LINE: usize = 200;
 
 /// The longest path shown whole; of a longer one the end is shown.
 const MOST_OF_A_PATH: usize = 300;
 
-/// The most names that are shown; more are counted.
+/// The largest number of names that are shown; more are counted.
 const MOST_NAMES: usize = 20;
 
 /// `text` between two `mark`s.
@@ -71,7 +71,7 @@ pub fn short(x: f64) -> String {
     number(format!("{x:.2e}").parse().unwrap_or(x))
 }
 
-/// A number with so many decimals, unless that were a row of zeros.
+/// A number with so many decimals; from 1e16 on, which has none, as [`number`] writes it.
 pub fn fixed(x: f64, decimals: usize) -> String {
     if x.abs() < 1e16 { format!("{x:.decimals$}") } else { number(x) }
 }

@@ -73,7 +73,7 @@ fn specimens() -> Result<Vec<Specimen>> {
         Ok::<_, String>(clamped(mesh, material, sides))
     };
     let rectangle_of = |width, n, diagonal| Structured::Rectangle(rectangle(width, n, diagonal));
-    for n in [2, 4, 8, 16] {
+    for n in [2, 16] {
         let square = rectangle_of(1.0, n, Diagonal::Right);
         add(&format!("square, n = {n}"), body(square, None, strain(), &["top"])?);
     }

@@ -4,7 +4,7 @@
 //! R = R0 - int C^-1 (sigma(u) - m) : (C eps(w) - rho) + int r (g - u_n) + int |sigma_n| omega,   omega = phi - w_n,
 //! R0 = L(w) - a(v, w) + int r (v_n - g) + 1/2 int C^-1 (C eps(v) - tau) : (C eps(w) - rho)                          \[Q4\]
 //!
-//! (docs/theory.md, 7.7). With eta = |C eps(w) - rho|, r >= 0 and omega >= 0 it is at least R0 - M eta. In general the two
+//! (docs/a-posteriori.md, 7.7). With eta = |C eps(w) - rho|, r >= 0 and omega >= 0 it is at least R0 - M eta. In general the two
 //! integrals over Gamma_C are bounded by B and A where r is bounded by multiples of |tau_n| and omega by multiples of g -
 //! v_n.
 //!

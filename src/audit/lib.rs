@@ -2,7 +2,7 @@
 //! numbers of a certificate, and trusts nothing else: no solver, no mesh, no linear algebra. With the kernel it is the trusted
 //! core; `cargo tree -p signorini-audit` lists all that it depends on.
 //!
-//! Docs: docs/theory.md, sections 7.2 to 7.4; docs/certificates.md.
+//! Docs: docs/a-posteriori.md, sections 7.2 to 7.4; docs/certificates.md.
 //!
 //! | module | what it does |
 //! | --- | --- |

@@ -1,7 +1,7 @@
 //! Evaluates the proof of an error bound: the checker. It trusts no solver and no linear algebra; it reads
 //! numbers, and computes with [`Enclosing`] ones, so that rounding is part of the answer.
 //!
-//! **Theorem** (docs/theory.md, section 7.3). Let u be the solution of (1)-(2). If v = u_D on Gamma_D and v_n <= g on Gamma_C,
+//! **Theorem** (docs/a-posteriori.md, section 7.3). Let u be the solution of (1)-(2). If v = u_D on Gamma_D and v_n <= g on Gamma_C,
 //! and if div tau + f = 0, tau n = t on Gamma_N, tau_t = 0 and tau_n <= 0 on Gamma_C, then
 //!
 //! |u - v|_a^2 + |sigma(u) - tau|^2_{C^-1} <= |C eps(v) - tau|^2_{C^-1} + 2 int tau_n (v_n - g).

@@ -2,7 +2,7 @@
 //! shares in the square of the bound, and again, until the bound is as small as it is to be.
 //!
 //! The target may be a contact force in place of the energy norm: then the force is to lie between two numbers that are that
-//! near to each other, and the shares are those in the distance of the two (docs/theory.md, 7.7).
+//! near to each other, and the shares are those in the distance of the two (docs/a-posteriori.md, 7.7).
 //!
 //! A mesh is refined where the fewest triangles have the share [`THETA`] of the whole (Doerfler's marking), by
 //! [`newest-vertex bisection`](crate::model::mesh::bisection). Newton's method starts from the coarser solution.

@@ -1,4 +1,4 @@
-//! Stresses for what affine body forces and tractions lack (docs/theory.md, section 7.4).
+//! Stresses for what affine body forces and tractions lack (docs/a-posteriori.md, section 7.4).
 //!
 //! On a triangle let B = sum c_ia l_j l_k l_a E_i (x) E_i over the edges i and the vertices a (i, j, k in turn). It has no
 //! traction on the boundary: on edge i, E_i . N_i = 0, on the others l_j l_k = 0. Its divergence is

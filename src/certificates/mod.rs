@@ -1,6 +1,6 @@
 //! How far a displacement is from the solution of (1)-(2): an upper bound of |u - v|_a without an unknown constant.
 //!
-//! Docs: docs/theory.md, sections 7.2 to 7.4.
+//! Docs: docs/a-posteriori.md, sections 7.2 to 7.4.
 //!
 //! | module | what it does |
 //! | --- | --- |

@@ -2,7 +2,7 @@
 //!
 //! The certificate is exact where f is affine, t and u_D are affine on edges and g is affine along Gamma_C. Elsewhere it
 //! is a certificate for data f_h, t_h, u_h, g_h near those of the problem, and the bound grows by explicit terms
-//! (docs/theory.md, section 7.4).
+//! (docs/a-posteriori.md, section 7.4).
 //!
 //! - **Loads.** f - f_h and t - t_h are orthogonal to affine functions, so rigid motions r may be subtracted:
 //!   int_T (f - f_h) . w <= |f - f_h|_T |w - r|_T, and |w - r|_T <= K (h_T / pi) |eps(w)|_T by Payne and Weinberger's

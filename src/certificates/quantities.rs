@@ -1,7 +1,7 @@
 //! Proved quantities of contact: forces, moments and reactions between two numbers, where contact can act, and how
 //! high the pressure is at least.
 //!
-//! From docs/theory.md, section 7.7. For admissible v and tau let m = (C eps(v) + tau) / 2 and
+//! From docs/a-posteriori.md, section 7.7. For admissible v and tau let m = (C eps(v) + tau) / 2 and
 //!
 //! M^2 = |C eps(v) - tau|^2 / 4 + int tau_n (v_n - g),   A = int sigma_n (v_n - g) >= 0,   B = int tau_n (u_n - g) >= 0.
 //!

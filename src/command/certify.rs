@@ -1,4 +1,4 @@
-//! `signorini certify`: how wrong a displacement is that any program computed; `signorini audit`: whether a certificate holds.
+//! `signorini certify` bounds the error of a displacement that any program computed; `signorini audit` verifies a certificate.
 
 use std::path::Path;
 
@@ -45,7 +45,7 @@ pub fn certify(
     Ok(summarised(&summary::certified(&case, displacement, &certified, &files), quiet))
 }
 
-/// Verifies a certificate from scratch, and that it is of a case if one is named.
+/// Verifies a certificate from scratch and, if a case is named, that the certificate is of this case.
 pub fn audit(
     path: &Path,
     case: Option<&Path>,

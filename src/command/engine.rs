@@ -1,9 +1,9 @@
 //! The engine past one machine: hands a case to the reference in FEniCSx (`reference/fenicsx`), which runs under MPI.
 //!
-//! The engine that runs is the one this program was told to run, or what lies beside it. Python, PETSc and DOLFINx all read
-//! files of the folder in which they are started (modules, `.petscrc`, `dolfinx_jit_options.json`): so they are started in a
-//! fresh folder, where they also write, with paths from the root, and Python does not look for modules where it is started.
-//! The files that they have written there are then published as this program's own files are.
+//! The engine is the package that this program was told to run, or the package beside the program. Python, PETSc and DOLFINx
+//! all read files of the folder in which they are started (modules, `.petscrc`, `dolfinx_jit_options.json`): so they are
+//! started in a fresh folder, where they also write, with absolute paths, and Python does not look for modules there. Their
+//! files are then published as this program's own files are.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -73,20 +73,20 @@ fn failed(ended: &Output, case: &Path, full: &Path) -> Failure {
     let said = String::from_utf8_lossy(&ended.stderr);
     let said = said.trim().replace(&*full.to_string_lossy(), &case.to_string_lossy());
     let said = said.strip_prefix("error: ").unwrap_or(&said);
-    // Of a long complaint the end says why.
+    // The end of a long message has the reason.
     let cut = said.char_indices().rev().nth(MOST).map_or(0, |(at, c)| at + c.len_utf8());
     let message = match &said[cut..] {
         "" => format!("the engine fenicsx ended with {}", ended.status),
         said => said.to_owned(),
     };
-    // It refused the case, as this program would have.
+    // The engine refused the case, as this program would have.
     Failure::new(ended.status.code() == Some(2), message)
 }
 
 /// A Python that does not look for modules in the folder where it is started.
 fn safe(python: &Path) -> Command {
     let mut command = Command::new(python);
-    // The variable is for the Pythons that this one starts under MPI.
+    // The variable is for the processes of Python that MPI starts.
     command.arg("-P").env("PYTHONSAFEPATH", "1").stdin(Stdio::null());
     command
 }

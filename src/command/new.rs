@@ -20,7 +20,7 @@ pub fn run(mesh: &Path, out: Option<&Path>, quiet: bool) -> Result<Done, Failure
     let title = mesh.file_stem().unwrap_or_default().to_string_lossy();
     let text = draft::draft(&title, &name_for(mesh, &out), &made.mesh, &pairs);
     write(&out, &text)?;
-    // The draft is a guess about a mesh that nobody has described yet: what is wrong with it is said, and the file stays.
+    // The draft is a guess: mistakes in it are reported, and the file stays.
     let case = match Case::parse(&out, &text, &[]) {
         Ok(case) => case,
         Err(error) => {
@@ -53,7 +53,7 @@ fn name_for(mesh: &Path, out: &Path) -> PathBuf {
     }
 }
 
-/// Writes a file that was not there.
+/// Writes a new file, and overwrites none.
 fn write(out: &Path, text: &str) -> Result<(), Failure> {
     let failed = |error: std::io::Error| {
         let name = quote::path(out);
@@ -66,7 +66,7 @@ fn write(out: &Path, text: &str) -> Result<(), Failure> {
     };
     let mut file = OpenOptions::new().write(true).create_new(true).open(out).map_err(failed)?;
     file.write_all(text.as_bytes()).and_then(|()| file.sync_all()).map_err(|error| {
-        // Half a case file is of no use.
+        // Remove an incomplete case file.
         let _ = fs::remove_file(out);
         failed(error)
     })

@@ -9,7 +9,7 @@ use signorini::solve::Phase;
 /// To the start of the line, which is emptied.
 const CLEAR: &str = "\r\x1b[2K";
 
-/// The line, with the time since the start of the work; it is removed when this is dropped. `None` if nothing is shown.
+/// The line, with the time since the start of the work; dropping the value removes the line. `None` if nothing is shown.
 pub struct Phases(Option<Instant>);
 
 impl Phases {

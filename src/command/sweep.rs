@@ -12,7 +12,7 @@ use signorini::io::sweep::{self, Extent, ParameterAxis, Sweep};
 use super::progress::Phases;
 use super::{Done, FAILED, SHORT, WRONG, folder, read_text, summarised};
 
-/// A sweep writes the table of what it has solved so often.
+/// The time between two writings of the table of a sweep.
 const BETWEEN_TABLES: Duration = Duration::from_secs(1);
 
 pub fn run(
@@ -29,7 +29,7 @@ pub fn run(
     let phases = Phases::start(quiet);
     let enter = |done| phases.enter(format!("{done} of {runs} runs"));
     enter(0);
-    // A sweep that is stopped leaves the table of what it has solved.
+    // A stopped sweep leaves the table of its solved runs.
     let mut written = Instant::now();
     let done = |sweep: &Sweep| {
         enter(sweep.results.len());
@@ -51,7 +51,7 @@ pub fn run(
     ended(&sweep, &folder, quiet)
 }
 
-/// Writes the table, and tells how its runs ended.
+/// Writes the table, and returns how its runs ended.
 pub(super) fn ended(sweep: &Sweep, folder: &Path, quiet: bool) -> Result<Done, Failure> {
     let codes: Vec<u8> = sweep.results.iter().map(code).collect();
     let written = sweep.write(folder)?;

@@ -1,8 +1,8 @@
 //! Gamma_C on the mesh: its pieces with their directions and gaps, gamma = gamma0 h_T of (7), the coercivity number kappa.
 //!
 //! The direction of contact is a field n~, given at the nodes: by the obstacle's closest point where there is an obstacle, else
-//! by the normal of the smooth boundary (`boundary_normals`), on which the nodes are placed when the gap is measured. On a
-//! straight line without an obstacle n~ = n, and all is the paper's method to the bit.
+//! by the normal of the smooth boundary (`boundary_normals`), from which the gap is measured. On a straight line without an
+//! obstacle n~ = n, and the method is the paper's, to the bit.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -92,7 +92,7 @@ fn contact_edges(problem: &Problem) -> Result<Vec<(BoundaryEdge, &str)>, DataErr
     if edges.is_empty() && problem.pairs.is_empty() { Err(DataError::NoContact) } else { Ok(edges) }
 }
 
-/// Sorts edges or pieces into chains: each is followed by the one that starts where it ends, if there is one.
+/// Sorts edges or pieces into chains, in which each item starts where the item before it ends.
 fn chains<T, K: Ord + Copy>(items: Vec<T>, ends: impl Fn(&T) -> [K; 2]) -> Vec<T> {
     let targets: BTreeSet<K> = items.iter().map(|item| ends(item)[1]).collect();
     let mut from: BTreeMap<K, T> = items.into_iter().map(|item| (ends(&item)[0], item)).collect();
@@ -173,7 +173,7 @@ impl ContactLine {
         sorted.sort_unstable_by(f64::total_cmp);
         let typical = sorted.get(sorted.len() / 2).copied().ok_or(DataError::NoContact)?;
         let constant = sorted.last().copied().ok_or(DataError::NoContact)?;
-        // Equal edges differ by rounding: the choice must not.
+        // Equal edges differ by rounding, which must not decide the choice.
         let stretches = self.pieces.iter().flat_map(|piece| &piece.stretches);
         let equal = stretches.filter(|s| constants[&s.edge.triangle] >= constant * (1.0 - ROUNDED));
         let ends = |stretch: &Stretch| {
@@ -248,7 +248,7 @@ impl ContactLine {
     }
 }
 
-/// The part of kappa on a triangle that comes from a side of a piece, were that side the only one on its edge.
+/// The part of kappa on a triangle that a side of a piece would cause if alone on its edge.
 pub(crate) struct Share<S> {
     /// The triangle, its edge, and the boundary on the other side, if there is one.
     place: (usize, usize, Option<Arc<str>>),
@@ -268,8 +268,8 @@ impl<S> Share<S> {
     }
 }
 
-/// kappa on each triangle: the sum over its edges and their partners. Of pieces that share an edge but no part of it the `largest`
-/// counts, for the integrals over their parts are together that over the edge at most.
+/// kappa on each triangle: the sum over its edges and their partners. Of pieces on different parts of one edge the `largest`
+/// counts, for their integrals add up to at most that over the edge.
 pub(crate) fn by_triangle<S: Scalar>(
     shares: Vec<Share<S>>,
     largest: impl Fn(S, S) -> S,
@@ -309,7 +309,7 @@ pub fn assemble(
     Ok(ContactLine::new(problem, space)?.with_gamma(problem, space, gamma.into()))
 }
 
-/// Takes out friction that bears nothing all along its boundary: there the method is that of contact alone, to the bit.
+/// Removes friction whose bound is zero all along a boundary: the method there is that of contact alone, to the bit.
 ///
 /// # Errors
 /// Friction on a boundary without contact.
@@ -323,7 +323,8 @@ fn without_idle_friction(problem: &Problem, pieces: &mut [PieceGeometry]) -> Res
     Ok(())
 }
 
-/// Checks that the friction of these pieces, on what is called `what`, can be computed, and takes it out where it bears nothing.
+/// Checks that the friction of these pieces, on what is called `what`, can be computed, and removes friction whose bound is
+/// zero.
 ///
 /// # Errors
 /// Friction without contact, and in a body of revolution.
@@ -404,8 +405,9 @@ fn begin_at(slip: &[Vec<f64>], pieces: &mut [Arc<PieceGeometry>]) -> Result<(), 
     Ok(())
 }
 
-/// No edge that faces away from its obstacle lies inside it, and no boundary faces away as a whole: else the obstacle is on the
-/// other side of the body. Other edges may face away, as those of the upper half of a disk on a floor.
+/// Checks that no edge that faces away from its obstacle lies inside the obstacle, and that no boundary faces away as a whole:
+/// else the obstacle is on the other side of the body. Other edges may face away, as those of the upper half of a disk on a
+/// floor.
 fn check_sides(problem: &Problem, line: &[Arc<PieceGeometry>]) -> Result<(), DataError> {
     let is_away = |piece: &&Arc<PieceGeometry>| {
         let (_, normal) = problem.mesh.length_and_normal(piece.first().edge);
@@ -534,7 +536,7 @@ impl Obstacles<'_> {
     }
 }
 
-/// The value of `f` in the middle of an edge less the mean of its ends; 0 where it is known to be affine.
+/// The value of `f` in the middle of an edge less the mean of its ends; 0 where `f` is known to be affine.
 pub(crate) fn bulge_of(f: &SharedFunction, ends: [[f64; 2]; 2]) -> f64 {
     let [a, b] = ends;
     let middle = [0, 1].map(|c| (a[c] + b[c]) / 2.0);

@@ -1,5 +1,5 @@
-//! Method (8) on a mesh: all its parts in one place, and its [residual](super::residual) in doubles. On the free degrees of
-//! freedom the solution makes it zero; on the prescribed ones it is the reaction.
+//! Method (8) on a mesh: all its parts in one place, and its [residual](super::residual) in doubles: zero at the solution on
+//! the free degrees of freedom, the reaction on the prescribed ones.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -25,7 +25,7 @@ use crate::model::revolution;
 use crate::model::space::Space;
 use crate::model::{loads, material};
 
-/// Method (8) with everything that it needs.
+/// The data of method (8).
 pub struct Discretization<'a> {
     /// The problem.
     pub problem: &'a Problem,
@@ -53,8 +53,8 @@ pub struct Discretization<'a> {
     pub slides: Option<Slides>,
 }
 
-/// A functional of a displacement u at every basis function, and for each of the values the sum of the magnitudes of the products
-/// that were added up for it: times the unit roundoff it tells how well the value is known.
+/// A functional of a displacement u at every basis function, and for each value the sum of the magnitudes of the products that
+/// were added: this sum times the unit roundoff is the size of the rounding error.
 #[derive(Clone, Debug)]
 pub struct Functional {
     /// The values.
@@ -121,7 +121,7 @@ impl<'a> Discretization<'a> {
             let rounding = rounding_of_directions(&constraints, &space, &contact);
             let sliding = solvability::slides(&motions, &parts, &space, &load, &contact, rounding)
                 .map_err(|NotHeld { motions, drive }| {
-                    // That of the whole body, where loads are those of a radian.
+                    // The force is that of the whole body, the loads are those of a radian.
                     let whole = if problem.material.are_of_revolution() { TAU } else { 1.0 };
                     DataError::RigidMotion { motions, drive: drive.map(|drive| whole * drive) }
                 })?;

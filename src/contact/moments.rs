@@ -1,6 +1,6 @@
 //! The contact terms of (8) on one piece, int \[P\]+ N_a over s in \[0, 1\], enclosed in [balls](crate::kernel::ball).
 //!
-//! The integral is Lipschitz in P: where P is known to within a radius, so is it. For the centre of P, a polynomial of degree
+//! The integral is Lipschitz in P: a radius of P gives a radius of the integral. For the centre of P, a polynomial of degree
 //! 1 or 2, the edge is cut near its roots, and on each piece either P or nothing is integrated. No cut need be right: where
 //! the sign on a piece is not the one that was taken, |P| is bounded, and the piece's length times that bound is added to the
 //! radius. A cut that is off by e leaves |P| = O(e) there, and Newton's method in balls makes e some 2^-100.
@@ -122,8 +122,8 @@ fn friction_of<E: Element<N, M>, const N: usize, const M: usize>(
     }
 }
 
-/// The edge is cut near the roots of m, m - P and m + P. On each section P, m, -m or nothing is integrated; where that is not the
-/// clip, it differs from it by at most
+/// The edge is cut near the roots of m, m - P and m + P. On each section P, m, -m or nothing is integrated, which differs from
+/// the clip by at most
 ///
 /// - P: \[P - m\]+ + \[-P - m\]+,   m: \[m - P\]+ + \[-m\]+,   -m: \[m + P\]+ + \[-m\]+,   nothing: \[m\]+.
 fn by_sections<E: Element<N, M>, const N: usize, const M: usize>(
@@ -227,14 +227,14 @@ impl Parabola {
         if monotone || curvature.lower() >= 0.0 {
             return ends;
         }
-        // A parabola whose curvature is zero to rounding has no vertex to be near to: any point will do.
+        // A parabola whose curvature is zero to rounding has no vertex: any point will do.
         let vertex = -self.0[1].head() / (2.0 * self.0[2].head());
         let vertex = if vertex.is_nan() { a.head() } else { vertex };
         let near = PreciseBall::from(vertex.clamp(a.head(), b.head()));
         let (slope, length) = (PreciseBall::from((sign * self.slope(near)).magnitude()), b - a);
         let bend = PreciseBall::from(larger(curvature.upper(), 0.0)) * length * length;
         let tangent = sign * self.at(near) + slope * length + bend;
-        // A point a rounding error outside [a, b] would be at most |b - a| away, too, but for that error.
+        // A point outside [a, b] by a rounding error is still at most |b - a| away, up to this error.
         let slack = slope.magnitude() * 4.0 * f64::EPSILON;
         larger(ends, tangent.upper() + slack)
     }

@@ -1,4 +1,5 @@
-//! Two boundaries of elastic bodies that may touch each other: which points face each other, and the pieces of contact between them.
+//! Pairs of boundaries of elastic bodies that may touch: the points that face each other, and the pieces of contact between
+//! them.
 //!
 //! The smooth boundaries are those of `boundary_normals`. x1 on boundary 1 and x2 on boundary 2, with the outward normals n1 and n2
 //! there, are *partners* if
@@ -275,7 +276,7 @@ pub fn pieces(
     Ok(pieces)
 }
 
-/// Those of these pairs that are of two bodies and that face each other, somewhere, no further apart than their edges are long.
+/// The pairs of two bodies that face each other somewhere, no further apart than their edges are long.
 pub fn touching(mesh: &Mesh, pairs: &[Pair]) -> Vec<Pair> {
     let (parts, smooth) = (Parts::new(mesh), SmoothBoundary::new(mesh));
     let bodies = |name: &String| -> BTreeSet<usize> {

@@ -108,7 +108,7 @@ impl PieceGeometry {
                 let place = <S as From<f64>>::from(stretch.positions[a]);
                 edge_integral::radius([start, end], place)
             };
-            // The whole edge: no product with 1, which is not exact in balls.
+            // On the whole edge a product with 1 is left out, since it is not exact in balls.
             Some(if self.stretches.len() == 1 { [start, end] } else { [at(0), at(1)] })
         };
         let each: Option<Vec<[S; 2]>> = self.stretches.iter().map(at_ends).collect();
@@ -183,7 +183,7 @@ impl<S: Scalar> Chords<S> {
     }
 }
 
-/// What a side of a piece is made from, in any numbers.
+/// The data of a side of a piece, in any numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct SideData<S> {
     /// The triangle.
@@ -242,7 +242,7 @@ pub struct Piece<S = f64> {
     pub sigma_n: Vec<Vec<Vector2<S>>>,
 }
 
-/// What a piece adds to (8) and to J_h, with the weight |E| / gamma inside.
+/// The contribution of a piece to (8) and to J_h, the weight |E| / gamma included.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contribution {
     /// Its share of J_h.
@@ -379,7 +379,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
             sigma_n: vec![Vec::new(); 2 * geometry.law.components()],
         };
         for (i, (stretch, data)) in geometry.stretches.iter().zip(data).enumerate() {
-            // The stress of the only side is that of the piece: no product with 1, which is not exact in balls.
+            // The stress of the only side is that of the piece; a product with 1 would not be exact in balls.
             let shares = chords.map(|chords| (data.gamma / gamma, chords.ratio(i, radii_of(i))));
             let own_gamma = shares.map_or(data.gamma, |(_, ratio)| data.gamma * ratio);
             let first = piece.nodes.len();
@@ -675,7 +675,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     }
 }
 
-/// For each node of a piece the node of the triangle that is next to it on the edge.
+/// For each node of a piece, the nearest node of the triangle on the edge.
 fn nearest(degree: Degree, stretch: &Stretch) -> Vec<usize> {
     let (nodes, places) = (degree.edge_nodes(stretch.edge.local), degree.edge_positions());
     let next_to = |&s: &f64| {

@@ -3,9 +3,9 @@
 //! R(u; v) = A(u, v) + int (1/gamma) \[P(u)\]+ P0(v) - L(v),
 //!
 //! over any numbers, for every basis function v and straight from the definitions: stresses are integrated against strains,
-//! no matrix is involved. In doubles they are the solver's ([`Discretization::residual`]); in
-//! [double-doubles](crate::kernel::double_double) what is left of forces that cancel is known to the last bit of a double; balls
-//! bound the rounding; over rationals `props` compares them with the definitions.
+//! no matrix is involved. The solver uses doubles ([`Discretization::residual`]), and
+//! [double-doubles](crate::kernel::double_double) where forces cancel; balls bound the rounding; over rationals `props`
+//! compares the loops with the definitions.
 
 use nalgebra::Vector2;
 
@@ -58,7 +58,7 @@ pub fn p(d: &Discretization, u: &[[DoubleDouble; 2]]) -> impl Iterator<Item = Do
     d.contact.iter().flat_map(move |piece| exact_piece(d, piece).p(u))
 }
 
-/// A piece with the doubles that it has, in other numbers.
+/// A piece of doubles in other numbers.
 pub fn exact_piece<S: Scalar + From<f64>>(d: &Discretization, piece: &Piece) -> Piece<S> {
     let exact = <S as From<f64>>::from;
     piece_with(d, piece, |side, _| (exact(side.length), side.normal.map(exact), exact(side.gamma)))

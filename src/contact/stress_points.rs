@@ -10,7 +10,7 @@ use crate::model::element::with_element;
 use crate::model::material::Materials;
 use crate::model::space::Space;
 
-/// The nodal values of a displacement, by differences: those of a body that moves far and strains little keep their digits.
+/// The nodal values of a displacement, by differences, which keep their digits where a body moves far and strains little.
 pub(crate) trait Nodal<S> {
     /// The value at a node less that at another.
     fn difference(&self, node: usize, from: usize) -> Vector2<S>;
@@ -29,7 +29,7 @@ impl<S: Scalar> Nodal<S> for [[S; 2]] {
     }
 }
 
-/// A stress at a point of the rule on a triangle, and what it is made of.
+/// A stress at a point of the rule on a triangle, and its ingredients.
 pub(super) struct StressPoint<'a, S> {
     /// The nodes of the triangle.
     pub nodes: &'a [usize],
@@ -86,8 +86,8 @@ impl<S: Scalar> StressPoint<'_, S> {
     }
 }
 
-/// Calls `f` with the stresses of a displacement. Triangles that move as a whole, in a body of revolution along its axis, are passed
-/// over: most of a lift is zero.
+/// Calls `f` with the stresses of a displacement. Triangles that move as a whole (in a body of revolution: along its axis) are
+/// skipped, for most of a lift is zero.
 #[inline]
 pub(super) fn each_stress<S: Scalar + From<f64>>(
     space: &Space,
@@ -125,7 +125,7 @@ fn each_stress_of<E, const N: usize, const M: usize, S>(
             continue;
         }
         let law = material.map(<S as From<f64>>::from);
-        // As `Triangle::barycentric_gradients` has them, with one division: in most numbers they are dear.
+        // As in `Triangle::barycentric_gradients`, with one division, which is expensive in most number types.
         let triangle = in_numbers(doubles);
         let double_area = triangle.double_area();
         let inverse = one / double_area;

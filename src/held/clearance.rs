@@ -9,8 +9,8 @@ use crate::contact::piece::Piece;
 use crate::kernel::{DoubleDouble, Response};
 use crate::linear::dense::{dot, norm};
 
-/// An edge presses where P is above this share of the largest; below it P is what the tolerance of Newton's method leaves. With a
-/// hundredth of it, edges that touch without a force are taken to hold the body.
+/// The share of the largest P above which an edge presses; smaller P may be left by the tolerance of Newton's method. At a
+/// hundredth of this share, edges that touch without a force would count as holding the body.
 const PRESSES: f64 = 1e-8;
 
 impl Slides {
@@ -24,7 +24,7 @@ impl Slides {
     ) -> Option<Slides> {
         let idle = &d.slides.as_ref()?.idle;
         let size = |v: &[f64]| v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        // Newton's method takes P of an idle piece for negative: the body is moved until it is, from where it is.
+        // Newton's method takes P of an idle piece for negative, so the body is moved until P is.
         let of_piece = |(piece, is_idle): (&Piece, &bool)| match known {
             Some(p) if !is_idle => p[piece.functionals()].iter().map(|p| p.head()).collect(),
             _ => piece.p(u),
@@ -48,7 +48,7 @@ impl Slides {
         let pressing = p.iter().zip(&all).zip(&d.contact).map(presses);
         let pressing: Vec<bool> = pressing.zip(idle).map(|(yes, idle)| yes && !idle).collect();
         let parts = Parts::new(d.space.mesh());
-        // Friction stops what it does not let go on: the loads are not on the verge of that.
+        // Friction stops motions unless the loads are on the verge of driving them.
         let rough = d.contact.iter().map(|piece| matches!(piece.geometry.law, Law::Friction(_)));
         let stops: Vec<[bool; 2]> = pressing.iter().zip(rough).map(|(&p, r)| [p, r]).collect();
         let slides = Slides::new(free_where(d, &parts, &stops), &parts, &d.space);
@@ -63,7 +63,7 @@ impl Slides {
             let lengths = basis.iter().flat_map(|b| edge.edge_nodes().map(|node| b[node]));
             let none = rounding * lengths.fold(0.0, |m: f64, [x, y]| m.max(x.hypot(y)));
             let coefficients = degree.bernstein(p);
-            // Not a step towards an edge of which a coefficient is positive although P is not.
+            // No step towards an edge with a positive coefficient where P itself is not positive.
             let open = *idle || coefficients.iter().all(|p| *p <= 0.0);
             let jumps: Vec<Vec<f64>> =
                 basis.iter().map(|b| degree.bernstein(&edge.jumps(b))).collect();
@@ -81,12 +81,12 @@ impl Slides {
     }
 }
 
-/// Returns whether a piece pulls as well as it pushes: it never lets go.
+/// Returns whether a piece pulls as well as it pushes, and so never lets go.
 fn pulls(piece: &Piece) -> bool {
     piece.responses().all(|(response, _)| response == Response::Bilateral)
 }
 
-/// The motions of `d` that neither supports nor the contact edges stop that are pressing, or where friction stops what slides along them.
+/// The motions of `d` that are stopped neither by supports, nor by contact edges that press, nor by friction along these.
 pub(crate) fn free_where(
     d: &Discretization,
     parts: &Parts,

@@ -1,5 +1,5 @@
-//! Supports against obstacles. Where a support meets a contact boundary at a vertex and prescribes u . n~ > g there, no displacement
-//! of finite energy does both: the trace of one cannot jump. What the method would answer is the penalty of one vertex, which
+//! Supports against obstacles. Where a support meets a contact boundary at a vertex and prescribes u . n~ > g there, no
+//! displacement of finite energy does both, for its trace cannot jump. The method would answer with a force at this vertex that
 //! grows as the mesh is refined.
 
 use crate::contact::discretization::Discretization;
@@ -8,7 +8,7 @@ use crate::model::data::DataError;
 use crate::model::mesh::NO_ANGLE;
 use crate::model::tree::Bounds;
 
-/// A depth below this share of the body's size is rounding: mesh files have nine digits or more.
+/// The depth, beside the body's size, that is rounding: mesh files have nine digits or more.
 const NO_DEPTH: f64 = 1e-9;
 
 /// Checks that no support holds an end of a contact edge inside the obstacle.

@@ -1,4 +1,4 @@
-//! What friction holds of a body that supports leave free to move (docs/theory.md, 13.3).
+//! Motions that supports leave free and friction stops (docs/theory.md, 13.3).
 //!
 //! Let R be the rigid motions of a part of the body that the supports leave free, L the loads on R, c_i(r) = r_n at the nodes of
 //! Gamma_C. With Tresca's friction J_h has a minimiser if L and all functionals near it are
@@ -17,11 +17,11 @@ use crate::contact::piece::Piece;
 use crate::linear::dense::{dot, norm, singular_vectors};
 use crate::model::space::Space;
 
-/// Rows of a straight boundary are multiples of each other and count as one; beyond this number neighbours are taken together, as
-/// if they slid together, which is on the safe side.
+/// The largest number of rows. Rows of a straight boundary are multiples of each other and count once; beyond this number
+/// neighbours are taken together, as if they slid together, which is on the safe side.
 const MOST_GRIPS: usize = 40;
 
-/// What friction does on the motions of a part.
+/// The work of friction on the motions of a part.
 pub(super) struct Grip {
     /// The rows int_e s r_t.
     bounded: Vec<Vec<f64>>,

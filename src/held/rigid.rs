@@ -60,8 +60,9 @@ pub struct FreeMotion {
     pub others: Vec<FreeMotion>,
 }
 
-/// A singular value below this share of the largest stops no motion; likewise a component of a motion beside its largest, and the
-/// work of the loads on a motion beside the largest work of single loads, are zero. Rounding leaves some 1e-15; a part of
+/// The share of the largest singular value below which a singular value stops no motion. The same share decides that a
+/// component of a motion is zero beside its largest, and the work of the loads on a motion beside the largest work of single
+/// loads. Rounding leaves some 1e-15; a part of
 /// slenderness s held at its end alone makes 1/s, so that one of 1e9 is held. And the smallest eigenvalue of a material below this
 /// share of the largest leaves no digits of what it does to the strains that belong to it. A
 /// solve is done when its last correction is as small beside the displacement, and what its forces are out of balance beside them.
@@ -144,7 +145,7 @@ impl FreeMotion {
     }
 }
 
-/// The motion in words.
+/// Describes the motion in words.
 impl fmt::Display for FreeMotion {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self.about() {
@@ -253,8 +254,8 @@ impl Parts {
     }
 }
 
-/// All rigid motions that are free when each node is held in the directions `held` of it, which may be off by `rounding`: a
-/// basis, part by part, empty if the body is held. `of_revolution`: by its hoop strain, too.
+/// A basis, part by part, of the rigid motions that are free when each node is held in its directions `held`, which may be off
+/// by `rounding`; empty if the body is held. With `of_revolution` the hoop strain holds the body, too.
 pub fn free_motions<I>(
     parts: &Parts,
     space: &Space,
@@ -279,7 +280,7 @@ where
         }
     }
     if of_revolution {
-        // The rows of a part are affine in the height: those of the lowest and of the highest triangle say what all of them say.
+        // The rows of a part are affine in the height: those of the lowest and of the highest triangle span all.
         let mut ends: Vec<Option<[[f64; 2]; 2]>> = vec![None; parts.count()];
         for (t, &part) in parts.of_triangle.iter().enumerate() {
             let middle: [f64; 2] = space.mesh().triangle(t).point([1.0 / 3.0; 3]).into();
@@ -304,8 +305,8 @@ where
     motions
 }
 
-/// Motions of two parts that differ by this share of their size are one motion: singular vectors have some 1e-15 of rounding, and
-/// rows of rounded places more.
+/// The relative difference below which motions of two parts are the same: singular vectors have some 1e-15 of rounding, rows of
+/// rounded places more.
 const SAME_MOTION: f64 = 1e-6;
 
 /// The solutions of homogeneous equations in `count` unknowns, given by their rows: a basis in which as many unknowns as can be are
@@ -387,7 +388,7 @@ fn point(x: [f64; 2], size: f64) -> String {
 
 fn rounded(c: f64, size: f64) -> String {
     let decimals = (5.0 - size.log10().floor()).clamp(0.0, 400.0) as usize;
-    // What the decimals read back to is the shortest number that says the same; adding 0.0 spares the reader a -0.
+    // Reading the decimals back gives the shortest number; adding 0.0 avoids -0.
     let short = format!("{c:.decimals$}").parse().unwrap_or(c) + 0.0;
     if short == 0.0 || (1e-5..1e16).contains(&short.abs()) {
         format!("{short}")

@@ -22,8 +22,8 @@ use crate::model::groups::groups;
 use crate::model::mesh::NO_ANGLE;
 use crate::model::space::Space;
 
-/// Loads must go on pressing when they are changed by this share of the largest work of single loads: a body on the verge of tipping
-/// is not held. Nobody knows loads better, and it is ten thousand times what is taken for rounding.
+/// The change of the loads, as a share of the largest work of single loads, under which they must go on pressing: a body on the
+/// verge of tipping is not held. Loads are never known more precisely, and the share is 10^4 times that of rounding.
 pub(super) const MARGIN: f64 = 1e-6;
 
 /// The motions that contact and loads do not hold.
@@ -50,8 +50,8 @@ pub struct Slides {
     pub idle: Vec<bool>,
 }
 
-/// How far a body may move along a motion that neither supports nor what presses stops, from the displacement that is given,
-/// which is one of several solutions.
+/// The way that a body may go along a motion that neither supports nor pressed edges stop, from the given displacement, which
+/// is one of several solutions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
@@ -95,9 +95,9 @@ pub(super) fn joined(
     joined
 }
 
-/// The numbers of the pieces of Gamma_C on the parts that have these `motions`, of those that are `taken`, with their rows c_i: the
-/// jump of r at their nodes for each of the motions, and not P0(r): the stress of a rigid motion is zero but for rounding. What pulls
-/// as well as it pushes has each row with both signs.
+/// For each `taken` piece of Gamma_C on the parts that have these `motions`, its number and its rows c_i: the jump of r at its
+/// nodes for each motion r, not P0(r), as the stress of a rigid motion is zero but for rounding. A piece that pulls as well as
+/// it pushes has each row with both signs.
 pub(super) fn rows(
     motions: &[FreeMotion],
     parts: &Parts,
@@ -149,13 +149,13 @@ pub(super) fn moves(motions: &[FreeMotion], parts: &Parts, piece: &Piece) -> boo
     })
 }
 
-/// The rows of all these edges.
+/// The rows of all edges.
 pub(super) fn all(edges: &[EdgeRows]) -> Vec<Vec<f64>> {
     edges.iter().flat_map(|(_, rows)| rows.clone()).collect()
 }
 
-/// A value of c_i below this is zero but for rounding. Where the body is far from the origin, rounding its vertices makes more
-/// than [`NEGLIGIBLE`].
+/// The value of c_i below which c_i is zero but for rounding: more than [`NEGLIGIBLE`] where the body is far from the origin,
+/// since its vertices are rounded.
 pub(super) fn negligible(rows: &[Vec<f64>], count: usize, rounding: f64) -> f64 {
     let largest = singular_vectors(rows, count).first().map_or(0.0, |(value, _)| *value);
     NEGLIGIBLE.max(rounding * (rows.len() as f64).sqrt()) * largest.max(1.0)
@@ -362,7 +362,7 @@ impl Slides {
     }
 }
 
-/// Fields with orthonormal nodal values that span the same.
+/// Fields with orthonormal nodal values that span the same space.
 fn orthonormal(fields: impl Iterator<Item = Vec<[f64; 2]>>) -> Vec<Vec<[f64; 2]>> {
     let mut basis: Vec<Vec<[f64; 2]>> = Vec::new();
     for mut field in fields {
@@ -390,7 +390,7 @@ pub(super) fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -
         let fresh =
             (0..rows.len()).filter(|i| norm(&rows[*i]) > 0.0 && used.iter().all(|(u, _)| u != i));
         let best = fresh.max_by(|i, j| gain(i).total_cmp(&gain(j)));
-        // Of a row that gains rounding only, the weight would be rounding, or no number where the row depends on those in use.
+        // The weight of a row that gains rounding only would be rounding, or not finite where the row depends on those in use.
         let Some(best) = best.filter(|i| gain(i) > rounding) else { break };
         used.push((best, 0.0));
         loop {
@@ -402,7 +402,7 @@ pub(super) fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -
             }
             let columns = used.iter().map(|(i, _)| rows[*i].clone()).collect();
             let weights = least_squares(columns, target);
-            // How far the weights may go towards these until one of them is 0; that one is, however it is rounded.
+            // The weights go towards the new ones until one of them is 0; this weight is set to 0, whatever its rounding.
             let until = |j: usize| {
                 let old = used[j].1;
                 if old > 0.0 { old / (old - weights[j]) } else { 0.0 }
@@ -432,8 +432,8 @@ pub(super) fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -
     Some(rest).filter(|rest| !(norm(rest) <= tolerance))
 }
 
-/// The method is finite, and with three unknowns takes a few; this bounds its time should rounding make it go around, and decides
-/// nothing else.
+/// The largest number of steps. The method is finite, and few steps suffice for three unknowns; the bound ends cycles by
+/// rounding, and decides nothing else.
 const MOST_EXCHANGES: usize = 200;
 
 #[cfg(test)]

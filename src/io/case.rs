@@ -1,5 +1,5 @@
-//! The case file: one contact problem and how to solve it, in TOML. Its keys are listed in docs/case.md, and a test compares
-//! that page with what is read here.
+//! The case file: one contact problem and how to solve it, in TOML. docs/case.md lists the keys, and a test compares that page
+//! with the reader.
 //!
 //! Numbers serve as expressions, integers as numbers; the grammar of expressions is in [`expression`](super::expression). A key
 //! that is not known is an error, and so is a list of the wrong length, a number that is NaN or infinite, and a boundary with
@@ -240,7 +240,7 @@ fn parse(source: Source, mesh: Option<Mesh>) -> Result<Case, FileError> {
 
 fn text(bytes: Vec<u8>, file: &Path) -> Result<String, FileError> {
     let wrong = |error: Failure| error.at(file, Position::File);
-    // What the TOML reader and the expressions make of it.
+    // The memory of the TOML reader and the expressions.
     memory::check(MEMORY_PER_BYTE * bytes.len() as u64).map_err(|lack| wrong(lack.into()))?;
     String::from_utf8(bytes).map_err(|error| {
         let byte = error.utf8_error().valid_up_to() + 1;
@@ -368,7 +368,7 @@ fn read_units(table: &Table) -> Result<Units, FileError> {
     Ok(Units { length: word("length", "such as \"mm\"")?, force: word("force", "such as \"N\"")? })
 }
 
-/// The plane that the body is in, as its table says.
+/// The plane of the body, from its table.
 fn read_plane_of_body(table: &Table) -> Result<Option<Plane>, FileError> {
     table.only(&["thickness", "plane"])?;
     if table.given(&["thickness", "plane"]).is_empty() {

@@ -10,10 +10,10 @@ use crate::model::{BoundaryEdge, Condition, Degree, Mesh, Problem, Space, loads}
 use crate::quote::{self, quoted};
 use crate::solve::{ContactQuadrature, Outline};
 
-/// The boundaries that are listed; more are counted.
+/// The largest number of boundaries that are listed; more are counted.
 const MOST: usize = 100;
 
-/// The summary of a case that is sound.
+/// The summary of a valid case.
 pub fn checked(case: &Case, outline: &Outline) -> String {
     let mut lines = Lines::default();
     let mesh = MeshSizes::new(&case.problem.mesh, outline.nodes, outline.contact_edges);
@@ -60,7 +60,7 @@ fn held(outline: &Outline) -> String {
 fn boundaries(case: &Case, lines: &mut Lines) {
     let (problem, mesh) = (&case.problem, &case.problem.mesh);
     let space = Space::new(mesh, Degree::One);
-    // What they cannot say is an error of the case, which is reported as such.
+    // A failure of these sums is an error of the case, which is reported as such.
     let loads = loads::resultants(problem, &space).unwrap_or_default();
     let loads = match problem.material.are_of_revolution() {
         true => loads.of_the_revolution(),

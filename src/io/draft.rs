@@ -10,7 +10,7 @@ use crate::model::tree::Bounds;
 use crate::model::{BoundaryEdge, Mesh};
 use crate::quote::{self, number};
 
-/// The boundaries that are listed; more are counted.
+/// The largest number of boundaries that are listed; more are counted.
 const MOST: usize = 100;
 
 /// A part of the boundary that the draft puts to use.
@@ -105,7 +105,7 @@ fn used(mesh: &Mesh, in_pair: &dyn Fn(&str) -> bool) -> [Used; 2] {
         let mut all = std::iter::once(wanted.to_owned()).chain(numbered);
         all.find(|name| !is_taken(name)).unwrap_or_else(|| wanted.to_owned())
     };
-    // Straight sides first; of a round body more and more of it, until there is an edge.
+    // Straight sides first; of a round body a growing part, until there is an edge.
     let is_there = |holds: &dyn Fn(f64) -> bool| {
         mesh.outline().iter().any(|&edge| mesh.places_of_ends(edge).iter().all(|p| holds(p[1])))
     };

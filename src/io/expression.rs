@@ -19,7 +19,7 @@
 //!
 //! An [`Expression`] is a list of instructions in postfix order, evaluated in one loop over any [`Number`]: other than in a
 //! recursive walk over a tree, a sum of [`MOST_OPERATIONS`] terms needs no deeper call stack than a sum of two.
-//! [`MOST_LEVELS`] bounds what nests.
+//! [`MOST_LEVELS`] bounds the nesting.
 
 mod algebra;
 mod condition;
@@ -44,7 +44,7 @@ pub struct Expression {
     instructions: Vec<Instruction>,
 }
 
-/// The place where a text is no expression, and why.
+/// The place and the reason why a text is no expression.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("column {column}: found {found}, expected {expected}")]
 pub struct ExpressionError {

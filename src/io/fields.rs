@@ -24,7 +24,7 @@ impl Solution {
     }
 }
 
-/// Makes and stages the files. `indicators` are the shares of the triangles in the bound of the error, if it is known.
+/// Makes and stages the files. `indicators` are the shares of the triangles in the bound of the error, if there is a bound.
 pub(super) fn stage_fields(
     output: &mut Output,
     solution: &Solution,
@@ -111,7 +111,7 @@ const CONTACT_NUMBERS: [ContactNumber; 7] = [
     ("shear", |p| p.shear),
 ];
 
-/// Those of a solution.
+/// The fields of a solution.
 fn contact_numbers(s: &Solution) -> &'static [ContactNumber] {
     let friction = s.boundaries.iter().any(|boundary| boundary.friction.is_some());
     if friction { &CONTACT_NUMBERS } else { &CONTACT_NUMBERS[..5] }

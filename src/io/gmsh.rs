@@ -10,8 +10,8 @@
 //! | `$Elements` | triangles and quadrangles: the body, by physical surface; lines: the boundary parts; physical points |
 //!
 //! The format is described in the Gmsh reference manual, section "MSH file format". In a binary file an `int` has 4
-//! bytes, a `size_t` and a `double` have 8; in a text file all are words between white space. Nothing is allocated because
-//! a file announces it, only because it is there. How bytes are read is in `cursor`, which mesh they make in `raw_mesh`.
+//! bytes, a `size_t` and a `double` have 8; in a text file all are words between white space. Memory is allocated for data that
+//! are there, never for data that a file announces. How bytes are read is in `cursor`, which mesh they make in `raw_mesh`.
 
 mod cursor;
 
@@ -40,7 +40,7 @@ pub fn read(file: &Path, share: Option<f64>, pairs: &[Pair]) -> Result<Made> {
 /// # Errors
 /// As [`read`].
 pub fn from_bytes(bytes: &[u8], file: &Path, share: Option<f64>, pairs: &[Pair]) -> Result<Made> {
-    // Names and entities: what is kept of one is no more than this many times what the file says of it.
+    // The memory kept per name or entity, at most this many times its size in the file.
     const MOST_TIMES: u64 = 4;
     let mut cursor = Cursor { bytes, file, at: 0, version: Version::Four, binary: false };
     memory::check(MOST_TIMES * bytes.len() as u64).map_err(|lack| cursor.in_the_file(lack))?;
@@ -58,7 +58,8 @@ pub fn read_with_pairs(file: &Path) -> Result<(Made, Vec<Pair>)> {
     let mut cursor = Cursor { bytes: &bytes, file, at: 0, version: Version::Four, binary: false };
     let names = read_sections(&mut cursor)?.curve_names();
     let with = |pairs: &[Pair]| from_bytes(&bytes, file, None, pairs);
-    // A mesh in which bodies touch is refused but for pairs: all are taken for some first, unless these are too many to look at.
+    // A mesh in which bodies touch is refused without pairs: so all pairs of named curves are tried first, unless there are too
+    // many.
     let count = if names.len() <= MOST_NAMES { names.len() } else { 0 };
     let all: Vec<Pair> = (0..count)
         .flat_map(|j| (0..j).map(move |i| (i, j)))
@@ -69,7 +70,7 @@ pub fn read_with_pairs(file: &Path) -> Result<(Made, Vec<Pair>)> {
     Ok((with(&touching)?, touching))
 }
 
-/// Of more named curves no pairs are tried.
+/// The largest number of named curves for which pairs are tried.
 const MOST_NAMES: usize = 40;
 
 /// The physical groups of each entity.
@@ -158,7 +159,7 @@ fn read_format(cursor: &mut Cursor) -> Result<()> {
             }
             None if !cursor.rest().is_empty() => {}
             _ => {
-                // Without its words: a case of somebody else may name a file that is none of his business.
+                // Quote no words of the file: somebody else's case may name a private file.
                 let said = "this is no Gmsh mesh: expected a section $MeshFormat; gmsh -2 PART.geo makes PART.msh from a geometry";
                 return Err(cursor.wrong_at(0, said.to_owned()));
             }
@@ -207,7 +208,7 @@ fn read_names(cursor: &mut Cursor) -> Result<Names> {
         let dimension = text.int_within(0..=3, "a dimension from 0 to 3")?;
         let tag = text.int("the tag of a physical group")?;
         let (start, line) = text.line();
-        // Of a name in another encoding what can be read: it matters only if the case uses it.
+        // Names in another encoding are read as far as possible: they matter only if the case uses them.
         let name = String::from_utf8_lossy(line);
         let name = name.strip_prefix('"').and_then(|name| name.strip_suffix('"'));
         let name = name.ok_or_else(|| {
@@ -221,7 +222,7 @@ fn read_names(cursor: &mut Cursor) -> Result<Names> {
     Ok(names)
 }
 
-/// The names of all entities. A group without a name is called by its number, unless another one has that for a name.
+/// The names of all entities. A group without a name is called by its number, unless that is the name of another group.
 fn named(names: &Names, groups: Groups) -> ByDimension<BTreeMap<i32, Vec<String>>> {
     let mut dimension = 0..;
     groups.map(|entities| {
@@ -239,10 +240,10 @@ fn named(names: &Names, groups: Groups) -> ByDimension<BTreeMap<i32, Vec<String>
     })
 }
 
-/// What kinds of entities there are, in messages.
+/// The kinds of entities, in messages.
 const KINDS: ByDimension<&str> = ["point", "curve", "surface"];
 
-/// The most groups of an entity: each of its elements is kept once for each of them.
+/// The largest number of groups of an entity, whose elements are kept once for each group.
 const MOST_GROUPS: usize = 100;
 
 /// Refuses elements on entities that are not in the list, and entities in too many groups.

@@ -1,5 +1,5 @@
-//! Files that are read: regular ones only, and no more of them than can be of use. A pipe would be waited for, a device such
-//! as /dev/zero never ends.
+//! Reading of files: regular ones only, up to a size that can be of use. A pipe would block, and a device such as /dev/zero
+//! never ends.
 
 use std::fmt::{self, Display, Formatter};
 use std::fs::{self, File, Metadata};
@@ -18,7 +18,7 @@ pub const MOST_OF_A_CASE: u64 = 16 << 20;
 /// The longest mesh file: more nodes than a factorisation in the memory of one machine has room for.
 pub(crate) const MOST_OF_A_MESH: u64 = 4 << 30;
 
-/// A position in what is read. It is shown so that it may follow the name of the file.
+/// A position in an input, written to follow the name of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Position {
@@ -201,7 +201,7 @@ fn kind(metadata: &Metadata) -> &'static str {
     if metadata.is_dir() { "a directory" } else { "no regular file" }
 }
 
-/// The reason in words; the number that the system gives it helps nobody.
+/// The reason in words, without the system's number.
 pub fn reason(error: &io::Error) -> String {
     if error.kind() == io::ErrorKind::AlreadyExists {
         return "a file of this name is there; choose another folder: --out DIR".to_owned();

@@ -13,10 +13,10 @@ pub fn round_below(x: f64) -> f64 {
     format!("{digit}e{exponent}").parse().unwrap_or(x)
 }
 
-/// The smallest of them that is not below `x`.
+/// The smallest of the numbers 1, 2, 5 times powers of ten that is not below `x`.
 fn round_above(x: f64) -> f64 {
     let below = round_below(x);
-    // The next one is 2 or 2.5 times as large.
+    // The next round number is 2 or 2.5 times as large.
     if below == x { x } else { round_below(2.6 * below) }
 }
 

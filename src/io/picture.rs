@@ -21,7 +21,7 @@ mod scale;
 mod scene;
 
 use svg::Node;
-use svg::node::element::{Circle, Group, Use};
+use svg::node::element::{Group, Use};
 
 use super::files::{NotFinite, check_finite};
 use body::{BAR, body, colour_bar, definitions, outlines};
@@ -76,12 +76,7 @@ fn picture(scene: &Scene, scale: &Scale) -> Result<String, NotFinite> {
     }
     let on_page = |v: usize| deformed.get(v).copied();
     let supports = loads::drawn_supports(scene, &deformed);
-    if supports.is_some() {
-        let held = hatched([SAMPLE.map(|[x, y]| [x * 0.5, y - 3.0]).to_vec()]);
-        let roller = Circle::new().set("cx", 24).set("cy", -4.5).set("r", 3.2);
-        let roller = roller.set("fill", "white").set("stroke", DARK);
-        entries.push((held.map(|held| held.add(roller)), "held, in one direction"));
-    }
+    entries.extend(loads::support_entries(scene));
     let forces = loads::arrows(scene, &deformed, false);
     if forces.is_some() {
         entries.push((Some(pointed(FORCE)), "load"));
@@ -288,7 +283,7 @@ mod tests {
         scene
     }
 
-    /// All words of a picture. Every element that starts also ends, no number is none, and all words are on the page.
+    /// All words of a picture. Checks that tags are balanced, no coordinate is NaN, and all words are inside the page.
     fn words(svg: &str) -> Vec<String> {
         let (mut open, mut words) = (Vec::new(), Vec::new());
         let mut page = [0.0; 2];
@@ -363,8 +358,18 @@ mod tests {
             "arc length along the boundary (mm)",
             "border of two materials",
         ];
-        let changes: [(Edit, &[&str], &[&str]); 10] = [
-            (|_| {}, whole, &["border of two materials", "axis"]),
+        let changes: [(Edit, &[&str], &[&str]); 12] = [
+            (|_| {}, whole, &["border of two materials", "axis", "held"]),
+            (
+                |s| s.supports = vec![(vec![20, 21], true)],
+                &["held"],
+                &["held in one direction", "point, held"],
+            ),
+            (
+                |s| s.supports = vec![(vec![20, 21], false), (vec![0], true), (vec![4], false)],
+                &["held in one direction", "point, held", "point, held in one direction"],
+                &["held"],
+            ),
             (|s| s.of_revolution = true, &["axis", "floor: contact pressure"], &[]),
             (
                 |s| {

@@ -83,7 +83,7 @@ pub struct Kind {
     pub nodes: usize,
 }
 
-/// Those by which elements are called, by Gmsh's number: corners, order, nodes.
+/// The kinds of elements by Gmsh's number: corners, order, nodes.
 const KINDS: [(i32, [usize; 3]); 20] = [
     (15, [1, 1, 1]),
     (1, [2, 1, 2]),
@@ -217,7 +217,7 @@ impl Elements {
     }
 }
 
-/// A mesh, and what was decided when it was made.
+/// A mesh, and the remarks on its making.
 #[derive(Debug)]
 pub struct Made {
     /// The mesh.
@@ -474,8 +474,8 @@ fn noted(error: MeshError, note: &str) -> Failure {
     Failure::from(error).map(|problem| format!("{problem} ({note})"))
 }
 
-/// An edge is straight if its inner nodes are off their places by no more than this share of its length: coordinates in a text
-/// file have 16 digits, and a thousandth of the body may be the length of an edge.
+/// The deviation of inner nodes, as a share of an edge's length, up to which the edge is straight: coordinates in a text file
+/// have 16 digits, and an edge may be a thousandth of the body long.
 const STRAIGHT: f64 = 1e-10;
 
 /// Twice the area of a polygon, positive if it runs counter-clockwise; 0 where it is nothing beside the polygon's size.
@@ -505,7 +505,7 @@ fn turn(elements: &mut Elements, places: &[[f64; 2]]) -> bool {
     found.values().any(|found| *found == [true, true])
 }
 
-/// A diagonal counts as the shorter one if it is so by more than this share: those of a rectangle differ by rounding.
+/// The relative difference from which a diagonal is the shorter one: those of a rectangle differ by rounding.
 const SHORTER: f64 = 1e-6;
 
 /// The corners of the two triangles into which a quadrangle is split along its shorter diagonal, or along the one that lies inside.
@@ -534,8 +534,8 @@ fn said_of_split(quadrangles: usize) -> Option<String> {
     Some(format!("{are_split} shorter diagonal"))
 }
 
-/// Triangles that are listed once for each of their groups, once; with the further entities on which each lies. What is listed twice
-/// for one group stays so, and is refused as an overlap.
+/// The triangles, each once even if listed for each of several groups, with the further entities of each. A triangle that is
+/// listed twice for one group stays double, and is refused as an overlap.
 fn once(
     triangles: Vec<Element<3>>,
     names: &BTreeMap<i32, Vec<String>>,

@@ -15,22 +15,22 @@ use crate::quote;
 use crate::results::solution::ContactValues;
 use crate::results::{ContactBoundary, Solution};
 
-/// Strains above this are more than small-strain theory is for.
+/// The largest strain that small-strain theory is for.
 const LARGE_STRAIN: f64 = 0.05;
 
-/// Displacements above this share of the body's size likewise.
+/// The largest displacement, beside the body's size, that small-strain theory is for.
 const LARGE_DISPLACEMENT: f64 = 0.1;
 
-/// Lengths below this share of the body's size are rounding: mesh files have nine digits or more.
+/// The length, beside the body's size, that is rounding: mesh files have nine digits or more.
 const NO_LENGTH: f64 = 1e-9;
 
-/// A triangle whose limit of gamma0 is this many times below the median of the line spoils the line.
+/// The factor below the median of its line at which a triangle's limit of gamma0 spoils the line.
 const SLIVER: f64 = 8.0;
 
 /// The ratio of shear moduli from which one gamma0 for two bodies is far from what each of them allows.
 const UNLIKE: f64 = 10.0;
 
-/// Units for labels, and what is known beside the solution.
+/// Units for labels, and facts beside the solution.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Words {
     /// The units of lengths and of stresses, if the case has any.
@@ -100,7 +100,7 @@ pub(super) fn before(problem: &Problem, degree: Degree, words: &Words) -> Vec<St
 /// A share of what friction bears at most that acts across open gaps, above which that is said.
 const ACROSS_GAPS: f64 = 0.01;
 
-/// Says what a reader may not expect of friction.
+/// Remarks on friction that may surprise a reader.
 fn friction(solution: &Solution, words: &Words) -> Vec<String> {
     let mut remarks = Vec::new();
     for boundary in &solution.boundaries {
@@ -123,7 +123,7 @@ fn friction(solution: &Solution, words: &Words) -> Vec<String> {
     remarks
 }
 
-/// What a remark may rest on.
+/// The data that a remark may rest on.
 #[derive(Clone, Copy)]
 enum Known<'s> {
     /// The data alone, and the degree that will be solved for.

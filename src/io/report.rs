@@ -1,5 +1,5 @@
-//! report.html: picture, numbers, what is proved and the case as it was read, in one file without scripts that loads
-//! nothing, to send to somebody.
+//! report.html: picture, numbers, what is proved and the case as read, in one file that has no scripts and
+//! loads nothing, to send to somebody.
 
 use std::fmt::Write;
 
@@ -24,7 +24,7 @@ footer { color: #666; border-top: 1px solid #ccc; margin-top: 2em; padding-top: 
 /// The text of the file, with the text of picture.svg in it.
 pub fn html(case: &Case, results: &Results, picture: &str) -> String {
     let title = escaped(&case.title);
-    // Without the declaration that only a file of its own has.
+    // Without the XML declaration, which only a separate file has.
     let picture = picture.find("<svg").map_or("", |start| &picture[start..]);
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n<style>\n{STYLE}\n</style>\n</head>\n<body>\n{picture}"

@@ -1,4 +1,4 @@
-//! result.json: what a program wants to know of a run, in the case's own consistent units.
+//! result.json: the results of a run for programs, in the case's own consistent units.
 //!
 //! Each number is the shortest decimal that reads back to the same double. A number that does not exist is left out
 //! together with its name: `null` never stands in the file, and a NaN or an infinity is an error that names it, where
@@ -85,7 +85,7 @@ pub struct Results {
 /// `a_uu`, beside `elastic_energy`; with `thickness`, forces, moments and energies are those of the whole body.
 pub const SCHEMA: u32 = 3;
 
-/// The one without a number.
+/// The version of files without a number.
 fn first() -> u32 {
     1
 }

@@ -1,4 +1,4 @@
-//! What a reader must know of the numbers of a body of revolution.
+//! Remarks on the numbers of a body of revolution.
 
 use super::case::Case;
 use crate::model::{Condition, Obstacle};
@@ -30,7 +30,7 @@ fn obstacle(condition: &Condition) -> Option<(&str, &Obstacle)> {
     }
 }
 
-/// What an obstacle of the meridian is all round.
+/// The surface that an obstacle of the meridian makes all round.
 fn shape(obstacle: &Obstacle) -> Option<&'static str> {
     match obstacle {
         Obstacle::Plane { normal: [r, z], .. } => Some(match (*r == 0.0, *z == 0.0) {

@@ -19,7 +19,7 @@ use crate::quote;
 use crate::results::answers::BoundaryFriction;
 use crate::results::{ContactBoundary, MethodReport, RouteName, Status};
 
-/// Lines of a name and a text; one without a name goes on with what the one before it is about.
+/// Lines of a name and a text; a line without a name continues the line before.
 #[derive(Default)]
 pub(super) struct Lines(Vec<(String, String)>);
 
@@ -38,7 +38,7 @@ impl Lines {
     }
 }
 
-/// A contact residual, a relative error or an imbalance above this is shown without being asked for.
+/// The size from which a contact residual, a relative error or an imbalance is always shown.
 const WORTH_SHOWING: f64 = 1e-8;
 
 pub fn solved(r: &Results, files: &[PathBuf], verbose: bool) -> String {
@@ -226,7 +226,7 @@ fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines
     }
 }
 
-/// Says what friction does.
+/// Describes sticking, sliding and friction forces.
 fn shear(friction: &BoundaryFriction, shown: &QuantityFormat, at: &str) -> String {
     let force = shown.number(friction.shear, Measure::Force);
     let [sticks, slides, slip] = [friction.sticks, friction.slides, friction.slip]
@@ -456,7 +456,7 @@ pub fn audited(audit: &Audit, case: Option<(&AuditedCase, Option<&str>)>) -> Str
     }
 }
 
-/// The most digits that a double has.
+/// The number of digits of a double.
 const MOST_DIGITS: f64 = 15.0;
 
 /// Says how many digits of the discrete solution are proved.

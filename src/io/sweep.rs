@@ -28,7 +28,7 @@ use crate::results::answers::label;
 /// The most runs of a sweep: more are a mistake of the person who asks for them.
 pub const MOST_RUNS: usize = 10_000;
 
-/// The most remarks below the table.
+/// The largest number of remarks below the table.
 const MOST_REMARKS: usize = 20;
 
 /// A key of the case file and the values that it takes, such as `method.gamma0=1e-3,1e-2`, or `material.young=1000:3000:5`: five
@@ -111,7 +111,7 @@ pub const FILES: [&str; 2] = ["sweep.csv", "sweep.svg"];
 /// files.
 pub(crate) type Names = [&'static str; 3];
 
-/// Those of a sweep.
+/// The files of a sweep.
 const NAMES: &Names = &[FILES[0], FILES[1], "sweep.pvd"];
 
 /// A case and its results for the combinations of the values of some keys.
@@ -146,7 +146,7 @@ pub fn count(axes: &[ParameterAxis]) -> Result<usize, Failure> {
     Ok(runs)
 }
 
-/// What a sweep does beside the table.
+/// Options of a sweep beside the table.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
     /// The files of each run are written, too.
@@ -309,7 +309,7 @@ type NumberFormat<'a> = &'a dyn Fn(f64) -> String;
 /// that are rounding are 0.
 fn cells(r: &Results, shown: NumberFormat) -> Vec<(String, String)> {
     let q = &r.quantities;
-    // That of the summary: the recovered one.
+    // The recovered pressure, as in the summary.
     let peak = r.contact.iter().map(|part| part.peak_pressure).reduce(f64::max);
     let von_mises = r.stress.as_ref().map(|stress| stress.von_mises.value);
     let is_rounding = von_mises.is_some_and(|stress| summary::is_no_stress(r, stress));
@@ -377,7 +377,7 @@ impl Sweep {
         let mut runs: Vec<(Vec<(String, String)>, String)> =
             self.results.iter().map(of_run).collect();
         runs.resize_with(self.values.len(), || (Vec::new(), NOT_SOLVED.to_owned()));
-        // gamma0 as a key stands there already.
+        // gamma0 as a swept key has a column already.
         let is_new = |name: &str| !self.keys.iter().any(|key| key == &format!("method.{name}"));
         let mut columns: Vec<&str> = Vec::new();
         for (name, _) in runs.iter().flat_map(|(cells, _)| cells) {

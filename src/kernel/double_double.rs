@@ -112,7 +112,7 @@ impl Div for DoubleDouble {
 
 crate::entry_of_nalgebra!(DoubleDouble);
 
-/// 2^-103 >= twice the rounding error of a sum beside the magnitudes of its terms' heads (Lemma 7.4 of docs/theory.md).
+/// 2^-103 >= twice the rounding error of a sum beside the magnitudes of its terms' heads (Lemma 7.4 of docs/a-posteriori.md).
 const SUM: f64 = 9.860_761_315_262_648e-32;
 
 /// 2^-101 >= twice the rounding error of a product beside its magnitude.

@@ -16,7 +16,7 @@ use faer::{Accum, Col, Mat, Par};
 use super::factor::{Factor, Structure};
 use crate::linear::matrix::OutsidePattern;
 
-/// Which supernodes the contact functionals reach, and which of the functionals each.
+/// The supernodes that contact functionals reach, and for each supernode its functionals.
 pub struct Reach {
     /// The place of each functional in the order of the walk.
     places: Vec<usize>,

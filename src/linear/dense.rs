@@ -1,6 +1,5 @@
-//! Two problems of linear algebra with few columns, as accurate as their data: the rigid motions of a body are three to a piece.
-//! faer has both, but what it takes for them (bidiagonal forms, divide and conquer, QR) is seven seconds of compiling, a
-//! twentieth of what the release command takes.
+//! Singular values and projections for few columns, as accurate as their data: a part of the body has three rigid motions. faer
+//! has both, at seven seconds of compiling (bidiagonal forms, divide and conquer, QR), a twentieth of a release build.
 
 /// The sum of the products of two lists.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -17,7 +16,7 @@ pub fn inner(f: &[[f64; 2]], u: &[[f64; 2]]) -> f64 {
     f.iter().zip(u).map(|(f, u)| f[0] * u[0] + f[1] * u[1]).sum()
 }
 
-/// Sweeps over all pairs of columns; six to ten are what it takes.
+/// The largest number of sweeps over all pairs of columns; six to ten suffice.
 const MOST_SWEEPS: usize = 40;
 
 /// The singular values of the matrix with these rows of `n` entries, the largest first, each with its right singular vector, by

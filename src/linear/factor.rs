@@ -1,5 +1,5 @@
-//! The sparse Cholesky factor H = L L^T of a matrix on the free degrees of freedom, by faer, in a given order: its
-//! structure, which all matrices with one pattern share and which tells what a factorisation will cost, and its numbers.
+//! The sparse Cholesky factor H = L L^T of a matrix on the free degrees of freedom, by faer, in a given order: its structure,
+//! which all matrices with one pattern share and from which the cost of a factorisation follows, and its numbers.
 
 use std::sync::Arc;
 
@@ -89,8 +89,8 @@ impl Structure {
     }
 }
 
-/// The bytes that a solve takes beside its factor, for each unknown: the functionals of contact, iterates, residuals, the
-/// proof. As measured, and a tenth more.
+/// The bytes that a solve takes beside its factor, for each unknown (functionals of contact, iterates, residuals, proof):
+/// measured, plus a tenth.
 const BESIDE: usize = 320;
 
 /// L of H = L L^T.

@@ -119,7 +119,7 @@ impl Numbering {
 }
 
 /// An entry that has no place in the pattern of its matrix, or a functional that the elimination does not reach: a mistake of the
-/// program. Left out, the entry would make a wrong matrix.
+/// program. The matrix would be wrong without the entry.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[error(
     "this program made a mistake: entry ({row}, {column}) of a matrix has no place in its pattern; please report the case"
@@ -240,7 +240,7 @@ impl LowerTriangle {
             if let Some(row) = row
                 && row >= column
             {
-                // A column has few rows: to look at one after the other is quicker than a binary search.
+                // A column has few rows: a linear search is faster than a binary one.
                 let step = self.rows[place..end].iter().position(|&other| other == row);
                 place += step.ok_or(OutsidePattern { row, column })?;
                 self.values[place] += entry;
@@ -266,7 +266,7 @@ pub fn assemble(
     Ok(matrix)
 }
 
-/// The matrix of a(.,.) likewise.
+/// The matrix of a(.,.) over the free degrees of freedom in the order of `numbering`.
 ///
 /// # Errors
 /// `neighbours` of another space.

@@ -142,13 +142,13 @@ impl<'d, 'p> System<'d, 'p> {
 
     /// The size that corrections of `u` are measured by while it is refined: |u|_a, which is `norm`. A body without loads that is
     /// moved as a whole has no strain but that of rounding, which no correction betters: there the size is what the norm would
-    /// be if the components of u knew nothing of each other. What is proved is not relative to this.
+    /// be for independent components of this size. What is proved is not relative to this norm.
     pub fn size(&self, norm: f64, u: &[[f64; 2]]) -> f64 {
         if self.d.load.as_flattened().iter().any(|&l| l != 0.0) {
             return norm;
         }
         let most = self.energy_of_unrelated(u).sqrt();
-        // A strain of this size is that of rounding u.
+        // A smaller strain may be that of rounding u.
         if norm > f64::EPSILON * most { norm } else { most }
     }
 

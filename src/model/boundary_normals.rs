@@ -13,7 +13,7 @@
 //!
 //! The curve through the ends a, b with the tangents t there (the normals turned left) is the cubic Hermite curve with
 //! derivatives m t, m = 2 |b - a| / (1 + cos(theta/2)), theta being the angle between the normals: its middle lies on the
-//! circle if there is one. Only the middle is needed, (a + b)/2 + (m/8) (t_a - t_b): it is where P2 has a node.
+//! circle if there is one. Only the middle is needed, (a + b)/2 + (m/8) (t_a - t_b), where P2 has a node.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ use super::mesh::{BoundaryEdge, Mesh, NO_ANGLE, length};
 /// A bend of more degrees is a corner: a circle of nine edges turns by as much at a vertex, a chamfer by 45.
 pub const SMOOTH: f64 = 40.0;
 
-/// The normals at the ends of the boundary's edges.
+/// The normals at the ends of all boundary edges.
 #[derive(Clone, Debug)]
 pub struct SmoothBoundary {
     /// By triangle and local edge; an edge that is not listed has its facet's normal all along.
@@ -40,8 +40,8 @@ pub struct SmoothPoint {
     pub normal: Vector2<f64>,
 }
 
-/// A vertex of the outline: the edge before, the edge after, the angle by which it turns left, and whether that is no angle but
-/// the rounding of vertices, as on a straight side after many bisections.
+/// A vertex of the outline: the edge before, the edge after, the angle by which the outline turns left, and whether this angle
+/// is only the rounding of vertices, as on a straight side after many bisections.
 struct Passage {
     before: usize,
     after: usize,
@@ -89,8 +89,8 @@ impl SmoothBoundary {
     }
 }
 
-/// The normals at both ends of each edge of a line, which runs from vertex to vertex, its normals on its right; `None` where both are
-/// that of the facet. `rounding` is by how much that of vertices may turn an edge.
+/// The normals at both ends of each edge of a line, which runs from vertex to vertex, its normals on its right; `None` where
+/// both normals are that of the facet. `rounding` is the angle by which rounded vertices may turn an edge.
 pub(crate) fn smooth_normals(
     ends: &[[usize; 2]],
     place: impl Fn(usize) -> Vector2<f64>,

@@ -6,8 +6,7 @@
 //! A demand at a node is u . d = value for a unit vector d: a coordinate direction, or the normal or tangent of a support.
 //! Two that are not parallel fix the node. One alone in an oblique direction d turns the node's unknowns into the frame
 //! (d, t), t being d turned to the left: u = u_d d + u_t t, with u_d prescribed. The blocks of the matrix at such a node are
-//! R^T K R with R = (d, t), a rotation: symmetry, definiteness and the matrix's norm are what they were, and no entry is
-//! added to its pattern.
+//! R^T K R with R = (d, t), a rotation: symmetry, definiteness and norm of the matrix stay, and its pattern does, too.
 
 use std::collections::BTreeMap;
 
@@ -144,7 +143,7 @@ impl Constraints {
                 }
             }
             [one, other] => {
-                // The dual basis: each across the other's direction.
+                // The dual basis: each vector is perpendicular to the other direction.
                 let sine = cross(one.direction, other.direction);
                 let [first, second] = [other.direction, one.direction].map(|[x, y]| [y, -x]);
                 let duals = [first.map(|c| c / sine), second.map(|c| c / -sine)];
@@ -233,7 +232,7 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// The amount by which the normals of all supports may be off.
+/// The rounding error that the normals of all supports may have.
 fn rounding_of_supports(problem: &Problem) -> Result<f64, DataError> {
     let mut rounding: f64 = 0.0;
     for (name, condition) in &problem.conditions {
@@ -273,7 +272,7 @@ fn independent<'d, 'a>(
         };
         if !((demand.value - value).abs() <= tolerance) {
             let (first, second) = (first.to_owned(), demand.name.to_owned());
-            // Of the outward normal of a side along an axis it is the component that is said.
+            // For a side along an axis the message has the component, not that along the outward normal.
             let sign = demand.axis().map_or(1.0, |c| d[c]);
             let direction = d.map(|c| sign * c + 0.0);
             let values = [value, demand.value].map(|value| sign * value);

@@ -1,4 +1,4 @@
-//! Why a problem can't be posed on its mesh, and numbers that must be finite.
+//! Errors of a problem that can't be posed on its mesh, and the check of numbers that must be finite.
 
 use thiserror::Error;
 
@@ -98,7 +98,7 @@ fn listed(motions: &[FreeMotion]) -> String {
     list.join("; nor the ") + &more
 }
 
-/// What else may hold a body of several.
+/// Other means of holding a body that is one of several, for messages.
 fn of_bodies(motions: &[FreeMotion]) -> &'static str {
     if motions.iter().any(FreeMotion::is_of_one_of_several) {
         "; bodies that touch each other are a [[pair]] of boundaries"
@@ -126,7 +126,7 @@ pub fn finite(
     checked(function.at(x), x, what)
 }
 
-/// `value`, which is that of `what()` at `x`.
+/// Returns `value`, that of `what()` at `x`, if it is finite.
 ///
 /// # Errors
 /// [`DataError::NotFinite`].

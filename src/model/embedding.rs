@@ -28,7 +28,7 @@ use super::tree::{Bounds, Tree};
 use crate::contact::pairs::Pair;
 use crate::held::rigid::connected_by_edges;
 
-/// The outline of a mesh, with what it takes to look at what is near.
+/// The outline of a mesh, with the trees that find what is near.
 struct SearchableOutline<'m> {
     mesh: &'m Mesh,
     /// Start and end of each edge of the outline.
@@ -79,7 +79,7 @@ impl Mesh {
     }
 }
 
-/// Checks all of it.
+/// Checks the whole outline.
 ///
 /// # Errors
 /// [`MeshError::Hanging`], [`MeshError::Near`], [`MeshError::Overlapping`], [`MeshError::JoinedAtVertex`].
@@ -154,7 +154,7 @@ impl<'m> SearchableOutline<'m> {
     /// Finds the edges near each vertex, and the first fault of the outline. An edge is near a vertex if it meets the square
     /// around that of [`TOUCHING`] times the shortest edge there: if it crosses one of its sides or has an end inside.
     fn search(&self, near: &mut Near) -> Result<(), Fault> {
-        // A little more than that, for the sake of rounding.
+        // A little larger than the square, to cover rounding.
         let reach = |v: usize| 1.001 * TOUCHING * self.shortest[v];
         let vertices: Vec<usize> = self.at.keys().copied().collect();
         let points = vertices.iter().map(|&v| Bounds::around([self.place(v).into()]));
@@ -300,7 +300,7 @@ struct Near<'o, 'm> {
 impl Near<'_, '_> {
     /// Takes note that an edge is near a vertex. Returns whether the search is to go on.
     fn add(&mut self, vertex: usize, e: usize) -> bool {
-        // More than there are in most meshes.
+        // More pairs for each edge than most meshes have.
         const AT_A_TIME: usize = 16;
         let outline = self.outline;
         let begin = outline.at[&vertex].iter().filter(|&&f| outline.ends[f][0] == vertex);

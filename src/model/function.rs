@@ -1,4 +1,5 @@
-//! Functions of the place: loads, gaps, prescribed displacements and distances. A closure is one; what knows more of itself says it.
+//! Functions of the place: loads, gaps, prescribed displacements and distances. A closure is a function; types that know more
+//! (constant, affine, zero) say so.
 
 use std::sync::Arc;
 
@@ -38,7 +39,7 @@ impl<F: Fn([f64; 2]) -> f64 + Send + Sync> Function for F {
     }
 }
 
-/// A function that is the same everywhere, and knows it.
+/// A constant function.
 #[derive(Clone, Copy, Debug)]
 pub struct Constant(pub f64);
 
@@ -52,5 +53,5 @@ impl Function for Constant {
     }
 }
 
-/// A [`Function`] that problems own together.
+/// A [`Function`] that several problems share.
 pub type SharedFunction = Arc<dyn Function>;

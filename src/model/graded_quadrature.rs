@@ -120,7 +120,7 @@ impl Rule {
             let from_start = Vector2::from(singular.point) - a;
             let along = from_start.dot(&direction) / squared;
             let across = from_start.perp(&direction) / squared;
-            // Off the line of the edge it is nowhere on the edge.
+            // A point off the line of the edge is nowhere on the edge.
             (if across.abs() <= ROUNDED { along } else { f64::NAN }, singular)
         });
         let mut all = vec![0.0, 1.0];

@@ -15,7 +15,7 @@ use crate::quote::key;
 /// The degree up to which loads that are no polynomials are integrated exactly.
 const ENOUGH: u32 = 7;
 
-/// No polynomial gets a rule beyond this degree: by then every digit is right.
+/// The largest degree of a rule: beyond it no digit changes.
 const PLENTY: u32 = 24;
 
 /// [`ENOUGH`] for a load with a kink, whose triangles and edges are cut there: it comes from an exact solution, and its
@@ -43,7 +43,7 @@ pub fn assemble(problem: &Problem, space: &Space) -> Result<Vec<[f64; 2]>, DataE
     assemble_with(problem, space, |load| points(load, tested(problem, space)))
 }
 
-/// The degree of what a load is tested with: a shape function, in a body of revolution times r.
+/// The degree of the test functions: shape functions, in a body of revolution times r.
 fn tested(problem: &Problem, space: &Space) -> usize {
     space.degree().number() + usize::from(problem.material.are_of_revolution())
 }
@@ -70,8 +70,8 @@ pub struct LoadVector {
     pub in_balls: Vec<[PreciseBall; 2]>,
 }
 
-/// [`assemble`] in doubles and in balls: the forces at the points of the rules, weight times value, are doubles, and
-/// what they add up to is computed in either. A load may be long to evaluate.
+/// [`assemble`] in doubles and in balls: the forces at the points of the rules, weight times value, are doubles and evaluated
+/// once, for a load may be slow; their sums are computed in both.
 ///
 /// # Errors
 /// As [`assemble`].
@@ -90,7 +90,7 @@ pub(crate) fn assemble_twice(problem: &Problem, space: &Space) -> Result<LoadVec
     Ok(LoadVector { in_doubles, in_balls })
 }
 
-/// Where on an element.
+/// The place on an element.
 #[derive(Clone, Copy)]
 enum ElementPoint {
     /// Barycentric coordinates.

@@ -186,7 +186,7 @@ pub fn stable_orthotropic(moduli: Orthotropic) -> Result<Material<f64>, Material
             return Err(MaterialError::Modulus { name, value, expected });
         }
     }
-    // sigma_zz that keeps eps_3 = 0, and the strains in the plane of a stress there, with that.
+    // The sigma_zz that keeps eps_3 = 0, and the strains in the plane with this sigma_zz.
     let across = across.map(|Across { e3, nu13, nu23 }| [nu13 * (e3 / e1), nu23 * (e3 / e2)]);
     let [along, aside] = across.unwrap_or_default();
     let [xx, xy, yy] = match moduli.across {
@@ -298,8 +298,8 @@ pub fn eigenvalues(material: &Material<f64>) -> [f64; 2] {
     if diagonal.iter().all(|x| x.is_finite()) { [least, most] } else { [f64::NAN; 2] }
 }
 
-/// A number that A - it is elliptic with, as near to its smallest eigenvalue as rounding allows; 0 or less if there is none. In a body of
-/// revolution it is that of the law in three dimensions.
+/// A lower bound c of the smallest eigenvalue of A, as near as rounding allows; 0 or less if the law is not elliptic. In a body
+/// of revolution A is the law in three dimensions.
 pub fn least_eigenvalue(material: &Material<f64>) -> f64 {
     let in_plane = least_in_plane(material);
     if material.plane() != Plane::Axisymmetric {
@@ -341,7 +341,7 @@ pub(crate) fn largest_eigenvalue(material: &Material<f64>) -> f64 {
     eigenvalues(material)[1]
 }
 
-/// A number that |C_ij| is at most.
+/// An upper bound of all |C_ij|.
 pub(crate) fn largest_entry(material: &Material<f64>) -> f64 {
     if material.is_isotropic() {
         return material.lambda().abs() + 2.0 * material.mu();

@@ -1,9 +1,8 @@
-//! Vertices that are meant to be one, made one.
+//! Merges vertices that are closer than a tolerance.
 //!
-//! A mesh that was written with few digits, or put together from pieces, has vertices close to each other where it should
-//! have one. Vertices no further apart than a given share of the body's size (the longer side of the box around it: rounded
-//! coordinates are off by a share of that) become the one of them that comes first, chains of such vertices too.
-//! Triangles that lose an edge by it are left out.
+//! A mesh that was written with few digits, or put together from pieces, has vertices close to each other where one is meant.
+//! Vertices no further apart than a given share of the body's size (the longer side of its box, as rounding is a share of the
+//! coordinates) become the first of them; so do chains of such vertices. Triangles that lose an edge are left out.
 
 use super::groups::groups;
 use super::tree::{Bounds, Tree};

@@ -72,7 +72,7 @@ impl BoundaryEdge {
 }
 
 impl Mesh {
-    /// The mesh of [`Mesh::new`], of which is checked all but how its triangles lie in the plane; `may_meet` says which vertices may
+    /// As [`Mesh::new`], but without the check for overlaps; `may_meet` says which vertices may
     /// be in one place.
     pub(crate) fn of_edges(
         vertices: Vec<[f64; 2]>,
@@ -366,11 +366,11 @@ impl Mesh {
 /// and contact that leaves less of the displacement without it leaves nothing that can be seen.
 pub(crate) const ROUNDED: f64 = 1e-12;
 
-/// An angle below this, in radians, is none: a hundred thousand rounding errors of a facet a thousandth of the body long.
+/// An angle, in radians, that counts as zero: a hundred thousand rounding errors of a facet a thousandth of the body long.
 /// Two directions that are held are independent, a boundary bends and a motion leaves an obstacle by more only.
 pub(crate) const NO_ANGLE: f64 = 1e-8;
 
-/// |v|, without the overflow and underflow of a sum of squares.
+/// |v|, computed without overflow and underflow.
 pub(crate) fn length(v: Vector2<f64>) -> f64 {
     v.x.hypot(v.y)
 }

@@ -24,7 +24,7 @@ use super::function::Function;
 use super::mesh::length;
 use super::path::{Beside, Path};
 
-/// The length of grad phi may be off 1 by this much. An expression that is no distance (x^2 - 1, 2 x) is off by far more nearly
+/// The largest deviation of |grad phi| from 1. An expression that is no distance (x^2 - 1, 2 x) is off by far more nearly
 /// everywhere; one that is a distance on the obstacle is off by its curvature times the gap, which is small where contact is.
 pub const MOST_OFF: f64 = 0.1;
 

@@ -11,7 +11,7 @@ use super::boundary_normals::{SmoothEdge, left_of, smooth_normals, unit};
 use super::mesh::{NO_ANGLE, ROUNDED, length};
 use crate::quote::{number, short};
 
-/// Why points are no line.
+/// Errors of points that make no line.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
@@ -319,7 +319,7 @@ impl Side {
                     let angle = turn * first.perp(&v).atan2(first.dot(&v));
                     if angle < 0.0 { angle + std::f64::consts::TAU } else { angle }
                 };
-                // In the centre all of it is as near.
+                // Seen from the centre all points of the arc are equally near.
                 if length(out) > 0.0 && angle(out) < angle(stop - center) {
                     return at(center + unit(out) * length(start - center), None);
                 }

@@ -19,14 +19,14 @@ pub(super) struct Edges<'a> {
     pub body_on_left: bool,
 }
 
-/// A question: which edges cross the upright segment at x from one height to another? It is asked for a vertex.
+/// A question asked for a vertex: which edges cross the upright segment at x from one height to another?
 pub(super) struct Question {
     pub vertex: usize,
     pub x: f64,
     pub between: [f64; 2],
 }
 
-/// What makes the outline none.
+/// Faults of an outline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Fault {
     /// Two edges cross.
@@ -35,8 +35,8 @@ pub(super) enum Fault {
     Covered { edge: usize, below: Option<usize> },
 }
 
-/// Sweeps until there is a fault; tells of each edge that a question asks for, the vertex of the question and the edge, until
-/// the answer is not to go on.
+/// Sweeps until there is a fault; calls back with the vertex of a question and each edge that answers it, until the answer is
+/// to stop.
 pub(super) fn sweep(
     edges: &Edges,
     questions: &[Question],
@@ -68,7 +68,7 @@ pub(super) fn turn(a: Vector2<f64>, b: Vector2<f64>, c: Vector2<f64>) -> f64 {
     if (left - right).abs() <= rounding { 0.0 } else { left - right }
 }
 
-/// The inner parts of two segments cross.
+/// Returns whether the inner parts of two segments cross.
 pub(super) fn cross([a, b]: [Vector2<f64>; 2], [c, d]: [Vector2<f64>; 2]) -> bool {
     let opposite = |s: f64, t: f64| (s > 0.0 && t < 0.0) || (s < 0.0 && t > 0.0);
     opposite(turn(a, b, c), turn(a, b, d)) && opposite(turn(c, d, a), turn(c, d, b))
@@ -139,7 +139,7 @@ impl<'a> Sweep<'a> {
             at = self.column.first_not(|e| self.side(e, p) > 0.0);
         }
         let far = |e: usize| self.place(self.ranks[e][1]);
-        // From below. Few edges begin at a vertex.
+        // Sorted from below; few edges begin at a vertex.
         let mut beginning: Vec<usize> = Vec::new();
         for &e in self.at[rank].iter().filter(|&&e| self.ranks[e][0] == rank) {
             // Of two that lie on each other, the one with the body below comes first: a vertex that hangs there is no overlap.
@@ -190,13 +190,13 @@ impl<'a> Sweep<'a> {
     }
 }
 
-/// A list in which items are found by bisection, entered and removed, in pieces of at most [`MOST`] items: none is empty.
+/// A sorted list with insertion and removal, in pieces of at most [`MOST`] items, none empty.
 #[derive(Default)]
 struct Column {
     pieces: Vec<Vec<usize>>,
 }
 
-/// The most items of a piece: moving them costs about as much as finding the piece.
+/// The largest number of items in a piece: moving them costs about as much as finding the piece.
 const MOST: usize = 128;
 
 /// A place in a column: the piece, and the place in that.

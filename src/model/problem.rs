@@ -15,7 +15,7 @@ fn zero() -> SharedFunction {
     Arc::new(|_| 0.0)
 }
 
-/// The condition on a named part of the boundary; on the rest the traction is zero.
+/// The condition on a named part of the boundary. Parts without a condition have no traction.
 #[non_exhaustive]
 #[derive(Clone)]
 pub enum Condition {

@@ -1,4 +1,5 @@
-//! What a problem must be whose mesh is the meridian of a body of revolution: x is the distance r from the axis, y the place z along
+//! Checks of a problem whose mesh is the meridian of a body of revolution: x is the distance r from the axis, y the place z
+//! along
 //! it. On the axis u_r = 0, and there is no condition to give.
 
 use super::data::DataError;
@@ -13,7 +14,7 @@ const ON_AXIS: f64 = 1e-9;
 /// The name by which the axis holds the nodes on it.
 pub(super) const AXIS: &str = "the axis of revolution";
 
-/// Checks the meridian of a body of revolution and the conditions on it; of another body nothing.
+/// Checks the meridian of a body of revolution and the conditions on it; other bodies pass.
 ///
 /// # Errors
 /// [`DataError::Value`]: a part of the body that is none of revolution, r < 0, a vertex next to the axis, a condition on the axis, a

@@ -1,4 +1,4 @@
-//! Boxes in the plane, sorted into a binary tree: which of them meet a given box is found without looking at all.
+//! Boxes in the plane, sorted into a binary tree, which finds those that meet a given box.
 
 /// An axis-parallel box: its least and its greatest coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -53,7 +53,7 @@ pub(super) fn kappa(d: &Discretization, pieces: &[Piece<PreciseBall>]) -> f64 {
                 let off = along.iter().map(|&n| (dot(n, n) - PreciseBall::from(1)).magnitude());
                 let off = PreciseBall::from(8.0 * off.fold(0.0, larger));
                 let cosine = dot(along[0], along[1]);
-                // The root of the factor for both is steep where the direction turns little.
+                // The square root of the factor is steep where the direction turns little.
                 let cosine = if both && geometry.turns() {
                     PreciseBall::from((cosine - off).lower())
                 } else {
@@ -94,12 +94,12 @@ pub(super) fn free(system: &System, forces: &[[PreciseBall; 2]]) -> Vec<PreciseB
     all
 }
 
-/// A direction and the one across, to the left.
+/// A direction, and the direction turned left.
 fn axes(axis: [f64; 2]) -> [[PreciseBall; 2]; 2] {
     [[axis[0], axis[1]], [-axis[1], axis[0]]].map(|axis| axis.map(PreciseBall::from))
 }
 
-/// The field with these components, `known` at the free ones and the prescribed ones as `prescribed` has them.
+/// The field with the components `known` at the free unknowns and `prescribed` at the others.
 pub(super) fn field(
     system: &System,
     known: impl Fn(usize, usize, usize) -> PreciseBall,
@@ -139,7 +139,7 @@ pub(super) fn dot(a: [PreciseBall; 2], b: [PreciseBall; 2]) -> PreciseBall {
     a[0] * b[0] + a[1] * b[1]
 }
 
-/// The length of a vector, at most.
+/// An upper bound of the length of a vector.
 pub(super) fn length(v: [PreciseBall; 2]) -> f64 {
     let [a, b] = v.map(PreciseBall::magnitude);
     if a == 0.0 && b == 0.0 {
@@ -149,7 +149,7 @@ pub(super) fn length(v: [PreciseBall; 2]) -> f64 {
     up((a * a + b * b + f64::MIN_POSITIVE).sqrt())
 }
 
-/// The square root of what cannot be negative, rounded up; infinite where nothing is known.
+/// The square root of a number that cannot be negative, rounded up; infinite where nothing is known.
 pub(super) fn root(square: PreciseBall) -> f64 {
     let square = square.upper();
     if square.is_nan() { f64::INFINITY } else { up(square.max(0.0).sqrt()) }

@@ -1,10 +1,11 @@
-//! How far the computed displacement u~ is from the exact solution u^h of (8), whatever Newton's method, the factorisation and
-//! rounding did: an enclosure of u^h and of what is reported of it. docs/theory.md, 7.5, has the proofs.
+//! The enclosure: bounds of the distance between the computed displacement u~ and the exact solution u^h of (8), and of all
+//! quantities that are reported, whatever Newton's method, the factorisation and rounding did. docs/a-posteriori.md, 7.5, has
+//! the proofs.
 //!
 //! The problem (8) that is meant has these data: the vertices, the Lame coefficients as they act in the plane, gamma on each
 //! contact edge, the gap at the nodes, the prescribed components, the directions of contact where they are not the normal, the
 //! points of a Gauss rule, and for the loads the forces that the quadrature has at its points, weight times value: all of them
-//! doubles, taken for the real numbers that they are. Lengths, normals, areas, stresses and integrals are the exact ones.
+//! doubles, which are real numbers. Lengths, normals, areas, stresses and integrals are the exact ones.
 //!
 //! 1. kappa < 1, rounded up: (8) has exactly one solution, and A(v, v) >= (1 - kappa) a(v, v).
 //! 2. The residual r of (8) at u~, and any z that nearly solves A z = r, as the factor at hand gives it:
@@ -37,7 +38,7 @@ use crate::solve::SolveError;
 use crate::solve::newton::SLIGHT;
 use crate::solve::times::Stopwatch;
 
-/// Where u^h is, and what is known of it.
+/// An enclosure of u^h and of its quantities.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Enclosure {
@@ -76,7 +77,7 @@ pub struct Isolation {
     pub limits: [f64; 2],
 }
 
-/// Why nothing is proved.
+/// Reasons why nothing is proved.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 #[non_exhaustive]
@@ -132,12 +133,12 @@ impl Unproved {
     }
 }
 
-/// A body whose energy norm is below this is at rest: the energies that [`solve`](crate::solve::solve) does not refuse are above 1e-270, and
-/// a slender body may have as little of it as this.
+/// The energy norm below which a body is at rest. [`solve`](crate::solve::solve) refuses energies below 1e-270, and a slender
+/// body may have as little as this.
 const LEAST_NORM: f64 = 1e-150;
 
-/// Encloses the solution of (8) around the displacement `u`, in balls throughout: as [`Verifier::enclose`]. A factor of A that is
-/// at hand saves making one; nothing depends on its being right.
+/// Encloses the solution of (8) around the displacement `u`, in balls throughout: as [`Verifier::enclose`]. A given factor of A
+/// saves a factorisation, and need not be right.
 ///
 /// # Errors
 /// Why nothing can be proved.
@@ -150,7 +151,7 @@ pub fn enclose(
     Verifier::new(system, of_a).enclose(u, near, Arithmetic::Balls)
 }
 
-/// Encloses the solution of (8) around one displacement after the other: what does not depend on them is done once.
+/// Encloses the solution of (8) around several displacements; work that does not depend on them is done once.
 pub struct Verifier<'s, 'd, 'p> {
     system: &'s System<'d, 'p>,
     load: &'s [[PreciseBall; 2]],
@@ -254,7 +255,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         if loose.basis.len() <= stopped && loose.stopping.is_empty() {
             return self.around(u, &reported, near, arithmetic);
         }
-        // Motions that only edges stop which do not press: of all solutions one that is away from these.
+        // Of all solutions take one that is away from edges that do not press but stop motions.
         let Some(inside) = loose.to_inside(u) else { return Err(Unproved::HeldByContact) };
         let mut u = u.to_vec();
         loose.move_by(&inside, &mut u);
@@ -392,7 +393,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
                 }),
             };
             let product = Product { system, lines: &self.lines, pressed, arithmetic };
-            // With Coulomb's friction each digit of it widens the ball without another solution.
+            // With Coulomb's friction every further digit of the norm widens the ball without another solution.
             let negligible = if coulomb { 0.0 } else { negligible };
             dual = dual_norm(&product, factor, r, &crude, coercivity, negligible);
         }
@@ -450,7 +451,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         let hardly_strains = up(root(at.energy) + radius) <= NEGLIGIBLE * if_strained;
         let is_measured = !hardly_strains && norm > 0.0;
         let isolation = isolated.map(|Isolated { within, everywhere, limits, .. }| {
-            // From where the residual is known to the displacement that is reported.
+            // The distance from the displacement whose residual is known to the one that is reported.
             let within = within.map(|within| (within - at.moved) * (1.0 - f64::EPSILON));
             let within = within.filter(|within| radius <= *within);
             let relative = |within: f64| within / up(root(at.energy)) * (1.0 - f64::EPSILON);
@@ -491,7 +492,7 @@ impl Enclosure {
     }
 }
 
-/// u moved along the motions that slide, to where `reported` is.
+/// u moved along the sliding motions, as near to `reported` as they go.
 fn slid(
     mut u: Vec<[PreciseBall; 2]>,
     reported: &[[f64; 2]],
@@ -524,7 +525,7 @@ fn stays_off(
     })
 }
 
-/// A, with the springs where it is `pressed`.
+/// A, with the springs of the pieces that are `pressed`.
 struct Product<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
     lines: &'a [Piece<PreciseBall>],
@@ -558,8 +559,8 @@ fn crude_norms(system: &System, korn: &Korn, coercivity: f64) -> Vec<f64> {
     crude
 }
 
-/// A dual norm is corrected as long as that takes it below this share of what it was: of a body whose factor knows hardly a digit each
-/// correction takes off some of what is left.
+/// The share to which a correction must reduce a dual norm, or corrections end: a factor with hardly a digit still takes
+/// something off with every correction.
 const BETTER: f64 = 0.9;
 
 /// A functional in the dual norm of A.
@@ -571,8 +572,8 @@ struct Dual {
     left: f64,
 }
 
-/// Of r, where |t|_A* <= sum of `crude`_i |t_i| for every t, and |v|_a^2 <= |v|_A^2 / `coercivity`. What is `negligible` need not be
-/// known better.
+/// A bound of |r|_A*, where |t|_A* <= sum of `crude`_i |t_i| for every t, and |v|_a^2 <= |v|_A^2 / `coercivity`. A rest of r whose
+/// norm is below `negligible` is not corrected any further.
 fn dual_norm(
     a: &Product,
     factor: &Factor,
@@ -613,7 +614,7 @@ fn dual_norm(
     }
 }
 
-/// The sum of the magnitudes, each times its weight, at most.
+/// An upper bound of the weighted sum of the magnitudes.
 fn weighted(v: &[PreciseBall], weights: &[f64]) -> f64 {
     let sum: f64 = v.iter().zip(weights).map(|(v, weight)| v.magnitude() * weight).sum();
     // As many roundings as terms; a product may underflow.

@@ -1,4 +1,4 @@
-//! (8) at a displacement, in balls, and the intervals of what is reported of its solution near there.
+//! (8) at a displacement, in balls, and the intervals of the quantities of its solution nearby.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use crate::proof::rounded_stress;
 /// An interval `[low, high]`.
 pub type Range = [f64; 2];
 
-/// Intervals that contain what the exact solution of (8) has.
+/// Intervals that contain the quantities of the exact solution of (8).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
@@ -278,7 +278,7 @@ impl EnclosedResidual {
     }
 }
 
-/// Each reaction takes a pass over the body: with more displacement boundaries than these none is enclosed.
+/// The largest number of displacement boundaries whose reactions are enclosed: each takes a pass over the body.
 const MOST_REACTIONS: usize = 64;
 
 fn range(ball: PreciseBall) -> Range {

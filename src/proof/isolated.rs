@@ -1,8 +1,9 @@
-//! With Coulomb's friction the discrete equations may have several solutions. Around a computed one it is decided here whether there is
-//! exactly one within a distance R, and how far that can be: docs/theory.md, 13.6.
+//! With Coulomb's friction the discrete equations may have several solutions. This file proves, around a computed solution,
+//! that there is exactly one within a distance R, and bounds the distance to that solution: docs/theory.md, 13.6.
 //!
-//! With B the functionals, A = L L^T, Z = L^-1 B^T, G = Z^T Z and H0 what the terms of contact and friction have for a derivative where it is
-//! certain which of them is meant, J0 = A + B^T H0 B. Newton's map v - J0^-1 F(v) moves u~ by at most `step`, and brings two fields within R
+//! With B the functionals, A = L L^T, Z = L^-1 B^T, G = Z^T Z and H0 the derivative of the terms of contact and friction where
+//! the state (open, stick, slip) is certain, J0 = A + B^T H0 B. Newton's map v - J0^-1 F(v) moves u~ by at most `step`, and
+//! brings two fields within R
 //! of u~ nearer to each other by a factor of at most
 //!
 //! q(R) = sum over the pieces of |E| / gamma times the integral of what J0^-1 makes of the forces by which the terms may differ from those
@@ -28,15 +29,15 @@ use crate::linear::system::System;
 use crate::model::Degree;
 use crate::solve::coulomb::coefficient;
 
-/// Beyond this number of functionals, and of products of their number and that of the unknowns, nothing is tried: the time grows with
-/// the cube of the first and with the second.
+/// The largest number of functionals, and the largest product of functionals and unknowns, for which a proof is tried: the time
+/// grows with the cube of the first and with the second.
 const MOST_FUNCTIONALS: usize = 2_000;
 const MOST_ENTRIES: usize = 40_000_000;
 
 /// The shares of a stretch that are left out at a root, where nothing is certain: the first with which the rest is.
 const INSETS: [f64; 4] = [1e-14, 1e-12, 1e-10, 1e-7];
 
-/// What is proved of the solution near a displacement.
+/// The proved facts about the solution near a displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Isolated {
     /// |u~ - u^h|_A at most.
@@ -54,7 +55,7 @@ pub(super) struct Isolated {
 /// A product with A in balls: of a vector, off by a functional of at most the number that comes with it, times |v|_a.
 pub(super) type Product<'a> = &'a dyn Fn(&[PreciseBall]) -> (Vec<PreciseBall>, f64);
 
-/// What is known of A.
+/// Bounds of A.
 pub(super) struct Body<'a, 'd, 'p> {
     pub system: &'a System<'d, 'p>,
     /// Any factor, the better the nearer it is to that of A.
@@ -105,7 +106,7 @@ impl Body<'_, '_, '_> {
             let mut left = vec![zero; system.numbering.count];
             row.iter().for_each(|&(k, b)| left[k] = b);
             let mut rest = f64::INFINITY;
-            // Once, and once more from what is left.
+            // Solves, and corrects once by the residual.
             for _ in 0..2 {
                 let mut correction: Vec<f64> = left.iter().map(|t| t.head()).collect();
                 self.factor.solve(&mut correction);
@@ -130,7 +131,7 @@ impl Body<'_, '_, '_> {
                 radii[(i, j)] = up(entry.radius() + (entry.head() * f64::EPSILON).abs());
             }
         }
-        // Symmetric as G is: the mean of two entries is off by no more than the larger one.
+        // The mean of an entry and its mirror is off by no more than the larger of their errors, as G is symmetric.
         let mean = Mat::from_fn(count, count, |i, j| (g[(i, j)] + g[(j, i)]) / 2.0);
         let by = |i: usize, j: usize| up(radii[(i, j)] + sizes[i] * rests[j]);
         let by = Mat::from_fn(count, count, |i, j| {
@@ -141,7 +142,7 @@ impl Body<'_, '_, '_> {
     }
 }
 
-/// The most that linear combinations of P0_n(v) and P0_t(v) are on a piece, for v of norm 1.
+/// Bounds of linear combinations of P0_n(v) and P0_t(v) on a piece, for v of norm 1.
 struct Reach {
     /// Of P0_n, and of P0_t; 0 where the piece does not feel that.
     normal: f64,
@@ -288,8 +289,8 @@ fn possible(law: Law, has: impl Fn(Region) -> bool) -> Vec<Terms> {
     }
 }
 
-/// Where a quadratic polynomial with these values at the nodes has its extremum within the edge: on either side of it a positive one has
-/// positive coefficients (Bernstein's), across it it need not.
+/// Where a quadratic polynomial with these values at the nodes has its extremum within the edge: on either side of the extremum
+/// a positive polynomial has positive Bernstein coefficients, across it the coefficients may be negative.
 fn turning_point(values: &Row) -> Option<f64> {
     let [start, end, middle] = values[..] else { return None };
     let [start, end, middle] = [start, end, middle].map(PreciseBall::head);
@@ -308,7 +309,7 @@ fn where_positive(
     EdgePiece::positive((d.space.degree(), &d.rule), piece.radii, positive, (&INSETS, &cuts))
 }
 
-/// What eta and H0 take of a piece.
+/// The contributions of a piece to eta and H0.
 struct OnPiece<'a> {
     piece: &'a Piece<PreciseBall>,
     p: Row,
@@ -470,7 +471,7 @@ fn is_positive_definite(matrix: &Mat<f64>, off: f64) -> bool {
     shift.is_finite() && shifted.llt(Side::Lower).is_ok()
 }
 
-/// The largest sum of magnitudes in a row: for a symmetric matrix a bound of its norm.
+/// The largest row sum of magnitudes, which bounds the norm of a symmetric matrix.
 fn row_sum(matrix: &Mat<f64>) -> f64 {
     let row = |i: usize| (0..matrix.ncols()).map(|j| matrix[(i, j)].abs()).sum::<f64>();
     up((0..matrix.nrows()).map(row).fold(0.0, larger) * (1.0 + 1e-9))
@@ -597,7 +598,7 @@ impl Root {
     }
 }
 
-/// What is known of the inverse of 1 + Z H Z^T.
+/// Bounds of the inverse of 1 + Z H Z^T.
 struct Inverse {
     /// |Z K w| is at most the length of this times w, and the second times |w|.
     forces: Mat<f64>,
@@ -644,7 +645,7 @@ impl Inverse {
     }
 }
 
-/// The norm of a matrix, at most.
+/// An upper bound of the norm of a matrix.
 fn longest(matrix: &Mat<f64>) -> Option<f64> {
     let (n, size) = (matrix.ncols(), frobenius(matrix));
     let square = matrix.transpose() * matrix;
@@ -664,7 +665,7 @@ fn magnitudes(matrix: &Mat<f64>) -> Mat<f64> {
     Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)].abs())
 }
 
-/// What does not depend on the displacement.
+/// The data that do not depend on the displacement.
 pub(super) struct Known {
     compliance: Compliance,
     root: Root,
@@ -715,8 +716,8 @@ pub(super) struct Rest<'a> {
     pub size: f64,
 }
 
-/// Decides around the displacement `u` with the residual `of`. All of it is in the norm of A, or of A with the springs that are `known`;
-/// `by_a` is then what is known without.
+/// Decides around the displacement `u` with the residual `of`. The norm is that of A, or of A with the springs that are
+/// `known`; `by_a` then has the bounds without springs.
 ///
 /// # Errors
 /// Why nothing is proved.
@@ -740,7 +741,7 @@ pub(super) fn isolate(
     };
     let inverse = root.inverse(&blocks).ok_or(Unproved::NotIsolated)?;
     let answers: Vec<Reach> = pieces.iter().map(|piece| inverse.reach(piece)).collect();
-    // How much nearer two fields within r are after a step, at most, and the first step.
+    // Bounds of the contraction of two fields within r by a step, and of the first step.
     let nearer = |r: f64| {
         let pairs = all.iter().zip(&answers);
         let [sum, crude] = pairs.fold([0.0; 2], |[sum, crude], (on, answer)| {
@@ -800,7 +801,8 @@ fn mass(d: &Discretization, piece: &Piece<PreciseBall>) -> DMatrix<f64> {
     mass
 }
 
-/// C^T M C, and what it is off: M are the integrals of `weight`(mu) N_a N_b / gamma of the functionals that feel Coulomb's friction. Its
+/// C^T M C, and a bound of its error: M are the integrals of `weight`(mu) N_a N_b / gamma of the functionals that feel
+/// Coulomb's friction. Its
 /// largest eigenvalue is at least that of G^(1/2) M G^(1/2).
 fn of_friction(
     d: &Discretization,
@@ -867,10 +869,10 @@ fn limits(
     [first, second.max(0.0)]
 }
 
-/// The limits are this much lower than they might be.
+/// The relative amount by which the limits may be below the best provable ones.
 const CLOSE: f64 = 1e-3;
 
-/// c of Theorem 13.3a at most, where it is known and below 1.
+/// An upper bound of c of Theorem 13.3a, if known and below 1.
 fn coupling(
     d: &Discretization,
     pieces: &[Piece<PreciseBall>],
@@ -889,7 +891,7 @@ fn coupling(
         }
         inverses.push(inverse);
     }
-    // What a mass matrix of order 3 makes of rounding.
+    // The factor by which a mass matrix of order 3 enlarges rounding.
     let stiffest = inverses.iter().map(frobenius).fold(0.0, f64::max);
     let rounding = 64.0 * f64::EPSILON * 20.0 * stiffest;
     let all: Vec<(usize, usize, usize)> = normal.iter().chain(&across).copied().collect();
@@ -922,9 +924,9 @@ fn coupling(
     is_positive_definite(&whole, off).then_some(c)
 }
 
-/// About the largest eigenvalue of what `times` multiplies by, if it is real and not negative.
+/// An estimate of the largest eigenvalue of the matrix that `times` multiplies by, if real and not negative.
 fn power(n: usize, times: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
-    // In no plane of symmetry.
+    // A start in no plane of symmetry.
     let mut x: Vec<f64> = (0..n).map(|i| 1.0 + 0.5 * (1.7 * i as f64).sin()).collect();
     let mut largest = 0.0;
     for _ in 0..300 {

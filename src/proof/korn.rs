@@ -1,12 +1,12 @@
 //! Korn's inequality on V^h with a number for its constant: a bound of |v| at each node by |v|_a, for all v that vanish at the
-//! prescribed components. docs/theory.md, 7.6, has the proof; the bound is crude (it adds up magnitudes along a tree of
-//! triangles), and it is used where that does no harm: times residuals that are far below rounding.
+//! prescribed components. docs/a-posteriori.md, 7.6, has the proof; the bound is crude, a sum of magnitudes along a tree of
+//! triangles, and multiplies only residuals that are far below rounding.
 //!
 //! On a triangle v is a rigid motion r_T up to c_T |v|_{a,T}. Motions of neighbours differ on their common edge by what both
 //! leave; along the tree that adds up to |r_T - r_root| <= S_T^{1/2} |v|_a. The tree is that of the smallest S_T: next to the
 //! short edges of a graded mesh it goes round by long ones. Each part of the body has a root, and
-//! prescribed components hold its motion. What couples two parts, as contact between them does, holds the motions of both: their
-//! roots have six unknowns together.
+//! prescribed components hold its motion. Contact between two parts couples their motions: their roots have six unknowns
+//! together.
 //!
 //! In a body of revolution the hoop strain holds the mean of v_r on each triangle, and c_T has the weight (docs/theory.md, 11.5).
 //!
@@ -35,7 +35,7 @@ const SAFETY: f64 = 1.001;
 /// The smallest area of a triangle for which there is a bound: below, squares underflow.
 const SMALLEST: f64 = 1e-200;
 
-/// A hold beside the supports: a sum of components of v at nodes is at most `most` where |v|_a is at most 1.
+/// A constraint beside the supports: a sum of components of v at nodes is at most `most` where |v|_a is at most 1.
 #[derive(Clone, Debug)]
 pub struct Hold {
     /// What is summed up, triangle by triangle.
@@ -107,7 +107,7 @@ impl Korn {
             all.extend(hoops(mesh, materials, &part, roots.len()));
         }
         let of = |t: usize| left[t].sqrt() + along[t].sqrt();
-        // A hold of several parts holds them together.
+        // A constraint on several parts joins them.
         let together = all.iter().flat_map(|hold| {
             hold.terms.windows(2).map(|pair| [0, 1].map(|i| part[pair[i].triangle]))
         });
@@ -173,7 +173,7 @@ struct Paths<'a> {
     passed: Vec<f64>,
 }
 
-/// Positive doubles are in the order of their bits: without the last ones they are in eight classes an octave.
+/// Positive doubles have the order of their bits; the leading bits make eight classes an octave.
 const CLASS: u32 = 49;
 
 impl Paths<'_> {
@@ -208,7 +208,7 @@ impl Paths<'_> {
     }
 }
 
-/// The prescribed components, with one triangle at each node. Vertices alone: their places are exact.
+/// The prescribed components at vertices, whose places are exact, with one triangle at each.
 fn supports(space: &Space, constraints: &Constraints) -> Vec<Hold> {
     let mut holds = Vec::new();
     let mut seen = vec![false; space.nodes().len()];
@@ -232,7 +232,8 @@ fn mean_weight(materials: &Materials, t: usize, triangle: &Triangle<f64>) -> f64
     materials.of(t).radii(triangle).map_or(1.0, |[a, b, c]| (a + b + c) / 3.0)
 }
 
-/// What the hoop strain of a body of revolution holds: the mean of v_r on each triangle. Two of each part are enough, one near either end
+/// The constraints by the hoop strain of a body of revolution, on the mean of v_r on each triangle. Two of each part are
+/// enough, one near either end
 /// along the axis, where the bound is least.
 fn hoops(mesh: &Mesh, materials: &Materials, part: &[usize], count: usize) -> Vec<Hold> {
     let height = |t: usize| mesh.triangle(t).vertices.iter().map(|x| x[1]).sum::<f64>();
@@ -326,7 +327,7 @@ fn motions_of_roots(
     let most: Vec<f64> = holds.iter().map(most).collect();
     let middle = |c: &Ball| c.lower() / 2.0 + c.upper() / 2.0;
     let doubles: Vec<Vec<f64>> = rows.iter().map(|row| row.iter().map(middle).collect()).collect();
-    // Those that say most.
+    // The rows that restrict most.
     let weighted = |(row, most): (&Vec<f64>, &f64)| row.iter().map(|c| c / most).collect();
     let chosen = independent(doubles.iter().zip(&most).map(weighted).collect(), unknowns)?;
     // With M q = t and any R: q = R t + (1 - R M) q. R is the inverse of M in doubles.

@@ -1,6 +1,6 @@
 //! Strong contact: the pieces of Gamma_C that are surely pressed around the computed displacement, and the matrix A_S of (8)
 //! there. Where contact alone stops a rigid motion of the body, A is singular; A_S = A + the springs of those pieces S is not,
-//! and on a ball around the displacement in which they stay pressed (8) is strongly monotone in its norm. docs/theory.md, 7.5,
+//! and on a ball around the displacement in which they stay pressed (8) is strongly monotone in its norm. docs/a-posteriori.md, 7.5,
 //! has the proofs.
 //!
 //! |v|_S^2 = A(v, v) + int over S of P0(v)^2 / gamma
@@ -20,13 +20,13 @@ use crate::kernel::edge_integral;
 use crate::model::Degree;
 use crate::proof::korn::{Hold, Term};
 
-/// A piece is taken for pressed where P is at least this share of the most that it is all along some piece; where that proves
-/// nothing, the next one: with all pieces that are pressed more holds the body, with fewer these stay pressed on a larger ball. With
-/// the first alone twelve of 2,000 bodies at random have no enclosure, with the first two nine, with all five.
+/// Thresholds of pressed pieces, tried in turn: P all along the piece, as a share of the largest such value. More pieces hold
+/// the body better, fewer stay pressed on a larger ball. Of 2,000 random bodies, twelve have no enclosure with the first
+/// threshold alone, nine with the first two, five with all.
 pub const SHARES: [f64; 3] = [0.0, 1.0 / 256.0, 1.0 / 16.0];
 
-/// This share of a stretch is left out at a root of P, where P is too small to stay positive: with none, stretches that end at a
-/// root hold nothing.
+/// The share of a stretch that is left out at a root of P, where P is too small to stay positive: without this, stretches that
+/// end at a root hold nothing.
 const INSET: f64 = 1.0 / 64.0;
 
 /// Covers the rounding of a few sums, products and roots of positive doubles.
@@ -40,7 +40,8 @@ fn weighted(radii: Radii, place: PreciseBall, weight: PreciseBall) -> PreciseBal
     radii.map_or(weight, |radii| weight * edge_integral::radius(radii, place))
 }
 
-/// The most that the square of a polynomial with `count` coefficients is on \[0, 1\] whose square has the integral 1 with the weight r:
+/// The maximum on \[0, 1\] of the square of a polynomial with `count` coefficients whose square has the integral 1 with the
+/// weight r:
 /// count^2 over the smaller r; or, as r is at least its larger value times the distance from the other end, count^2 (count + 1)^2 / 2
 /// over that (docs/theory.md, 11.5).
 fn most_in_revolution(count: usize, radii: [PreciseBall; 2]) -> f64 {
@@ -50,7 +51,7 @@ fn most_in_revolution(count: usize, radii: [PreciseBall; 2]) -> f64 {
     up(by_least.min(square * next / 2.0 / most))
 }
 
-/// Values at the nodes of an edge, or what is multiplied by them.
+/// Values at the nodes of an edge, or their coefficients.
 pub(super) type Row = Vec<PreciseBall>;
 
 /// A piece of an edge.
@@ -66,7 +67,7 @@ pub(super) struct EdgePiece {
     pub(super) mass: Vec<Row>,
 }
 
-/// What is pressed of one component on a piece of Gamma_C, or stuck: P is surely where it is integrated itself.
+/// The pressed (or stuck) stretches of one component on a piece of Gamma_C, on which q(P) = P is certain.
 struct PressedPart {
     /// The piece.
     edge: usize,
@@ -94,7 +95,7 @@ pub struct Pressed {
 /// A stretch with the least that P is on it, or is within the bound of friction.
 type Measured = (f64, EdgePiece);
 
-/// What may be in S of one component on a piece: the piece, the numbers of the component's values, and stretches of it.
+/// Candidates for S of one component on a piece: the piece, the numbers of the component's values, and stretches of the piece.
 type Found = (usize, Range<usize>, Vec<Measured>);
 
 impl EdgePiece {
@@ -189,7 +190,8 @@ impl EdgePiece {
     }
 }
 
-/// What must be positive where a piece sticks: what P_t is within the bound on both sides. Nothing is said of what never sticks.
+/// The distances of P_t from the bound on both sides, which must be positive where a piece sticks; `None` for pieces that never
+/// stick.
 fn stuck(line: &Piece<PreciseBall>, p: &[PreciseBall]) -> Option<[Row; 2]> {
     let Law::Friction(bound) = line.geometry.law else { return None };
     let bound = bound.at_nodes(line.gamma, line.along(p));
@@ -390,7 +392,7 @@ pub fn greatest(degree: Degree, p: &[PreciseBall]) -> f64 {
     degree.bernstein(p).iter().map(|p| p.upper()).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// How much P0(v) is along a piece at most where |v| is at most `far` at the nodes of its edges, added up over its sides, and
+/// An upper bound of P0(v) along a piece where |v| is at most `far` at the nodes of its edges, added up over its sides, and
 /// `radius` in the energy norm a: gamma |s(v)| is at most 2 (gamma / |E|)^{1/2} |v|_a in the plane, and n~ . v at most 5/4 of the largest nodal
 /// value; where the nodes of the piece are not those of the edge, that twice.
 pub fn change(line: &Piece<PreciseBall>, far: f64, radius: f64) -> f64 {
@@ -398,7 +400,7 @@ pub fn change(line: &Piece<PreciseBall>, far: f64, radius: f64) -> f64 {
     up(SAFETY * (spread * far + stress_factor(line) * root_of(line) * radius))
 }
 
-/// The most that an affine function is on an edge whose square has the integral 1 over \[0, 1\], with the weight.
+/// The maximum on an edge of an affine function whose square has the integral 1 over \[0, 1\], with the weight.
 fn stress_factor(line: &Piece<PreciseBall>) -> f64 {
     line.radii.map_or(2.0, |radii| up(most_in_revolution(2, radii).sqrt()))
 }

@@ -1,4 +1,4 @@
-//! Forces of a displacement from stresses in doubles, off by no more than a proved norm: docs/theory.md, 7.5. They take a
+//! Forces of a displacement from stresses in doubles, off by no more than a proved norm: docs/a-posteriori.md, 7.5. They take a
 //! fraction of the time of [`add_internal_forces`](crate::contact::residual::add_internal_forces) in balls.
 
 use nalgebra::{Matrix2, Vector2, Vector3};
@@ -14,7 +14,7 @@ use crate::model::element::with_element;
 use crate::model::material::{Materials, largest_entry, least_eigenvalue};
 
 /// Adds int s:eps(v) for every basis function v, where s is the stress of `u` that doubles give. Returns a b with
-/// |int (s - sigma(u)):eps(v)| <= b |v|_a for all v: docs/theory.md, 7.5. Infinite or NaN where there is none.
+/// |int (s - sigma(u)):eps(v)| <= b |v|_a for all v: docs/a-posteriori.md, 7.5. Infinite or NaN where there is none.
 pub fn add_forces(
     d: &Discretization,
     u: &[[PreciseBall; 2]],
@@ -39,7 +39,7 @@ pub fn add_forces(
     })
 }
 
-/// [`add_forces`] with sums in doubles, their rounding in the radii: for displacements that are next to nothing.
+/// [`add_forces`] with sums in doubles, their rounding in the radii, for very small displacements.
 pub fn add_small_forces(
     d: &Discretization,
     u: &[[PreciseBall; 2]],
@@ -61,7 +61,7 @@ pub fn add_small_forces(
     bound
 }
 
-/// A sum of products of doubles, and what it is off by at most in units of roundoff.
+/// A sum of products of doubles, and a bound of its error in units of roundoff.
 #[derive(Clone, Copy, Debug, Default)]
 struct RoundedSum {
     value: f64,
@@ -228,8 +228,8 @@ fn make_sums_exact<const N: usize>(numbers: &mut [[f64; 3]; N]) {
     numbers.iter_mut().flatten().for_each(|s| *s = (*s + shift) - shift);
 }
 
-/// |v|_a at most, from the magnitudes of the nodal values: sigma:eps is at most |sigma| |eps|. For fields that are next to nothing, or
-/// vanish but near a boundary.
+/// An upper bound of |v|_a from the magnitudes of the nodal values, as sigma:eps is at most |sigma| |eps|. Used for very small
+/// fields, and for fields that vanish but near a boundary.
 pub(crate) fn energy_norm_at_most(d: &Discretization, v: &[[PreciseBall; 2]]) -> f64 {
     with_element!(d.space.degree(), E => energy_norm_of::<E, _, _>(d, v))
 }
@@ -258,7 +258,7 @@ fn energy_norm_of<E: Element<N, M>, const N: usize, const M: usize>(
     SAFETY * square.sqrt()
 }
 
-/// Returns whether all nodes have the same value, and that is known.
+/// Returns whether all nodes certainly have the same value.
 #[inline]
 fn moves_as_a_whole<const N: usize>(nodes: &[usize; N], u: &[[PreciseBall; 2]]) -> bool {
     let first = u[nodes[0]];
@@ -268,8 +268,8 @@ fn moves_as_a_whole<const N: usize>(nodes: &[usize; N], u: &[[PreciseBall; 2]]) 
 /// Covers the rounding of sums and products of positive numbers, some million of them, and areas that are off by a thousandth.
 const SAFETY: f64 = 1.01;
 
-/// A triangle is too flat for doubles where the products that its area is the difference of are larger beside it: a hypothesis of the
-/// analysis, which leaves such triangles to balls.
+/// The largest ratio of the products whose difference is the area to the area itself, a hypothesis of the analysis: flatter
+/// triangles are left to balls.
 const FLAT: f64 = (1_u64 << 40) as f64;
 
 /// Bounds of the law of a material.
@@ -386,7 +386,7 @@ impl<const N: usize> RoundedStrain<N> {
             (u[c].head() - first[c].head()) + (u[c].centre().tail() - first[c].centre().tail())
         };
         let differences = nodal.map(|u| Vector2::new(difference(u, 0), difference(u, 1)));
-        // What the differences are off by, beside what is relative to them.
+        // The absolute part of the error of the differences.
         let off: f64 = nodal
             .iter()
             .flat_map(|u| u.iter().zip(&first))

@@ -1,7 +1,7 @@
 //! Quantities of each part of Gamma_C: resultant, moment, where there is contact, the recovered pressure, penetration; and
 //! the balance of energies.
 //!
-//! Of a pair of bodies all of this is of the first one; the force on the second is the opposite.
+//! For a pair of bodies all quantities are those on the first; the force on the second is the opposite.
 //!
 //! The force of the obstacle on the body is the functional v -> -int (1/gamma) \[P\]+ I(n~ . v): -G_a n~_a at node a, with
 //! G_a = int (1/gamma) \[P\]+ N_a. With v a rigid motion it gives resultant and moment, and these balance loads and reactions
@@ -10,16 +10,16 @@
 //! **The recovered pressure** at a node is the mean of -lambda^h weighted by the node's hat function on the contact line (for
 //! P2 on half edges where the line is straight): p_a = int (-lambda^h) phi_a / int phi_a. The hats are not negative and add
 //! up to one, so 0 <= p_a <= max(-lambda^h), and sum p_a phi_a has the same integral as -lambda^h on every part of Gamma_C,
-//! to rounding. -lambda^h jumps from edge to edge by what sigma_n does; the mean takes out the jumps. It is of second order
+//! to rounding. -lambda^h jumps from edge to edge as sigma_n does; the mean takes out the jumps. The mean is of second order
 //! where the pressure is smooth and neighbouring edges differ little in length (docs/parts.md has the numbers). At a corner,
 //! where the direction of contact jumps, each side has its own value. Between two bodies the hats are those of the edges of the
 //! body that has more of them.
 //!
 //! On a curved line the edge is a chord, off the boundary by delta = s (|E| - s) / 2R at s, and u there is off by delta times
 //! the derivative of u along n: a wave along the line with the period of the edges, of order |E|^2, which sigma_n of P2 sees
-//! as one of order |E| that is even on each edge and has the mean 0. The hats of whole edges have the mean of a wave like that
-//! for theirs, so they take it out; those of half edges would keep it. So on a curved edge only its ends have a hat, and the
-//! value in the middle is the mean of theirs.
+//! as one of order |E| that is even on each edge and has the mean 0. Means with the hats of whole edges remove such a wave;
+//! those of half edges would keep it. So on a curved edge only the ends have a hat, and the value in the middle is the mean of
+//! the values there.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -79,7 +79,7 @@ pub struct ContactBoundary {
     pub friction: Option<BoundaryFriction>,
 }
 
-/// What friction does on one part of Gamma_C.
+/// The quantities of friction on one part of Gamma_C.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
@@ -113,7 +113,7 @@ fn unknown_place() -> [f64; 2] {
     [f64::NAN; 2]
 }
 
-/// a(u, u) = loads + supports + contact: what the strains hold is twice the work of the three on u.
+/// a(u, u) = loads + supports + contact, each of the three being forces times the displacement u.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
@@ -205,7 +205,8 @@ pub(crate) fn recovered_pressure(d: &Discretization, p: &[Vec<DoubleDouble>]) ->
     recovered
 }
 
-/// The recovered pressure on the pieces of a pair of bodies, by the hats of whole edges of that body which has more of them: a piece
+/// The recovered pressure on the pieces of a pair of bodies, by the hats of whole edges of the body that has more of them: a
+/// piece
 /// may be far shorter than any edge, and lambda^h jumps from one to the next.
 fn recover_between(
     d: &Discretization,
@@ -380,7 +381,7 @@ pub(crate) fn contact_boundaries(
     all
 }
 
-/// How a contact boundary is called, and a pair of boundaries.
+/// The name of a contact boundary, and that of a pair of boundaries.
 pub fn label(boundary: &str, partner: Option<&str>) -> String {
     match partner {
         None => boundary.to_owned(),

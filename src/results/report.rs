@@ -1,4 +1,4 @@
-//! How a solution was found, and what is proved of it.
+//! The course of a solve, and its verdict.
 
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
@@ -60,7 +60,7 @@ pub enum RouteName {
     Assembled,
 }
 
-/// How a solve ended.
+/// The ways in which an iteration ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 pub enum Status {
@@ -72,10 +72,10 @@ pub enum Status {
     ConvergedToRounding,
 }
 
-/// How Newton's method went.
+/// The course of Newton's method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NewtonReport {
-    /// The verdict.
+    /// How the iteration ended.
     pub status: Status,
     /// The residual of (8), as Newton's method saw it, before the first step and after each one: Euclidean norms over the
     /// free degrees of freedom, relative to |L| + |residual of the prescribed data|.
@@ -93,7 +93,7 @@ impl NewtonReport {
     }
 }
 
-/// By which route the solution was found, and how far it can be trusted.
+/// The route by which the solution was found, and how far it can be trusted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 pub struct MethodReport {

@@ -225,7 +225,7 @@ pub struct Quantities {
     pub reaction_moments: BTreeMap<String, f64>,
 }
 
-/// A contact force below this share of all forces is rounding.
+/// The share of all forces below which a contact force is rounding.
 const NO_FORCE: f64 = 1e-10;
 
 impl Quantities {
@@ -391,7 +391,7 @@ impl GammaReport {
     }
 }
 
-/// The mean of sigma(u) on each triangle, and the one across the plane.
+/// The mean of sigma(u) on each triangle, and that of the stress across the plane.
 fn mean_stresses(d: &Discretization, u: &[[f64; 2]]) -> Vec<(Stress<f64>, f64)> {
     let stress = |t| {
         let material = d.problem.material.of(t);

@@ -15,7 +15,7 @@ pub fn von_mises([xx, yy, zz, xy]: Components) -> f64 {
     (squares / 2.0 + 3.0 * xy * xy).sqrt()
 }
 
-/// The largest and the smallest principal stress, that across the plane among them.
+/// The largest and the smallest principal stress, the stress across the plane included.
 fn principal(stress: Components) -> [f64; 2] {
     let [first, second] = principal_in_plane(stress);
     [first.max(stress[2]), second.min(stress[2])]
@@ -54,14 +54,14 @@ pub struct LargestStresses {
 }
 
 impl Solution {
-    /// The stresses at the nodes, of `problem`, which is the one that this solves. Where two materials meet, this is a mean
+    /// The stresses at the nodes. `problem` must be the problem that was solved. Where two materials meet, this is a mean
     /// of both sides.
     pub fn nodal_stresses(&self, problem: &Problem) -> Vec<Components> {
         let means = self.nodal_means(problem, |_| true);
         means.into_iter().map(|mean| mean.map_or([0.0; 4], |(stress, _)| stress)).collect()
     }
 
-    /// The largest stresses, of `problem`, which is the one that this solves; none without a triangle.
+    /// The largest stresses; `None` if the mesh is empty. `problem` must be the problem that was solved.
     pub fn largest_stresses(&self, problem: &Problem) -> Option<LargestStresses> {
         let mut largest: Option<LargestStresses> = None;
         let of_revolution = problem.material.are_of_revolution();

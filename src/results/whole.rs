@@ -1,5 +1,5 @@
-//! The results of a body of revolution: energies, forces along the axis and contact forces are those of the whole revolution, 2 pi
-//! times what a radian has. Radial forces cancel all round: they are left for a radian.
+//! The results of a body of revolution: energies, forces along the axis and contact forces are those of the whole revolution, 2
+//! pi times those of a radian. Radial forces, which cancel all round, stay those of a radian.
 
 use std::f64::consts::TAU;
 
@@ -15,7 +15,7 @@ pub(super) fn of_the_whole(mut s: Solution) -> Solution {
     }
     q.contact_resultant[1] *= TAU;
     q.reactions.values_mut().for_each(|force| force[1] *= TAU);
-    // Moments about the origin of the meridian say nothing of the body.
+    // Moments about the origin of the meridian have no meaning for the body.
     q.reaction_moments.values_mut().for_each(|moment| *moment = 0.0);
     for part in &mut s.boundaries {
         part.force *= TAU;

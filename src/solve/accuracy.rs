@@ -1,10 +1,9 @@
 //! From a first answer to one that is proved: passes of a route, each from the true residual of the one before, until a pass has
 //! nothing left to correct; then the enclosure of the exact solution says how far that is from it. Where it is not near enough,
-//! residuals are evaluated in double-doubles, and the passes go on. docs/theory.md, 5.7.
+//! residuals are evaluated in double-doubles, and the passes go on. docs/theory.md, 5.6.
 //!
-//! The correction of a pass is the error of what it corrects, but for the error of the correction, which is smaller by the
-//! same factor again: it says when there is nothing left to correct in the numbers at hand, and nothing more. The verdict is the
-//! proof.
+//! The correction of a pass estimates the error before it, up to an error smaller by the same factor again. So passes end when
+//! nothing is left to correct; the verdict is the proof's.
 
 use std::sync::Arc;
 
@@ -21,7 +20,7 @@ use crate::proof::enclosure::{Enclosure, Unproved, Verifier};
 use crate::proof::intervals::Arithmetic;
 use crate::results::Status;
 
-/// A way to better an iterate.
+/// A way to improve an iterate.
 pub trait Route {
     /// L of A, if it is at hand.
     fn factor_of_a(&self) -> Option<Arc<Factor>>;
@@ -129,7 +128,8 @@ impl Outcome {
     }
 }
 
-/// No more passes than these. It bounds the time, and decides nothing: each pass takes the error down by a factor, or the passes end.
+/// The largest number of passes. This bounds the time and decides nothing: each pass takes the error down by a factor, or the
+/// passes end.
 const MOST_PASSES: usize = 12;
 
 /// Passes of `route` from the lift of the prescribed data on, until the enclosure of the exact solution is as small as asked
@@ -146,7 +146,7 @@ pub fn refine(
 ) -> Result<Outcome, SolveError> {
     let mut refinement = IterativeRefinement::new(system, reference, settings);
     refinement.pass(route)?;
-    // It came from nowhere: what it moved is no error.
+    // The first pass starts from the lift, so its step says nothing about the error.
     refinement.correction = f64::INFINITY;
     for _ in 1..MOST_PASSES {
         if refinement.is_out_of_steps() {
@@ -222,11 +222,11 @@ impl<'a, 'd, 'p> IterativeRefinement<'a, 'd, 'p> {
 
     fn pass(&mut self, route: &mut dyn Route) -> Result<(), SolveError> {
         let size = self.system.size(self.at.energy.sqrt(), &self.iterate.rounded());
-        // The first pass goes as far as it can; a correction need not better what is good enough.
+        // The first pass goes as far as it can; corrections stop at what is good enough.
         let residual = if self.residuals.is_empty() { 0.0 } else { self.settings.tolerance };
         let until = Until { steps: self.settings.max_iterations, residual };
         let pass = route.pass(&mut self.iterate, &mut self.at, &mut self.residuals, until)?;
-        // What was proved is proved of another displacement.
+        // The earlier proof is of another displacement.
         self.enclosure = Err(Unproved::NotReached);
         self.softness = self.softness.max(pass.softness);
         let moved = pass.energy.max(pass.left).sqrt();
@@ -302,7 +302,7 @@ impl TrueResidual {
         forces += one(&contact);
         system.add_forces(&contact, &mut r);
         if forces == 0.0 {
-            // Where a body moves as a whole there is nothing but rounding.
+            // Only rounding is left where a body moves as a whole.
             forces = one(at.forces.as_flattened()).max(f64::EPSILON * reference);
         }
         let unbalanced = if forces > 0.0 { one(&r) / forces } else { 0.0 };

@@ -1,6 +1,6 @@
-//! The assembled route: Newton's method on the displacement itself, the tangent A + B^T Psi'' B factored in each step. It is
-//! the cheaper one where contact edges are many beside the body (strips, graded meshes), and the only one where A alone is
-//! singular, or as good as: contact then holds the body, and the tangent knows it.
+//! The assembled route: Newton's method on the displacement itself, the tangent A + B^T Psi'' B factored in each step. This
+//! route is the cheaper one where contact edges are many beside the body (strips, graded meshes), and the only one where A
+//! alone is singular or nearly so: only contact holds the body, and the tangent includes its springs.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ use crate::linear::dense::norm;
 use crate::linear::factor::Factor;
 use crate::linear::system::System;
 
-/// The tangent last factored.
+/// The last factored tangent.
 pub struct Assembled<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
     /// The size that residuals are relative to.
@@ -203,7 +203,7 @@ impl Body for Full<'_, '_, '_, '_, '_> {
             self.advance(1.0, &step);
             return Ok(None);
         }
-        // What cannot let go acts all the same.
+        // Springs that cannot let go act in any case.
         let none = no_springs(edges).pulling(&self.at.p);
         if self.route.system.d.slides.is_none() {
             match self.step(&none) {
@@ -256,6 +256,7 @@ impl Body for Full<'_, '_, '_, '_, '_> {
 }
 
 /// The share of the springs of all edges that is added to a tangent which has no factor: the edges that are in contact at an
-/// iterate need not hold the body that those of the solution hold. The step goes downhill all the same. It is far below 1, to leave
-/// the way to the other edges open, and far above the rounding of the tangent; 1e-3 does as well, and 0 leaves bodies unsolved.
+/// iterate need not hold the body that those of the solution hold. The step goes downhill all the same. The share is far below
+/// 1, to leave the way to the other edges open, and far above the rounding of the tangent; 1e-3 does as well, and 0 leaves
+/// bodies unsolved.
 const SUPPORT: f64 = 1e-6;

@@ -1,6 +1,6 @@
 //! The condensed route: the body is factored once, A = L L^T, and Newton's method works on the contact functionals alone.
 //!
-//! With u at hand, w what stands for the forces of contact on it, r = A u + B^T w - l the residual of the linear part, and
+//! With a given u, contact forces w, r = A u + B^T w - l the residual of the linear part, and
 //! v = -L^-1 r, the displacement u + L^-T (v - X dw) has the contact forces w + dw in equilibrium with the loads, and there
 //! P has the values y = P(u) + X^T v - G dw. The residual of (8) is then B^T (Psi'(y) - w - dw). So Newton's method has w
 //! for its unknown:
@@ -9,9 +9,9 @@
 //!   s = w - Psi'(y) this is dw = R t - s, (I + R^T G R) t = R^T G s: symmetric, with no eigenvalue below 1,
 //! - DJ d = -s . dy, d^T A d = dw . G dw.
 //!
-//! A first pass starts from the lift of the prescribed data with w = 0. What is lost in it (where the body bends far without
-//! contact, G w nearly cancels what it is subtracted from) a second pass finds again, from the u and w of the first and
-//! their true residual: nothing cancels there, because everything is small.
+//! A first pass starts from the lift of the prescribed data with w = 0. Digits are lost where the body bends far without
+//! contact, as G w nearly cancels P(u) + X^T v. A second pass recovers them from the u and w of the first and their true
+//! residual: all terms are small there, and nothing cancels.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -195,7 +195,7 @@ impl Body for Reduced<'_, '_, '_, '_> {
             let grx = self.times_compliance(&rx);
             roots.iter().map(|(values, column)| product(column, &grx[values.clone()])).collect()
         });
-        // The body bends so far without contact that what contact leaves of it is rounding: it is held by contact, and the tangent
+        // Without contact the body bends so far that condensing loses all digits: contact holds the body, and the tangent
         // must know it.
         if !(stiffness * ROUNDED <= 1.0) {
             return Err(SolveError::Singular);

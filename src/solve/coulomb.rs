@@ -33,7 +33,7 @@ use crate::linear::dense::norm;
 use crate::linear::factor::Factor;
 use crate::linear::system::System;
 
-/// A step is taken where the residual falls to this share of what it was.
+/// The share to which the residual must fall for a step to be taken.
 const FALLS: f64 = 0.9;
 
 /// Newton's method is left where so many steps leave more than this share of the residual: they cross a kink to and fro.
@@ -43,10 +43,10 @@ const SLOW: f64 = 0.1;
 /// The shares of a step that are tried, one after the other: evaluations, no factorisations.
 const SHARES_OF_A_STEP: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
 
-/// Where the residual is below this share of |u|_a it is rounding.
+/// The residual, as a share of |u|_a, that is rounding.
 const ROUNDING: f64 = 3e-14;
 
-/// Below this it may be: of 12,000 unknowns the level of rounding is some 1e-13.
+/// The residual, as a share of |u|_a, that may be rounding: with 12,000 unknowns rounding leaves some 1e-13.
 const NEAR_ROUNDING: f64 = 1e-12;
 
 /// After so many factorisations beyond the start pressures are mixed, and after so many more it is tried by continuation: of 45
@@ -54,7 +54,7 @@ const NEAR_ROUNDING: f64 = 1e-12;
 const MOST_FACTORIZATIONS: usize = 40;
 const MOST_MIXED: usize = 160;
 
-/// A problem with a given bound that is not solved from where the last one ended with so many steps is begun with soft springs.
+/// The number of steps after which a problem with a given bound is started again with soft springs.
 const STEPS_FROM_HERE: usize = 12;
 
 /// The first and the least share of the coefficient by which continuation goes on, the steps that it may take for one, and the residual
@@ -284,7 +284,7 @@ struct Mixing {
     steps: Vec<[Vec<[f64; 3]>; 2]>,
 }
 
-/// The problems that are remembered.
+/// The number of problems that are remembered.
 const REMEMBERED: usize = 6;
 
 impl Mixing {
@@ -312,7 +312,7 @@ impl Mixing {
             .iter()
             .map(|step| change.iter().zip(Self::change(step)).map(|(c, o)| c - o).collect())
             .collect();
-        // Least squares by the normal equations, which a little of their diagonal keeps definite.
+        // Least squares by the normal equations, kept definite by a small multiple of their diagonal.
         let count = differences.len();
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let square = |i: usize| product(&differences[i], &differences[i]);
@@ -431,7 +431,7 @@ impl Route for Coulomb<'_, '_, '_> {
     }
 }
 
-/// How Newton's method goes.
+/// The progress of Newton's method.
 #[derive(Default)]
 struct Way {
     /// It comes from afar.
@@ -545,7 +545,8 @@ impl<'d, 'p> Coulomb<'_, 'd, 'p> {
     }
 }
 
-/// A solution of (what `times` multiplies by) x = b, by GMRES, until its residual is some 1e-12 of b or no longer falls.
+/// Solves M x = b by GMRES, M being the matrix that `times` multiplies by, until the residual is some 1e-12 of b or no longer
+/// falls.
 fn gmres(times: impl Fn(&[f64]) -> Vec<f64>, b: &[f64]) -> Vec<f64> {
     let size = norm(b);
     if !(size > 0.0) {

@@ -1,13 +1,13 @@
-//! The course of a solve: where Newton's method starts, and who is told how far it is.
+//! The course of a solve: the start of Newton's method, and the observer of its progress.
 //!
-//! A start is a displacement: that of the load step before, or that of a coarser mesh between its vertices. What is taken of it
-//! is on which parts of the contact edges P is positive. With H = Psi'' there, the first step solves the problem whose springs
+//! A start is a displacement: that of the load step before, or that of a coarser mesh between its vertices. The start says only
+//! where on the contact edges P is positive. With H = Psi'' there, the first step solves the problem whose springs
 //! of contact are these and no others,
 //!
 //! A u + B^T H y = l, y = B u + d,
 //!
-//! which is the solution where contact stays as it was, for Psi'(y) = Psi''(y) y. Any start leads to the same solution: (8)
-//! has one, and the verdict on it is as strict.
+//! which is the solution where contact stays as it was, for Psi'(y) = Psi''(y) y. Any start leads to the same solution: (8) has
+//! exactly one, and the verdict is as strict.
 
 use crate::contact::discretization::Discretization;
 
@@ -32,7 +32,7 @@ pub enum Phase {
     Evaluate,
 }
 
-/// Where a solve starts, and who watches.
+/// The start and the observer of a solve.
 #[derive(Clone, Copy, Default)]
 pub struct Course<'a> {
     start: Option<&'a [[f64; 2]]>,

@@ -65,7 +65,7 @@ impl From<OutOfMemory> for SolveError {
     }
 }
 
-/// The target that a solve did not reach before it ran out of steps.
+/// The target that a solve missed when its steps ran out.
 fn awaited(residual: f64, tolerance: f64) -> String {
     if residual <= tolerance {
         "a proof of the solution, too".to_owned()

@@ -1,8 +1,8 @@
-//! A displacement on its way to the solution, and what the definitions say of it: in doubles as long as these tell enough,
-//! in [double-doubles](crate::kernel::double_double) where rounding would blur it. It is known to more than double precision
-//! itself: rounding the displacement of a slender body to doubles changes its forces by more than its loads. In doubles, too,
-//! stresses are those of its differences from node to node, which keep what rounding it would lose. In the end it is rounded, and
-//! its forces, differences of stiffnesses times nodal values, are those before rounding where that would blur them.
+//! An iterate: a displacement with P and the residual of (8), evaluated in doubles as long as these suffice, else in
+//! [double-doubles](crate::kernel::double_double). The displacement itself has more digits than a double: rounding that of a
+//! slender body changes its forces by more than its loads. In doubles, too, stresses come from differences from node to node,
+//! which keep the digits that rounding would lose. The final displacement is rounded; its forces are those before rounding
+//! where rounding would blur them.
 
 use nalgebra::Vector2;
 
@@ -13,11 +13,11 @@ use crate::held::solvability::{Play, Slides};
 use crate::kernel::DoubleDouble;
 use crate::linear::system::System;
 
-/// A residual this many times the distance of doubles, times its magnitudes, is noise: Newton's method ends there. With 0 it goes on
-/// to the last step that is allowed for one body in five; with 4000 it ends as well, but the passes have more to correct.
+/// The residual, in units of roundoff times its magnitudes, at which Newton's method ends. With 0 one body in five goes on to
+/// the last allowed step; 4000 does as well, but the passes have more to correct.
 pub(super) const NOISE: f64 = 4.0;
 
-/// P that is below so many roundings of what it is added up from, some four digits, is evaluated in double-doubles.
+/// The size of P, in roundings of its terms (some four digits), below which P is evaluated in double-doubles.
 const FEW_DIGITS: f64 = 1e4;
 
 /// A displacement.
@@ -115,7 +115,7 @@ impl Iterate {
         let mut p: Vec<DoubleDouble> = d.contact.iter().flat_map(in_doubles).collect();
         let mut p_magnitudes: Vec<f64> =
             d.contact.iter().flat_map(|piece| piece.p0_magnitudes(&heads)).collect();
-        // gamma times the pressure is small beside displacement and gap: doubles hardly know it.
+        // gamma times the pressure is small beside displacement and gap, and has few digits in doubles.
         let is_lost = |(p, size): (&DoubleDouble, &f64)| {
             p.head() > 0.0 && p.head() < FEW_DIGITS * f64::EPSILON * size
         };
@@ -132,8 +132,8 @@ impl Iterate {
     }
 }
 
-/// The displacement that a solve ends with, and what the definitions say of it: P on Gamma_C and the residual of (8) at all
-/// degrees of freedom, prescribed ones included, where it is the reaction.
+/// The displacement that a solve ends with, P on Gamma_C, and the residual of (8) at all degrees of freedom; at the prescribed
+/// ones the residual is the reaction.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Evaluated {

@@ -1,12 +1,12 @@
-//! The choices that method (8) leaves open, and when its solution is good enough. What a case file could not ask for is refused
-//! here too, whoever put it together.
+//! The choices that method (8) leaves open, and the accuracy that is asked for. Values that a case file could not have are
+//! refused here, too.
 
 use crate::model::{DataError, Degree};
 
-/// More Gauss points than this gain nothing: the integrand has a kink where contact ends.
+/// The largest number of Gauss points: more gain nothing, as the integrand has a kink where contact ends.
 pub const MOST_GAUSS_POINTS: usize = 64;
 
-/// Newton's method takes a few steps, or it does not converge.
+/// The largest number of Newton steps that a case may allow: few are needed, or the method does not converge.
 pub const MOST_ITERATIONS: usize = 1_000_000;
 
 /// The free choices of method (8). Written as `Method { degree, ..Method::default() }`, for fields may come.
@@ -79,7 +79,7 @@ fn refused(what: &'static str, found: impl ToString, expected: &'static str) -> 
 }
 
 impl Gamma0 {
-    /// This value, a positive number.
+    /// Uses a fixed gamma0 > 0.
     ///
     /// # Errors
     /// [`DataError::Value`].
@@ -125,7 +125,7 @@ impl ContactQuadrature {
 }
 
 impl Method {
-    /// Nothing, if a case file could ask for this method.
+    /// Checks that every parameter is in its allowed range.
     pub(crate) fn check(&self) -> Result<(), DataError> {
         self.gamma0.checked()?;
         self.quadrature.checked().map(|_| ())
@@ -142,7 +142,7 @@ impl Settings {
         settings.check().map(|()| settings)
     }
 
-    /// Nothing, if a case file could ask for these settings.
+    /// Checks that every setting is in its allowed range.
     pub(crate) fn check(&self) -> Result<(), DataError> {
         for (what, share) in [("proof", self.proof), ("the tolerance", self.tolerance)] {
             if !(share > 0.0 && share < 1.0) {

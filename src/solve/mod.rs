@@ -8,7 +8,7 @@
 //!    (8) is as narrow as asked for ([`crate::proof::enclosure`]); the other route where the first proves too little.
 //! 5. Report ([`crate::results`]): stresses, contact pressure, resultants, and the verdict, which is the proof.
 //!
-//! docs/theory.md: 4 has Newton's method, 5 the routes and the refinement, 7.5 the enclosure.
+//! docs/theory.md: 4 has Newton's method, 5 the routes and the refinement; docs/a-posteriori.md, 7.5, has the enclosure.
 
 #[doc(hidden)]
 pub mod accuracy;
@@ -107,7 +107,7 @@ pub fn solve_along(
     Ok((solution, Times { discretize, evaluate: watch.lap(), ..times }))
 }
 
-/// Energies that are more out of balance than this are no result.
+/// The relative imbalance of energies above which there is no result.
 const MOST_IMBALANCE: f64 = 0.1;
 
 /// Solves a discretization: the displacement with its forces, how it was found, and how long that took.
@@ -142,7 +142,7 @@ fn solve_discrete_along<'d>(
         };
         let is_final = match &best {
             Ok((_, outcome)) => outcome.is_final(settings),
-            // Contact may hold what the supports hardly hold: the next route knows it.
+            // Contact may hold what the supports hardly hold, and the next route includes contact.
             Err(error) => *error != SolveError::Singular,
         };
         if is_final {

@@ -1,4 +1,4 @@
-//! Newton's method with an exact line search on J_h, for a body of which it knows only what a step does to P.
+//! Newton's method with an exact line search on J_h, for a body of which only the effect of a step on P is known.
 //!
 //! Let y be the values of P at the nodes of the pieces of Gamma_C, y = B u + d, and Psi(y) = sum over the pieces of
 //! (|E| / gamma) 1/2 int \[P\]+^2. Then
@@ -18,8 +18,8 @@
 //! at first: gamma / s in place of gamma in Psi, with s so small that contact is not much stiffer than the body (what friction bears at
 //! most stays the same). When the residual at s is
 //! small beside the one that stiffer springs bring, the springs get stiffer by a factor: the contact zone of stiff springs is
-//! narrow, and a minimiser is found from near only. At s = 1 it is Newton's method on J_h, from a start that knows something.
-//! Going to the body without contact counts as a step where it takes one. A start that is given ([`super::course`]) needs no soft
+//! narrow, and a minimiser is found from near only. At s = 1 this is Newton's method on J_h, from a good start. Going to the
+//! body without contact counts as a step where it takes one. A start that is given ([`super::course`]) needs no soft
 //! springs.
 //!
 //! **The end** is the rounding level of the residual, or of the decrease along a step.
@@ -29,22 +29,23 @@ use super::body::{Body, ContactEnergy, Derivatives, Step, derivatives};
 use crate::kernel::DoubleDouble;
 use crate::linear::dense::norm;
 
-/// A share that need not be known better. The line search ends where the derivative along the step is this small beside the one
+/// The accuracy, as a share, of auxiliary quantities. The line search ends where the derivative along the step is this small
+/// beside the one
 /// at its start, and asks for a decrease of this share of what that derivative promises (Armijo's sigma: any below 1/2 will do); the
 /// [enclosure](crate::proof::enclosure) corrects a bound no further when what is left to correct is this small a part of it.
 pub(crate) const SLIGHT: f64 = 1e-2;
 
-/// How many times stiffer than the body the springs of contact are at first. From 8 to 100 it matters little; as stiff from the start as
-/// they are in the end, seven of 504 bodies at random are not solved in 200 steps.
+/// The initial stiffness of the contact springs beside that of the body. From 8 to 100 the value matters little; with the final
+/// stiffness from the start, seven of 504 random bodies are not solved in 200 steps.
 const SOFT: f64 = 20.0;
 
-/// How many times stiffer they get from one stiffness to the next. With 4 bodies take 6 % more steps than with 5; from 6 on a
+/// The factor from one stiffness of the springs to the next. With 4 bodies take 6 % more steps than with 5; from 6 on a
 /// body that slides off an obstacle takes more than 70, and with 16 some are not solved in 200. A factor that adapts itself between
 /// 2 and 8 takes 3 % fewer steps, and 48 where this one takes 42.
 const STIFFENING: f64 = 5.0;
 
-/// They get stiffer when the residual is this share of what that will make of it. If they may at any residual, one of 2,000 bodies is
-/// not solved in 200 steps and that which slides off takes 77.
+/// The residual, as a share of that with the next stiffness, at which the springs get stiffer. With no such condition one of
+/// 2,000 bodies is not solved in 200 steps, and the body that slides off takes 77.
 const DONE: f64 = 0.1;
 
 /// When to stop, short of the rounding level.
@@ -57,8 +58,8 @@ pub struct Until {
 }
 
 /// Newton's method from where `body` is, with soft springs if this is the `first` time. Appends the residual at each
-/// iterate to `residuals`, and stops as `until` says or at the rounding level. Gives the decrement of the last step if the line
-/// search cut it short or found no decrease: then it has not been made, and the iterate is as far off as before.
+/// iterate to `residuals`, and stops as `until` says or at the rounding level. Returns the decrement of the last step if the
+/// line search cut the step short or found no decrease: the step has not been made, and the iterate is as far off as before.
 ///
 /// # Errors
 /// Those of [`Body::step`].
@@ -79,7 +80,7 @@ pub fn minimise(
     }
     let mut at = derivatives(edges, 1.0, &body.y());
     let mut residual = body.residual(&at);
-    // A later call makes a step wherever there is a residual: its size is what tells how good the end of the first was.
+    // A later call makes a step wherever there is a residual, for the size of the step tells how good the first end was.
     let mut may_end = first;
     let mut left = 0.0;
     while residuals.len() <= until.steps {
@@ -107,7 +108,8 @@ pub fn minimise(
     Ok(left)
 }
 
-/// Where along the step J_h with the Psi that has the derivatives `at` is least; `None` if its decrease is lost in rounding.
+/// The place along the step where J_h with the Psi that has the derivatives `at` is least; `None` if its decrease is lost in
+/// rounding.
 fn line_search(
     edges: &impl ContactEnergy,
     y: &[DoubleDouble],
@@ -176,7 +178,8 @@ fn line_search(
     None
 }
 
-/// The largest eigenvalue of the positive semidefinite matrix of order `n` that `times` multiplies by, to within a factor.
+/// An estimate, to within a factor, of the largest eigenvalue of the positive semidefinite matrix of order `n` that `times`
+/// multiplies by.
 pub(crate) fn largest_eigenvalue(n: usize, times: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
     let mut x = vec![1.0; n];
     let mut largest = 0.0;

@@ -1,4 +1,4 @@
-//! Which route: by the multiplications that each is predicted to take, from the structure of the factor alone.
+//! The choice of the route, by the predicted number of multiplications, from the structure of the factor alone.
 //!
 //! - condensed: one factorisation, X = L^-1 B^T and G = X^T X, and for each Newton step a dense factorisation of as many rows
 //!   as there are contact functionals,
@@ -23,13 +23,13 @@ use crate::memory;
 use crate::proof::enclosure::Verifier;
 use crate::results::report::RouteName;
 
-/// The Newton steps that a prediction counts on.
+/// The number of Newton steps that a prediction assumes.
 const STEPS: f64 = 12.0;
 
 /// Multiplications of a dense factorisation that cost as much as one of the sparse one: only edges in contact take part,
-/// about half of them and so an eighth of the work, and the rest runs at twice the speed or more. Of some thirty strips,
-/// beams, squares and graded squares that both routes were timed on, it picks the faster one or one that took 1.1 times as
-/// long.
+/// about half of them and so an eighth of the work, and the rest runs at twice the speed or more. Of some thirty strips, beams,
+/// squares and graded squares on which both routes were timed, the prediction picks the faster route or one that took 1.1 times
+/// as long.
 const DENSE: f64 = 16.0;
 
 /// Solves the system by a given route.
@@ -141,7 +141,7 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
     }
 }
 
-/// Returns whether what the matrix is made of on the pieces of Gamma_C neither over- nor underflows.
+/// Returns whether the matrix entries of the pieces of Gamma_C neither over- nor underflow.
 fn contact_is_in_range(system: &System) -> bool {
     system.d.contact.iter().all(|piece| {
         let stresses = piece.sigma_n.iter().flatten();

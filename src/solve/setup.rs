@@ -1,4 +1,4 @@
-//! The discretization of a problem by method (8), and what is refused before anything is solved.
+//! The discretization of a problem by method (8), and the checks before anything is solved.
 
 use super::error::SolveError;
 use super::method::{ContactQuadrature, Gamma0, Method};
@@ -12,7 +12,7 @@ use crate::results::GammaReport;
 /// Builds and checks everything that [`solve`](super::solve) needs, short of a matrix.
 ///
 /// # Errors
-/// As [`solve`](super::solve), as far as they show before anything is solved.
+/// The errors of [`solve`](super::solve) that show before anything is solved.
 pub fn check(problem: &Problem, method: &Method) -> Result<Outline, SolveError> {
     Ok(Outline::new(&discretize(problem, method)?))
 }

@@ -1,4 +1,4 @@
-//! Where the time of a solve goes.
+//! The times of the parts of a solve.
 
 use std::time::{Duration, Instant};
 
@@ -51,7 +51,7 @@ impl Times {
     }
 }
 
-/// Tells the time since it was last asked.
+/// Measures the time since its last use.
 pub(crate) struct Stopwatch(Instant);
 
 impl Stopwatch {

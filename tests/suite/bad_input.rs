@@ -142,13 +142,13 @@ fn message_of_mesh(test: &str, bytes: &[u8]) -> String {
 }
 
 #[test]
-fn mistakes_in_cases() {
+fn each_mistake_in_a_case_gets_its_message() {
     let table = include_str!("bad_input/cases.txt");
     compare_edits(table, CASE, |text| message_of("cases", text, b""));
 }
 
 #[test]
-fn mistakes_in_meshes() {
+fn each_mistake_in_a_mesh_gets_its_message() {
     let table = include_str!("bad_input/meshes.txt");
     compare_edits(table, MESH, |text| message_of_mesh("meshes", text.as_bytes()));
 }
@@ -161,7 +161,7 @@ fn the_files_are_good_before_the_edits() {
 }
 
 #[test]
-fn files_that_cannot_be_read() {
+fn files_that_cannot_be_read_are_named_with_the_reason() {
     let directory = directory("unreadable");
     let file = directory.join("bad.toml");
     let directory_as_case = directory.join("directory");
@@ -202,7 +202,7 @@ fn files_that_cannot_be_read() {
 }
 
 #[test]
-fn absurd_files() {
+fn absurd_files_are_refused_in_a_line() {
     let message_of = |edit: [&str; 2]| message_of("absurd", &edited(CASE, edit), b"");
     let mib = 1 << 20;
     compare([
@@ -265,7 +265,7 @@ fn seams_that_do_not_quite_match_and_what_merges_them() {
 }
 
 #[test]
-fn boundaries_of_gmsh_meshes() {
+fn a_boundary_without_an_edge_in_the_mesh_is_refused() {
     let message_after = |edit| message_of_mesh("empty", edited(MESH, edit).as_bytes());
     compare([
         (
@@ -280,7 +280,7 @@ fn boundaries_of_gmsh_meshes() {
 }
 
 #[test]
-fn binary_meshes_that_are_cut_or_damaged() {
+fn binary_meshes_that_are_cut_or_damaged_are_refused() {
     const BINARY: &[u8] = include_bytes!("../meshes/square-binary.msh");
     let with = |at: usize, byte: u8| {
         let mut bytes = BINARY.to_vec();

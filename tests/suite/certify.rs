@@ -1,4 +1,4 @@
-//! Section 7 of docs/theory.md on exact solutions: the bound of |u - v|_a is never below the true error, and not far above
+//! Section 7 of docs/a-posteriori.md on exact solutions: the bound of |u - v|_a is never below the true error, and not far above
 //! it; what is proved without quadrature says so; and what the bound would be worth with a part of it left out.
 //!
 //! Effectivity is bound over error. What is expected: below 2 where the solution is smooth and below 3 where it is singular,

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use serde_json::Value;
@@ -281,20 +281,23 @@ fn output_and_picture_of_the_readme_are_those_of_its_command() {
     assert!(drawn == page("docs/bracket.svg"), "copy the picture.svg of cases/bracket.toml there");
 }
 
+fn pages() -> Vec<String> {
+    let docs = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs")).unwrap();
+    ["README.md", "VERIFY.md", "CONTRIBUTING.md", "CHANGELOG.md"]
+        .map(str::to_owned)
+        .into_iter()
+        .chain(docs.map(|entry| format!("docs/{}", entry.unwrap().file_name().to_str().unwrap())))
+        .filter(|name| name.ends_with(".md"))
+        .collect()
+}
+
 #[test]
 fn every_link_of_the_readme_and_the_pages_leads_to_a_file_of_the_package() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let manifest = page("Cargo.toml");
     let excluded = manifest.lines().find(|line| line.starts_with("exclude = ")).unwrap();
-    let mut names = ["README.md", "VERIFY.md", "CONTRIBUTING.md"].map(str::to_owned).to_vec();
-    names.extend(
-        fs::read_dir(root.join("docs"))
-            .unwrap()
-            .map(|entry| format!("docs/{}", entry.unwrap().file_name().to_str().unwrap()))
-            .filter(|name| name.ends_with(".md")),
-    );
     let mut count = 0;
-    for name in names {
+    for name in pages() {
         let text = page(&name);
         let folder = Path::new(&name).parent().unwrap();
         for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
@@ -313,4 +316,132 @@ fn every_link_of_the_readme_and_the_pages_leads_to_a_file_of_the_package() {
         }
     }
     assert!(count >= 20, "{count}");
+}
+
+/// The anchors that GitHub makes of the headings of a page.
+fn anchors(page: &str) -> BTreeSet<String> {
+    let headings = page.lines().filter_map(|line| line.strip_prefix('#'));
+    let kept = |c: &char| c.is_alphanumeric() || [' ', '-', '_'].contains(c);
+    headings
+        .map(|line| line.trim_start_matches('#').trim())
+        .map(|title| {
+            title.to_lowercase().chars().filter(kept).collect::<String>().replace(' ', "-")
+        })
+        .collect()
+}
+
+#[test]
+fn every_anchor_of_a_link_is_that_of_a_heading() {
+    let mut count = 0;
+    for name in pages() {
+        let text = page(&name);
+        let folder = Path::new(&name).parent().unwrap();
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            let Some((file, anchor)) = link.split_once('#') else { continue };
+            let file = if file.is_empty() { PathBuf::from(&name) } else { folder.join(file) };
+            if link.starts_with("http") || file.extension() != Some("md".as_ref()) {
+                continue;
+            }
+            let known = anchors(&page(file.to_str().unwrap()));
+            assert!(known.contains(anchor), "{name} links to {link}; the headings are {known:?}");
+            count += 1;
+        }
+    }
+    assert!(count >= 30, "{count}");
+    assert!(!anchors(&page("docs/theory.md")).contains("7-the-mixed-form"));
+}
+
+/// The numbers of sections that follow the name of a page in `text`: "docs/theory.md, 5.6" or "theory.md, section 10".
+fn sections_named(text: &str, page: &str) -> Vec<String> {
+    let ends = text.split(page).skip(1).map(|rest| rest.trim_start_matches([')', '`']));
+    ends.filter_map(|rest| rest.strip_prefix(", "))
+        .map(|rest| rest.trim_start_matches("sections ").trim_start_matches("section "))
+        .map(|rest| {
+            rest.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect::<String>()
+        })
+        .map(|number| number.trim_end_matches('.').to_owned())
+        .filter(|number| !number.is_empty())
+        .collect()
+}
+
+fn rust_files(folder: &Path, into: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            rust_files(&path, into);
+        } else if path.extension() == Some("rs".as_ref()) {
+            into.push(path);
+        }
+    }
+}
+
+#[test]
+fn every_section_of_the_theory_that_code_and_pages_name_is_there() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files: Vec<PathBuf> = pages().iter().map(|name| root.join(name)).collect();
+    for folder in ["src", "tests", "props"].map(|name| root.join(name)) {
+        // The package does without the folder of the claims.
+        if folder.is_dir() {
+            rust_files(&folder, &mut files);
+        }
+    }
+    let mut count = 0;
+    for name in ["theory.md", "a-posteriori.md"] {
+        let text = page(&format!("docs/{name}"));
+        let headings = text.lines().filter_map(|line| line.strip_prefix('#'));
+        let known: BTreeSet<&str> = headings
+            .filter_map(|line| line.trim_start_matches(['#', ' ']).split(' ').next())
+            .map(|number| number.trim_end_matches('.'))
+            .collect();
+        assert!(known.contains("7.4") == (name == "a-posteriori.md"), "{known:?}");
+        for file in &files {
+            for number in sections_named(&fs::read_to_string(file).unwrap(), name) {
+                // The whole page is section 7.
+                let whole = number == "7";
+                assert!(
+                    whole || known.contains(number.as_str()),
+                    "{} names {name}, {number}; its sections are {known:?}",
+                    file.display()
+                );
+                count += 1;
+            }
+        }
+    }
+    assert!(count >= 60, "{count}");
+    let named =
+        sections_named("[a.md](a.md), 7.7). Not a.md. Part 6, 8, a.md, section 10.", "a.md");
+    assert_eq!(named, ["7.7", "10"]);
+}
+
+/// The words of a picture, numbers included.
+fn words_of(picture: &str) -> Vec<&str> {
+    let before_ends = picture.split("</text>");
+    before_ends.filter_map(|text| text.rsplit('>').next()).map(str::trim).collect()
+}
+
+#[test]
+fn pictures_of_the_gallery_have_the_words_and_numbers_of_their_commands() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = std::env::temp_dir().join(format!("signorini-{}-gallery", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    let gallery = page("docs/gallery.md");
+    let mut shown = BTreeSet::new();
+    for line in gallery.lines().filter_map(|line| line.strip_prefix("signorini solve cases/")) {
+        let (name, settings) = line.split_once(".toml").unwrap();
+        let case = root.join(format!("cases/{name}.toml"));
+        let words = settings.split(' ').filter(|word| !word.is_empty());
+        let command: Vec<&str> =
+            ["solve", case.to_str().unwrap()].into_iter().chain(words).collect();
+        let run = signorini(&folder, &command);
+        assert!(run.status.success(), "{run:?}");
+        let drawn = fs::read_to_string(folder.join(format!("out/{name}/picture.svg"))).unwrap();
+        let stored = page(&format!("docs/gallery/{name}.svg"));
+        assert_eq!(words_of(&stored), words_of(&drawn), "copy the picture.svg of {line} there");
+        assert!(gallery.contains(&format!("](gallery/{name}.svg)")), "{name} is not shown");
+        assert!(words_of(&stored).len() > 20, "{:?}", words_of(&stored));
+        shown.insert(words_of(&stored).concat());
+    }
+    fs::remove_dir_all(folder).unwrap();
+    // No two have the same words, so that one in the place of another would be noticed.
+    assert_eq!(shown.len(), 8);
 }

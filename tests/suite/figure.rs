@@ -1,4 +1,4 @@
-//! The figure of Theorem 7.2 in docs/theory.md: three points of a plane for which the theorem holds.
+//! The figure of Theorem 7.2 in docs/a-posteriori.md: three points of a plane for which the theorem holds.
 
 use std::path::Path;
 

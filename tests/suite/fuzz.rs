@@ -3,8 +3,7 @@
 //! or holds control characters; and what is accepted keeps its promises (see each target).
 //!
 //! A long run, on other inputs each time: `FUZZ_SECONDS=3600 cargo test --release --test suite fuzz::`, so many seconds for
-//! each of the four targets. An input that fails is kept in the folder that the message names. What long runs have found is
-//! in docs/robustness.md.
+//! each of the four targets. An input that fails is kept in the folder that the message names.
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -155,7 +154,7 @@ fn in_lists(lists: &[&'static [u8]]) -> Vec<&'static [u8]> {
 
 /// An expression that is read has a value everywhere; parentheses around it and two signs before it change no bit of it.
 #[test]
-fn expressions() {
+fn an_expression_that_is_read_has_a_value_everywhere() {
     let seeds: Vec<Vec<u8>> = EXPRESSIONS.iter().map(|e| e.as_bytes().to_vec()).collect();
     fuzz("expressions", 20_000, &seeds, &in_lists(&[NUMBERS, EXPRESSION]), |input| {
         let text = String::from_utf8_lossy(input);
@@ -190,7 +189,7 @@ const MESH: &[u8] =
 
 /// A mesh that is read is one: its triangles have areas, and its boundary is closed.
 #[test]
-fn meshes() {
+fn a_mesh_that_is_read_has_areas_and_a_closed_boundary() {
     let seeds = files("tests/meshes", "msh");
     let small: Vec<Vec<u8>> = seeds.into_iter().filter(|seed| seed.len() < 1 << 15).collect();
     fuzz("meshes", 4000, &small, &in_lists(&[NUMBERS, MESH]), |input| {
@@ -280,14 +279,14 @@ mod cases {
     }
 
     #[test]
-    fn read_or_refused() {
+    fn a_case_is_read_or_refused() {
         let words = in_lists(&[NUMBERS, EXPRESSION, WORDS]);
         fuzz("cases", 2000, &seeds(), &words, |input| read(input).is_some());
     }
 
     /// A case that is solved has results that can be written: all numbers are finite, and contact pushes.
     #[test]
-    fn solved_or_refused() {
+    fn a_case_that_is_solved_has_finite_results_and_contact_that_pushes() {
         let small: Vec<Vec<u8>> = seeds().into_iter().take(3).collect();
         let words = in_lists(&[NUMBERS, WORDS]);
         fuzz("solved cases", 300, &small, &words, |input| {

@@ -1,4 +1,4 @@
-//! Forces of the true solution between two numbers, and where contact can act (docs/theory.md, 7.7).
+//! Forces of the true solution between two numbers, and where contact can act (docs/a-posteriori.md, 7.7).
 
 use std::sync::Arc;
 

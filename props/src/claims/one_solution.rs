@@ -1,7 +1,7 @@
 //! Existence and uniqueness of the discrete solution on a given mesh, by certificate: the solver's result u~ is taken for
 //! the rational numbers that it is, the residual r of (8) at u~ and the matrices K and A are exact (`discrete`), and A is
 //! found positive definite by elimination. Then J_h is strictly convex and coercive on a space of finite dimension: (8) has
-//! exactly one solution u^h, and with e = u~ - u^h (docs/theory.md, section 7)
+//! exactly one solution u^h, and with e = u~ - u^h (docs/a-posteriori.md, section 7)
 //!
 //! ```text
 //! A(e, e) + int ([P(u~)]+ - [P(u^h)]+)^2/gamma <= r(e)                        (C0)

@@ -5,7 +5,7 @@
 //!   thousandth: without loads and with the obstacle far away, u^h = 0, and the field itself is the error; likewise where kappa is
 //!   next to 1 and the radius is a crude one;
 //! - the interval of a reaction, where an end of a contact edge is held and the other one is moved;
-//! - Korn's factors at nodes, by the formulas of docs/theory.md, 7.6, from distances of triangles that are found by
+//! - Korn's factors at nodes, by the formulas of docs/a-posteriori.md, 7.6, from distances of triangles that are found by
 //!   going over all pairs of neighbours until nothing changes;
 //! - what contact adds to a certificate where its direction turns: the square of the bound less 2 J(v) depends on tau and g alone
 //!   (Green's formula), and what g adds to it is known.

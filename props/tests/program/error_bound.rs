@@ -1,4 +1,4 @@
-//! The bound of the distance from the true solution, and the checker of its certificates (docs/theory.md, 7.2 and 7.3).
+//! The bound of the distance from the true solution, and the checker of its certificates (docs/a-posteriori.md, 7.2 and 7.3).
 //!
 //! At a point, with e, t, s for the strains of v, of C^-1 tau and of u, the theorem is |e - t|^2 = |e - s|^2 + |s - t|^2 + 2 (e -
 //! s) : C (s - t), and what contact adds to the integral of the last product is not negative.

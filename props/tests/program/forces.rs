@@ -1,4 +1,4 @@
-//! Forces on the certificates of `by_hand`: what the checker finds, beside the integrals of docs/theory.md, 7.7, over rationals.
+//! Forces on the certificates of `by_hand`: what the checker finds, beside the integrals of docs/a-posteriori.md, 7.7, over rationals.
 //!
 //! w and w0 have random values, and are affine or quadratic on the triangles, whatever v is; rho of a dual pair is rho_yy = a + b
 //! x, without a traction on Gamma_N. Loads may oscillate, and prescribed values may need a lift.

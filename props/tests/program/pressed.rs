@@ -1,4 +1,4 @@
-//! What contact alone holds (`proof::pressed`, docs/theory.md, 7.5), on a square with one contact edge:
+//! What contact alone holds (`proof::pressed`, docs/a-posteriori.md, 7.5), on a square with one contact edge:
 //!
 //! - a piece that is taken for pressed is pressed all along, and stays so on the ball for which it is said to: moved to its
 //!   border by the fields whose P0 is largest at an end of a pressed edge beside |v|_S;

@@ -1,4 +1,4 @@
-//! Forces of the true solution between two numbers (docs/theory.md, 7.7): the identity behind the mean stress, the signs of what
+//! Forces of the true solution between two numbers (docs/a-posteriori.md, 7.7): the identity behind the mean stress, the signs of what
 //! contact adds, where contact can act, and the largest value of what is not known; and the checker that evaluates them.
 
 use signorini::certificates::Continuous;

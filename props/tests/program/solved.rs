@@ -424,7 +424,7 @@ pub fn between_the_vertices(draw: &Draw, lacking: bool) -> Verdict {
     Verdict::Holds("always")
 }
 
-/// K of Korn's inequality on a right triangle with equal legs (docs/theory.md, 7.4): by the radius of its inner circle, (1 + 1 -
+/// K of Korn's inequality on a right triangle with equal legs (docs/a-posteriori.md, 7.4): by the radius of its inner circle, (1 + 1 -
 /// root 2)/2 beside the distance to the corner that is farthest from the centre of that.
 fn korns_constant() -> f64 {
     let inner = 1.0 - 0.5_f64.sqrt();

@@ -1,10 +1,10 @@
-//! Why two boundaries are no pair.
+//! Errors of a pair of boundaries.
 
 use thiserror::Error;
 
 use crate::quote::{number, quoted, short};
 
-/// Why two boundaries are no pair. A pair is called by the names of its boundaries.
+/// Errors of a pair of boundaries. A pair is called by the names of its boundaries.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]

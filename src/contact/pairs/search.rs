@@ -70,9 +70,9 @@ impl Facing {
     pub fn on_chord(&self, i: usize, e: usize, curve: &SmoothEdge) -> f64 {
         let s = self.at[i].iter().flatten().find(|place| place.edge == e).map(|place| place.s);
         match s {
-            // A node is where it is.
+            // The place of a node is exact.
             Some(s) if s <= 0.0 || s >= 1.0 => s.clamp(0.0, 1.0),
-            // The line goes through the node of the other boundary, or, where that is none, through the partners.
+            // The line goes through the node of the other boundary or, without a node there, through the partners.
             _ => cut(self.node(), self.direction, curve).clamp(0.0, 1.0),
         }
     }
@@ -84,7 +84,7 @@ impl Facing {
     }
 }
 
-/// Where the line through `from` along `direction` meets the chord of an edge, 0 being its start and 1 its end.
+/// The place where the line through `from` along `direction` meets the chord of an edge, from 0 at its start to 1 at its end.
 pub(super) fn cut(from: Vector2<f64>, direction: Vector2<f64>, curve: &SmoothEdge) -> f64 {
     let [a, b] = curve.ends;
     (from - a).perp(&direction) / (b - a).perp(&direction)
@@ -108,7 +108,7 @@ pub(crate) struct Boundary {
 /// The least cosine of the angle between a normal and the opposite of its partner's: the head of `pairs`.
 const OPPOSITE: f64 = 0.5;
 
-/// Distances that differ by less than this share are equal: far above rounding, far below what can be seen.
+/// The relative difference below which two distances are equal: far above rounding, far below what can be seen.
 const EQUAL: f64 = 1e-9;
 
 impl Boundary {
@@ -186,7 +186,7 @@ impl Boundary {
 
     /// Calls `f` with each edge that may come closer to a place than `radius`.
     fn near(&self, place: Vector2<f64>, radius: f64, mut f: impl FnMut(usize)) {
-        // In the order of the edges: the first of several that are equally near counts.
+        // In the order of the edges, for the first of several equally near points counts.
         let mut edges = Vec::new();
         self.tree.meeting(Bounds::around([place.into()]).widened(radius), |e| edges.push(e));
         edges.sort_unstable();
@@ -296,7 +296,7 @@ pub(super) struct Stretch {
     pub ends: [Facing; 2],
 }
 
-/// All of them, along the edges of boundary 1.
+/// All stretches, along the edges of boundary 1.
 pub(super) fn stretches(sides: &[Boundary; 2], reach: f64) -> Vec<Stretch> {
     let mut breaks: Vec<Vec<(f64, [Point; 2])>> = vec![Vec::new(); sides[0].edges.len()];
     for of in [0, 1] {
@@ -337,7 +337,7 @@ pub(super) fn stretches(sides: &[Boundary; 2], reach: f64) -> Vec<Stretch> {
 }
 
 /// The stretch on edge `e` from a break towards `end`, as far as the partner stays on its edge: it ends where another one becomes
-/// the nearest. `None` if it does at once.
+/// the nearest. `None` if that happens at once.
 fn towards(
     sides: &[Boundary; 2],
     reach: f64,
@@ -350,7 +350,7 @@ fn towards(
         return None;
     }
     let partner = |s: f64| mutual(sides, 0, &sides[0].point(e, s), reach);
-    // A hair away from the break: which edge of the other boundary goes on with it.
+    // Slightly beyond the break, to see which edge of the other boundary continues the stretch.
     let hair = start + (end - start) * (4.0 * none / (end - start).abs()).min(0.5);
     let f = partner(hair)?[1].at().find(|place| points[1].on(place.edge).is_some())?.edge;
     let on_it = |s: f64| partner(s).filter(|points| points[1].on(f).is_some());

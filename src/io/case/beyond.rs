@@ -1,6 +1,6 @@
-//! The keys that other programs have and this one has not: what they ask for is not computed, or has another key.
+//! Keys of other programs that this program lacks: their subject is not computed, or has another key here.
 
-/// What is not computed, and the keys that ask for it, alone or as the first part of a longer key (`yield_stress`).
+/// Subjects that are not computed, and the keys that ask for them, alone or as the first part of a longer key (`yield_stress`).
 const BEYOND: [(&str, &[&str]); 6] = [
     ("torsion", &["torsion", "torque", "twist"]),
     (
@@ -42,7 +42,7 @@ const BEYOND: [(&str, &[&str]); 6] = [
     ),
 ];
 
-/// What other keys ask for, and the keys that other programs have for that.
+/// Keys of this program, and the keys that other programs have for the same.
 const ELSEWHERE: [(&str, &[&str]); 4] = [
     (
         "two boundaries that touch each other are a [[pair]]",
@@ -59,7 +59,7 @@ const ELSEWHERE: [(&str, &[&str]); 4] = [
     ),
 ];
 
-/// Says that what `word` asks for is not computed, or which key asks for it here, if one of these is so.
+/// Says that the subject of `word` is not computed, or names the key of this program, if either is known.
 pub(super) fn not_here(word: &str) -> Option<String> {
     let word = word.to_lowercase().replace(['-', ' '], "_");
     let asks = |key: &&str| {

@@ -316,7 +316,7 @@ pub(super) fn read_loads(
     Ok((table.optional("body", Value::functions)?.unwrap_or_else(none), forces))
 }
 
-/// A function that is the same everywhere.
+/// A constant function.
 pub(super) fn constant(value: f64) -> SharedFunction {
     Arc::new(Expression::from(value))
 }

@@ -20,7 +20,7 @@ type Obstacles<'s> = BTreeMap<&'s str, (Spot<'s>, Obstacle)>;
 /// The conditions on the boundaries of the mesh and, beside \[exact\], the kind of each.
 type Boundaries = (BTreeMap<String, Condition>, BTreeMap<String, Kind>);
 
-/// What a boundary's length makes an area with.
+/// The factor that makes an area of a boundary's length.
 #[derive(Clone, Copy)]
 pub(super) enum Depth {
     /// The thickness of a plane body, 1 if it is not given.
@@ -169,8 +169,7 @@ fn component(value: &Value) -> Result<Option<SharedFunction>, FileError> {
     }
 }
 
-/// A displacement in one component, a traction or a force in the other, which is `given`: what is given in the first must be 0 in the
-/// second.
+/// A displacement in one component, and in the other a traction or a force, which is `given` and must be 0 in the first.
 fn read_mixed(
     table: &Table,
     given: &Value,

@@ -116,7 +116,7 @@ fn read_trapezoid(table: &Table) -> Result<Structured, FileError> {
     Ok(Structured::Trapezoid(Trapezoid { omega, n }))
 }
 
-/// The largest share of the body within which vertices are merged: those further apart are not one by mistake.
+/// The largest share of the body within which vertices may be merged: those further apart are distinct on purpose.
 const MOST_MERGED: f64 = 0.01;
 
 fn read_merge(value: &Value) -> Result<f64, FileError> {
@@ -124,7 +124,7 @@ fn read_merge(value: &Value) -> Result<f64, FileError> {
     value.number_that(|share| 0.0 < share && share <= MOST_MERGED, &expected)
 }
 
-/// The most that a vertex is moved, in cells: beyond it triangles may turn over.
+/// The largest move of a vertex, in cells: by more, triangles may turn over.
 const MOST_MOVED: f64 = 0.25;
 
 fn read_perturbation(value: &Value) -> Result<Perturbation, FileError> {

@@ -1,4 +1,4 @@
-//! The tables [method], [solver], [adapt] and [certify] of a case file: how it is solved, and what is to be proved of it.
+//! The tables [method], [solver], [adapt] and [certify] of a case file: how to solve, and what to prove.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ pub(super) fn default_degree(mesh_of_a_file: bool) -> Degree {
     if mesh_of_a_file { Degree::Two } else { Degree::One }
 }
 
-/// `method` is what holds where the table says nothing.
+/// `method` has the defaults.
 pub(super) fn read_method(table: &Table, mut method: Method) -> Result<Method, FileError> {
     table.only(&["degree", "gamma0", "kappa", "contact_quadrature", "allow_noncoercive"])?;
     table.set("degree", &mut method.degree, |degree| {
@@ -68,7 +68,7 @@ pub(super) fn read_settings(table: &Table) -> Result<Settings, FileError> {
     Ok(settings)
 }
 
-/// Meshes are refined up to so many unknowns where the case says nothing.
+/// The default limit of unknowns up to which meshes are refined.
 pub(super) const MOST_UNKNOWNS: usize = 500_000;
 
 type Conditions = BTreeMap<String, Condition>;

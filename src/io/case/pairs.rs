@@ -101,7 +101,7 @@ pub(super) fn on_mesh(
                 return Err(at.found(&found, "at least one"));
             }
             let has_condition = |all: &&Table| {
-                // A table that says where the boundary is, and no more, is no condition.
+                // A table with nothing but the place of the boundary is no condition.
                 let only_place =
                     |value: Value| value.table().is_ok_and(|table| table.keys().eq(["where"]));
                 all.get(name).is_some_and(|value| !only_place(value))

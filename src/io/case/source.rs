@@ -2,9 +2,9 @@
 //! `material.young=2`, `boundary.bottom.contact.gap="0.1*x"`.
 //!
 //! A setting is a line of TOML, so its value has the type that it has in the file; only a bare word, a path or an
-//! expression needs no quotes (`method.gamma0=auto`, `boundary.bottom.contact.gap=0.1*x`). A table is laid over the one that
-//! is there, anything else takes its place, and a later setting wins over an earlier one. The reader of the case then cannot
-//! tell a setting from the file, but where a mistake is.
+//! expression needs no quotes (`method.gamma0=auto`, `boundary.bottom.contact.gap=0.1*x`). A table is merged into the table of
+//! the file, any other value replaces that of the file, and a later setting wins over an earlier one. The reader of the case
+//! sees no difference between setting and file, except for the place of a mistake.
 
 use std::path::Path;
 
@@ -113,7 +113,7 @@ impl<'s> Source<'s> {
     }
 }
 
-/// Finds the first key with more parts than the TOML reader takes: of that mistake it does not give the place.
+/// Finds the first key with more parts than the TOML reader takes, for its message does not give the place.
 fn deepest(error: &toml::de::Error, text: &str) -> Option<usize> {
     const MOST_PARTS: usize = 80;
     let is_deep = |line: &&str| line.matches('.').nth(MOST_PARTS - 1).is_some();
@@ -121,7 +121,7 @@ fn deepest(error: &toml::de::Error, text: &str) -> Option<usize> {
     Some(line.as_ptr() as usize - text.as_ptr() as usize)
 }
 
-/// Lays one table over another, which is that of the key `path`, if that is not empty.
+/// Merges one table into another, that of the key `path` (the whole file if empty).
 fn merge<'s>(below: &mut DeTable<'s>, above: DeTable<'s>, path: &str) -> Result<(), String> {
     for (key, mut value) in above {
         let name = &**key.get_ref();
@@ -153,7 +153,7 @@ fn merge<'s>(below: &mut DeTable<'s>, above: DeTable<'s>, path: &str) -> Result<
                 ));
             }
             _ => {
-                // With the key, so that the place is the new one.
+                // Insert with the key, so that messages have the place of the setting.
                 below.remove(name);
                 below.insert(key, value);
             }
@@ -186,7 +186,7 @@ fn with_quotes(setting: &str) -> String {
     }
 }
 
-/// Returns whether this is a word, or the path of a file, that TOML has no other meaning for.
+/// Returns whether this is a word or a path that has no other meaning in TOML.
 fn is_word(text: &str) -> bool {
     let is_path = ["/", "./", "../"].iter().any(|start| text.starts_with(start));
     (is_path || text.starts_with(|c: char| c.is_ascii_alphabetic()))
@@ -206,7 +206,7 @@ const REMEDIES: [(&str, &str); 11] = [
         "a backslash in \"...\" begins an escape; expected '/' in a path, or the text in '...'",
     ),
     ("invalid mantissa", "expected a digit before the decimal point (0.5, not .5)"),
-    // It says so where there is no value at all, too.
+    // The TOML reader has this message for a missing value, too.
     (NO_QUOTES, "expected a value; a text must be in quotes"),
     ("invalid boolean", "expected a value; a text must be in quotes"),
     ("invalid time", NO_RANGE),

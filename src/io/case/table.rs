@@ -1,5 +1,5 @@
-//! TOML with places: a table or a value knows what it is called and where it stands, so that a mistake in it can be
-//! reported in one line. The names in messages look like the file: `[mesh] rectangle.nx`, `[load] body[1]`.
+//! TOML with places: tables and values know their names and places, so that mistakes can be reported in one line. The names in
+//! messages look like the file: `[mesh] rectangle.nx`, `[load] body[1]`.
 //!
 //! Why not serde: its derived readers drop the third entry of a list meant for two, turn an alternative such as
 //! "a number or "auto"" into "did not match any variant", and forget the line.
@@ -176,7 +176,7 @@ impl<'s> Table<'s> {
     /// The complaint about which of `keys` are there.
     pub fn combination(&self, keys: &[&str], expected: &str) -> FileError {
         let found = self.given(keys);
-        // Where one of them was set over the file, that is what went wrong.
+        // If a setting over the file supplied one of the keys, report that setting.
         let mut starts = found.iter().filter_map(|key| self.get(key)?.at.start);
         let set = starts.rfind(|&start| self.at.source.setting_at(start).is_some());
         let name = self.at.name.clone();

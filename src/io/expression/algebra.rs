@@ -90,7 +90,7 @@ impl Number for Dual {
             Unary::Exp => value,
             Unary::Abs => 1.0_f64.copysign(a.value),
         };
-        // A factor is not asked for where the operand is constant: it may be infinite there.
+        // A factor is not computed where the operand is constant, as it may be infinite there.
         let constant = a.slope == [0.0; 2];
         Dual { value, slope: if constant { a.slope } else { a.slope.map(|slope| factor * slope) } }
     }
@@ -116,7 +116,7 @@ impl Number for Dual {
     }
 }
 
-/// The functions of the C library are taken to be this accurate, in units of their values.
+/// The assumed relative accuracy of the functions of the C library.
 const LIBRARY: f64 = 4.0 * f64::EPSILON;
 
 impl Number for Ball {
@@ -169,7 +169,7 @@ fn middle(ball: Ball) -> (f64, f64) {
     (centre, (high - centre).max(centre - low).next_up())
 }
 
-/// All numbers at most `spread` from what the library says is `value`.
+/// All numbers at most `spread` away from `value`, the library's result.
 fn near(value: f64, spread: f64) -> Ball {
     Ball::around(value, (spread + LIBRARY * value.abs()).next_up() * (1.0 + f64::EPSILON))
 }

@@ -34,8 +34,7 @@ const FUNCTIONS: [(&str, Instruction); 7] = [
     ("max", Instruction::Binary(Binary::Max)),
 ];
 
-/// The largest exponent of repeated multiplication. Beyond it that gains no time and loses digits: its error grows like the
-/// exponent.
+/// The largest exponent of repeated multiplication, whose error grows like the exponent; beyond this size no time is gained.
 const MOST_FACTORS: f64 = 16.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

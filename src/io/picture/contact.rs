@@ -67,7 +67,7 @@ impl ContactLine {
                 let turns = turns(samples);
                 let bent = factor != 1.0 && turns;
                 let furthest = size * if bent { FURTHEST_WHERE_BENT } else { FURTHEST };
-                // An obstacle with a shape of its own keeps it, and its place.
+                // An obstacle with a shape of its own keeps shape and place.
                 let factor = if turns && boundary.rigid { 1.0 } else { factor };
                 let wall = |(s, &n): (&ContactSample, &Point)| {
                     let gap = factor * s.gap;

@@ -76,7 +76,7 @@ fn push_rounded(to: &mut String, x: f64) {
     let hundredths = (x * 100.0).round() as i64;
     let (whole, rest) = (hundredths.unsigned_abs() / 100, hundredths.unsigned_abs() % 100);
     let sign = if hundredths < 0 { "-" } else { "" };
-    // Writing to a string cannot fail. A number that is not finite is one that the page is refused for.
+    // Writing to a string cannot fail. A page with a number that is not finite is refused.
     let _ = match (rest / 10, rest % 10) {
         _ if !x.is_finite() => write!(to, "{x}"),
         (0, 0) => write!(to, "{sign}{whole}"),

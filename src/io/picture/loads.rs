@@ -2,12 +2,12 @@
 //! prescribed displacements as arrows, the place of the largest stress, and a bar for the scale.
 
 use svg::Node;
-use svg::node::element::{Circle, Group};
+use svg::node::element::{Circle, Group, Path as PathElement};
 
 use super::contact::{arrow, hatched};
 use super::draw::{
-    DARK, GREY, PageMap, PathData, Point, anchored, clean, direction, distance, moved, places,
-    rounded, short, stroke,
+    DARK, GREY, PageMap, PathData, Point, SAMPLE, anchored, clean, direction, distance, moved,
+    places, rounded, short, stroke,
 };
 use super::scene::{Load, Scene};
 use crate::io::case::Case;
@@ -126,20 +126,44 @@ pub(super) fn drawn_supports(scene: &Scene, deformed: &[Point]) -> Option<Group>
         }
     }
     for (nodes, both) in scene.supports.iter().filter(|(nodes, _)| nodes.len() == 1) {
-        let [x, y] = deformed[nodes[0]];
-        let mut triangle = PathData::default();
-        triangle.polygon([[x, y], [x - 6.0, y + 10.0], [x + 6.0, y + 10.0]]);
-        let fill = if *both { DARK } else { "white" };
-        group.append(stroke(triangle, DARK, 1.2).set("fill", fill));
+        group.append(point_support(deformed[nodes[0]], *both));
     }
     let is_empty = held.is_none() && rollers.is_empty();
     let points = scene.supports.iter().any(|(nodes, _)| nodes.len() == 1);
-    for [x, y] in rollers {
-        let roller = Circle::new().set("cx", rounded(x)).set("cy", rounded(y)).set("r", 3.2);
-        group.append(roller.set("fill", "white").set("stroke", DARK));
-    }
+    rollers.into_iter().for_each(|at| group.append(roller(at)));
     held.into_iter().for_each(|held| group.append(held));
     (!is_empty || points).then_some(group)
+}
+
+fn roller([x, y]: Point) -> Circle {
+    let circle = Circle::new().set("cx", rounded(x)).set("cy", rounded(y)).set("r", 3.2);
+    circle.set("fill", "white").set("stroke", DARK)
+}
+
+/// A triangle below a point that is held: full if both components are, else empty.
+fn point_support([x, y]: Point, both: bool) -> PathElement {
+    let mut triangle = PathData::default();
+    triangle.polygon([[x, y], [x - 6.0, y + 10.0], [x + 6.0, y + 10.0]]);
+    stroke(triangle, DARK, 1.2).set("fill", if both { DARK } else { "white" })
+}
+
+/// The entries of the legend for the kinds of supports that the picture has.
+pub(super) fn support_entries(scene: &Scene) -> Vec<(Option<Group>, &'static str)> {
+    let has = |point: bool, both: bool| {
+        scene.supports.iter().any(|s| (s.0.len() == 1) == point && s.1 == both)
+    };
+    let triangle = |both| Some(Group::new().add(point_support([15.0, -10.0], both)));
+    let kinds = [
+        (has(false, true), hatched([SAMPLE.map(|[x, y]| [x, y - 3.0]).to_vec()]), "held"),
+        (
+            has(false, false),
+            Some(Group::new().add(roller([9.0, -4.5])).add(roller([21.0, -4.5]))),
+            "held in one direction",
+        ),
+        (has(true, true), triangle(true), "point, held"),
+        (has(true, false), triangle(false), "point, held in one direction"),
+    ];
+    kinds.into_iter().filter(|kind| kind.0).map(|(_, sample, words)| (sample, words)).collect()
 }
 
 /// Lines that go on where another one ends, in one.

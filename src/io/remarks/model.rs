@@ -18,10 +18,11 @@ use crate::results::{ContactBoundary, Solution};
 /// measured on a block of 32 x 32 cells.
 const LOCKING: f64 = 0.48;
 
-/// A material is stiff against a change of area alone if it is by so much more than against any shear.
+/// The ratio of the stiffness against a change of area to that against shear from which a material counts as nearly
+/// incompressible.
 const STIFFER: f64 = 10.0;
 
-/// A stress below this share of the largest is none.
+/// The share of the largest stress below which a stress counts as zero.
 const NO_STRESS: f64 = 1e-12;
 
 /// An interior angle of so many degrees more than a right one, or a law as much out of line, makes a peak unbounded.
@@ -107,7 +108,7 @@ fn locking_ratio(material: &Material<f64>) -> Option<String> {
     let (a, b, c) = ((c11 - 2.0 * c12 + c22) / 4.0, c66, (c16 - c26) / 2.0);
     let [least, most] = [-1.0, 1.0].map(|sign| (a + b) / 2.0 + sign * ((a - b) / 2.0).hypot(c));
     let ratio = area / least;
-    // A fibre is stiff against a change of area and against a shear alike.
+    // A fibre resists a change of area and a shear alike.
     let locks = ratio * (1.0 + ROUNDED) >= 1.0 / (1.0 - 2.0 * LOCKING) && area > STIFFER * most;
     let poisson = short((1.0 - 1.0 / ratio) / 2.0, 6);
     locks.then(|| match material.is_isotropic() {

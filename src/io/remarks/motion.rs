@@ -8,7 +8,7 @@ use crate::model::{Condition, Obstacle, Problem};
 use crate::quote;
 use crate::results::Solution;
 
-/// The distance from the obstacle may differ from the linearised one by this share of the motion.
+/// The allowed difference between the distance from the obstacle and the linearised gap, as a share of the motion.
 const MOST_OFF: f64 = 0.1;
 
 /// The depth, beside the motion, at which a vertex is inside an obstacle; and the number of times that it is deeper than what the
@@ -40,7 +40,7 @@ pub(super) fn off_the_obstacle(
         };
         let mut worst: Option<(f64, usize, f64, f64)> = None;
         for edge in edges {
-            // The vertices: on a curved edge the gap at its middle is that of a place off the chord.
+            // Vertices only: on a curved edge the gap in the middle is that of a place off the chord.
             for point in [edge.points.first(), edge.points.last()].into_iter().flatten() {
                 let (x, motion) = moved(solution, point.node);
                 let Some(found) = distance(obstacle, x) else { continue };

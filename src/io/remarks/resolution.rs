@@ -16,7 +16,7 @@ const FEWEST_EDGES: f64 = 4.0;
 /// A stretch that begins where the boundary ends is half of one, as at a plane of symmetry.
 const FEWEST_EDGES_OF_A_HALF: f64 = 2.0;
 
-/// A stretch that carries less than this share of the force of its boundary does not matter.
+/// The share of its boundary's force below which a stretch does not matter.
 const LITTLE_FORCE: f64 = 0.05;
 
 /// A peak is below the mean pressure by more than what rounding makes of a pressure that is the same everywhere.
@@ -28,7 +28,8 @@ const GAP_OFF: f64 = 0.2;
 /// Places on an edge, from its start to its end.
 const BETWEEN_NODES: [f64; 7] = [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875];
 
-/// Two stretches that are no farther apart than this share of an edge are one: the pressure of a mesh rises and falls by edges.
+/// The distance, as a share of an edge, up to which two stretches count as one: the pressure of a mesh rises and falls by
+/// edges.
 const NEXT: f64 = 1.0;
 
 /// The edges of one contact boundary, in the order of the boundary.

@@ -18,7 +18,7 @@ use crate::model::mesh::{Mesh, MeshError, TOUCHING, length};
 use crate::model::plane_sweep::{cross, turn};
 use crate::model::tree::{Bounds, Tree};
 
-/// Which vertices may be in one place.
+/// The vertices that may be in one place.
 pub(super) struct Linked {
     /// The body of each vertex.
     body: Vec<usize>,
@@ -90,7 +90,7 @@ impl<'p> Zone<'p> {
     }
 }
 
-/// Checks each part of the body by itself, and where two parts come near that they may.
+/// Checks each part of the body by itself, and that parts come near each other only where they may.
 ///
 /// # Errors
 /// As [`Mesh::new`](Mesh::new), and [`MeshError::Bodies`].
@@ -107,7 +107,7 @@ pub(super) fn check_pairs(mesh: &Mesh, pairs: &[Pair]) -> Result<(), MeshError> 
     check_between(mesh, &parts, &zones)
 }
 
-/// The vertex that stands for each one on the second face of a slit: that of the first face in the same place.
+/// For each vertex on the second face of a slit, the vertex of the first face in the same place.
 fn closed_slits(mesh: &Mesh, zones: &[Zone]) -> BTreeMap<usize, usize> {
     let mut closed = BTreeMap::new();
     let key = |v: usize| mesh.vertices()[v].map(|c| (c + 0.0).to_bits());

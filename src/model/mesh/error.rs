@@ -1,15 +1,15 @@
-//! Why there is no such mesh.
+//! Errors of a mesh.
 
 use thiserror::Error;
 
 use crate::memory::OutOfMemory;
 use crate::quote::{number, quoted};
 
-/// A void narrower than this times the local edge is none: coordinates with six digits leave seams of 1e-6 beside edges of 1e-3. A
-/// slot that is meant has shorter edges along it.
+/// The width of a void, beside the local edge, below which the void is a seam: coordinates with six digits leave 1e-6 beside
+/// edges of 1e-3. A slot that is meant has shorter edges along it.
 pub(crate) const TOUCHING: f64 = 1e-3;
 
-/// Why there is no such mesh. Vertices and triangles are counted from 0, or by the numbers of the file they came from.
+/// Errors of a mesh. Vertices and triangles are counted from 0, or by the numbers of the file they came from.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
@@ -96,7 +96,7 @@ pub enum MeshError {
     TooManyCells { nx: usize, ny: usize, most: usize },
 }
 
-/// What is expected where two bodies meet, by the pair that they make.
+/// The expectation where two bodies meet, by the pair that they make.
 fn in_reach(pair: Option<&([String; 2], f64)>) -> String {
     match pair {
         None => ": expected bodies that are apart, or a [[pair]] of the boundaries that touch each other".to_owned(),

@@ -96,7 +96,7 @@ impl Mesh {
             }
             _ => true,
         });
-        // A point that was one and is several now has no meaning; what asks for it is told so.
+        // A point that has become several has no meaning; a condition on such a point is refused.
         let all = |members: &Vec<usize>| {
             let several = members.iter().flat_map(|v| copies.get(v).cloned().unwrap_or(vec![*v]));
             several.collect()

@@ -1,5 +1,5 @@
 //! The solver's loop of corrections (`solve::accuracy::refine`): what it says of its result, when it ends, in which arithmetic it
-//! looks at what is left, and what its routes do on the way (docs/theory.md, 5.7).
+//! looks at what is left, and what its routes do on the way (docs/theory.md, 5.6).
 //!
 //! The loop asks a route for each correction. Here the route is one whose error is known: it goes to within a given distance of
 //! the solution, and from pass to pass takes that down by a given factor, or not at all. So what is reported can be compared with

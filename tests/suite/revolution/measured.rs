@@ -38,7 +38,7 @@ fn orders(what: &str, sizes: [&[usize]; 2], f: impl Fn(usize, Degree) -> (f64, [
 
 #[test]
 #[ignore = "prints a table; the bounds are in the tests beside this one"]
-fn the_table_of_bodies_of_revolution() {
+fn the_table_of_bodies_of_revolution_is_near_the_formulas() {
     println!("| | P1 | P2 |\n| --- | --- | --- |");
     orders(
         "smooth, n = 8, 16, 32, 64; 4, 8, 16, 32",
