@@ -111,7 +111,8 @@ pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Fi
             }
         }
     }
-    let pairs = || parts.contact.iter().zip(further).filter(|(edge, _)| edge.is_pair());
+    let may_open = |edge: &Contact| edge.is_pair() && !edge.is_tied();
+    let pairs = || parts.contact.iter().zip(further).filter(|(edge, _)| may_open(edge));
     for _ in 0..SWEEPS {
         let moved = pairs().fold(false, |moved, (contact, further)| {
             move_apart(parts, contact, &mut field, (size, *further)) || moved

@@ -68,11 +68,15 @@ impl<'a> ProblemParts<'a> {
     ) -> Result<Self, CertifyError> {
         let space = Space::new(&problem.mesh, degree);
         let constraints = Constraints::new(problem, &space)?;
-        let contact: Vec<Contact> = pieces
+        let mut contact: Vec<Contact> = pieces
             .iter()
             .map(|piece| Contact::new(problem, piece, displacement, halved))
             .filter(Contact::has_length)
             .collect();
+        for k in 1..contact.len() {
+            let (before, after) = contact.split_at_mut(k);
+            after[0].join(&problem.mesh, &before[k - 1]);
+        }
         let unsupported = |why: String| Err(CertifyError::Unsupported(why));
         if let Some(point) = problem.points.first() {
             return unsupported(format!(
@@ -231,8 +235,9 @@ impl<'a> ProblemParts<'a> {
                     let [x, y] = [0, 1].map(|c| between([d[c], e[c]], 0.0));
                     [0, 1].map(|k| [x[k], y[k]])
                 });
-                let role = Role::Contact { pressure: [0.0; 2], gap, along };
-                (role, [(t - s) * (t - s) * edge.gap_bulge, 0.0])
+                let law = edge.law_between([s, t]);
+                let role = Role::Contact { pressure: [0.0; 2], gap, along, law };
+                (role, [edge.gap_bulge, edge.offset.1].map(|bulge| (t - s) * (t - s) * bulge))
             }
         }
     }
