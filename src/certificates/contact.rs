@@ -363,6 +363,17 @@ impl Contact {
         }
     }
 
+    /// It is pressed from end to end.
+    pub fn is_pressed(&self) -> bool {
+        self.parts.iter().all(|part| part.pressure.iter().all(|&p| p < 0.0))
+    }
+
+    /// Friction keeps it from sliding: the tractions across are nowhere at their bound.
+    pub fn sticks(&self) -> bool {
+        let below = |part: &Part| (0..2).all(|k| part.shear[k].abs() < self.bound_at(part.ends[k]));
+        self.has_friction() && self.parts.iter().all(below)
+    }
+
     /// Tractions act across the direction of contact up to a bound.
     pub fn has_friction(&self) -> bool {
         matches!(self.law, Law::Friction(_))

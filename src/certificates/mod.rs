@@ -292,7 +292,9 @@ fn certify_near(
 /// Refuses the laws of contact that no certificate is about.
 fn check_laws(solution: &Solution) -> Result<(), CertifyError> {
     for piece in &solution.pieces {
+        let has_slipped = piece.geometry.nodes.iter().any(|node| node.slip != 0.0);
         let why = match piece.geometry.law {
+            Law::Friction(_) if has_slipped => "has slipped in a load step before",
             Law::Contact | Law::Bonded | Law::Friction(Bound::Tresca(_)) => continue,
             Law::Sliding if !piece.geometry.turns() => continue,
             Law::Sliding => "may not open along a direction that turns",

@@ -21,7 +21,7 @@ use super::Asked;
 use super::balanced::Balanced;
 use super::build::{Built, Line, Station};
 use super::certificate::{Certificate, Role};
-use super::contact::{Contact, Part};
+use super::contact::Contact;
 use super::dual::ByPair;
 use super::field::Field;
 use super::forces::{Cover, Evidence, ForceTarget, Forces, Mean, Motion, Ramp, WrongLifting};
@@ -359,9 +359,7 @@ fn open(parts: &ProblemParts, v: &Field, mean: Mean) -> Vec<bool> {
 /// The edges of Gamma_C that are not pressed from end to end, but for so many next to those that are; where `beyond` is
 /// negative, so many of these, too.
 fn off_contact(parts: &ProblemParts, beyond: i32) -> Vec<bool> {
-    let is_full = |part: &Part| part.pressure.iter().all(|&p| p < 0.0);
-    let mut open: Vec<bool> =
-        parts.contact.iter().map(|edge| !edge.parts.iter().all(is_full)).collect();
+    let mut open: Vec<bool> = parts.contact.iter().map(|edge| !edge.is_pressed()).collect();
     let ends: Vec<[usize; 2]> =
         parts.contact.iter().map(|edge| parts.mesh.ends(edge.edge)).collect();
     let grows = beyond < 0;

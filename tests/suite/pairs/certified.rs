@@ -7,6 +7,7 @@ use signorini::certificates::quantities::Name;
 use signorini::certificates::{
     Asked, Certificate, Continuous, Rejection, Target, adapt, adapt_to, certify,
 };
+use signorini::contact::Friction;
 use signorini::contact::residual::add_internal_forces;
 use signorini::io::certificate;
 use signorini::kernel::Ball;
@@ -100,12 +101,17 @@ fn certified(problem: &Problem, degree: Degree) -> Continuous {
 }
 
 /// The bounds, over the energy norms of the distance to a solution of degree 2 on a mesh with `finest` cells, and the relative bounds.
-fn effectivities(all: &[Two], finest: [usize; 2], degree: Degree) -> Vec<[f64; 2]> {
-    let fine = Two { cells: finest, ..all[0] }.problem();
+fn effectivities(
+    all: &[Two],
+    finest: [usize; 2],
+    degree: Degree,
+    with: &dyn Fn(Problem) -> Problem,
+) -> Vec<[f64; 2]> {
+    let fine = with(Two { cells: finest, ..all[0] }.problem());
     let exact = proved(&fine, &method(Degree::Two)).displacement;
     let space = Space::new(&fine.mesh, Degree::Two);
     let of = |two: &Two| {
-        let c = certified(&two.problem(), degree);
+        let c = certified(&with(two.problem()), degree);
         assert!(c.rigorous, "{:?}", c.reason);
         let by = [0, 1].map(|k| finest[k] / two.cells[k]);
         let v = two.on_finer(&c.displacement, by, &space);
@@ -133,17 +139,17 @@ fn near(found: &[[f64; 2]], limit: f64, rate: f64) {
 fn the_bound_is_above_the_error_by_less_than_half_and_falls_with_the_mesh() {
     for moduli in [[1.0, 1.0], [1.0, 10.0]] {
         let all = [[11, 7], [22, 14], [44, 28]].map(|cells| squares(cells, moduli));
-        near(&effectivities(&all, [88, 56], Degree::One), 1.5, 1.7);
+        near(&effectivities(&all, [88, 56], Degree::One, &|p| p), 1.5, 1.7);
     }
     let all = [[5, 8], [10, 16], [20, 32]].map(narrow);
-    near(&effectivities(&all, [40, 64], Degree::One), 1.7, 1.4);
+    near(&effectivities(&all, [40, 64], Degree::One, &|p| p), 1.7, 1.4);
 }
 
 #[test]
 fn the_bound_of_p2_is_above_the_error_by_less_than_two_and_a_half_times_and_falls_with_the_mesh() {
     for moduli in [[1.0, 1.0], [1.0, 10.0]] {
         let all = [[6, 4], [12, 8], [24, 16]].map(|cells| squares(cells, moduli));
-        near(&effectivities(&all, [96, 64], Degree::Two), 2.5, 1.4);
+        near(&effectivities(&all, [96, 64], Degree::Two, &|p| p), 2.5, 1.4);
     }
 }
 
@@ -428,6 +434,25 @@ fn round_bodies_are_not_adapted_because_their_middles_would_lie_on_chords() {
     }
 }
 
+/// The upper body is dragged on the lower one; the bound is affine.
+fn rough(problem: Problem) -> Problem {
+    let mut problem = problem;
+    problem.pairs[0].friction = Some(Friction::Tresca(expression("0.005 + 0.014*x")));
+    let top = ["0.03", "-0.1 + 0.02*x"].map(|u| Some(expression(u)));
+    problem.with("upper.top", Condition::Displacement(top))
+}
+
+#[test]
+fn the_bound_of_bodies_that_stick_and_slide_is_above_the_error_and_falls_with_the_mesh() {
+    let s = proved(&rough(squares([22, 14], [1.0, 1.0]).problem()), &method(Degree::One));
+    let of = s.boundaries[0].friction.unwrap();
+    assert!(of.sticks > 0.1 && of.slides > 0.1, "{of:?}");
+    let all = [[11, 7], [22, 14], [44, 28]].map(|cells| squares(cells, [1.0, 1.0]));
+    near(&effectivities(&all, [88, 56], Degree::One, &rough), 1.5, 1.6);
+    let all = [[6, 4], [12, 8], [24, 16]].map(|cells| squares(cells, [1.0, 1.0]));
+    near(&effectivities(&all, [96, 64], Degree::Two, &rough), 2.5, 1.3);
+}
+
 const TIED: [Law; 2] = [Law::Sliding, Law::Bonded];
 
 /// J(u) lies between these.
@@ -571,6 +596,34 @@ fn a_certificate_of_tied_bodies_that_is_tampered_with_is_refused() {
             forces: Default::default(),
         };
         assert!(matches!(sign.audit(&claim), Err(Rejection::OutOfBalance { .. })));
+    }
+}
+
+#[test]
+fn a_tied_point_is_where_it_is_prescribed() {
+    for degree in DEGREES {
+        // The walls of the upper body are held, those of the lower one are free.
+        let wall = || Condition::displacement(|_| 0.0, |[_, y]| 0.05 * y);
+        let problem = tied([4, 6], [1.0, 2.0], Law::Bonded)
+            .with("upper.left", wall())
+            .with("upper.right", wall())
+            .with("upper.top", Condition::displacement(|_| 0.0, |_| 0.05));
+        let c = certified(&problem, degree);
+        assert!(c.certificate.evaluate::<Ball>().is_ok());
+        let is_held = |[p, _]: &[usize; 2]| c.certificate.at_own(*p).unwrap().1[0].is_some();
+        let pairs = c.certificate.edges.iter().enumerate().flat_map(|(e, edge)| {
+            let is_first = matches!(edge.role, Role::Contact { .. });
+            let other = c.certificate.facing.get(&e).filter(|_| is_first);
+            other.into_iter().flat_map(|&other| {
+                let [a, b] = c.certificate.edges[other].ends;
+                [[edge.ends[0], b], [edge.ends[1], a]]
+            })
+        });
+        let [_, second] = pairs.into_iter().find(is_held).unwrap();
+        let mut moved = c.certificate.clone();
+        moved.displacement[second][0] -= 1e-12;
+        let refused = moved.evaluate::<Ball>();
+        assert!(matches!(refused, Err(Rejection::Wrong { what: "point", .. })), "{refused:?}");
     }
 }
 
