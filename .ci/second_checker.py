@@ -3,6 +3,7 @@
 ones, with their hashes, which it must refuse: second_checker.py PROGRAM FOLDER."""
 import json
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -32,7 +33,25 @@ material = { lambda = 1e-12, mu = 1e-12 }
 boundary.top.displacement = ["0", "-0.1 + 0.15*x"]
 boundary.bottom.contact = {}
 """
-OWN = {"oblique": OBLIQUE, "slide": SLIDE, "small": SMALL}
+ROUGH = """
+mesh.rectangle = { width = 1, height = 1, nx = 6, ny = 6 }
+material = { lambda = 1, mu = 1 }
+boundary.top.displacement = ["0.02 + 0.005*x", "-0.05 - 0.01*x"]
+boundary.bottom.contact = { gap = "0", friction = { tresca = "0.013*(1 + x)" } }
+"""
+CASE_FILES = pathlib.Path(__file__).parents[1] / "cases"
+
+
+def tied(name, *laws):
+    """A case with these laws between its bodies, and no point held."""
+    text = re.sub(r"\[point[^[]*", "", (CASE_FILES / f"{name}.toml").read_text())
+    text = text.replace('gmsh = "', f'gmsh = "{CASE_FILES.resolve()}/')
+    first, *pairs = text.split("[[pair]]\n")
+    return first + "".join(f'[[pair]]\nlaw = "{law}"\n{pair}' for law, pair in zip(laws, pairs))
+
+
+OWN = {"oblique": OBLIQUE, "slide": SLIDE, "small": SMALL, "rough": ROUGH,
+       "glued": tied("press_fit", "bonded"), "tied": tied("stack", "bonded", "sliding")}
 FORCES = ["--set", 'certify.quantities=["force bottom", "force bottom x 0 0.25 ramp 0.1"]']
 ADAPTED = ["--set", 'adapt.target="10 %"', "--set", "adapt.max_unknowns=2000"]
 P2 = ["--set", "method.degree=2", "--set", "method.gamma0=auto"]
@@ -47,6 +66,8 @@ CASES = {
     "slide 1": ["slide"], "slide 2": ["slide", *P2], "shaft": ["cases/disk_force.toml", *P2],
     "cylinders 1": ["cases/cylinders.toml", "--set", "method.degree=1"], "cylinders 2": ["cases/cylinders.toml", "--set", "method.degree=2"],
     "lug 1": ["cases/pin_lug.toml", "--set", "method.degree=1"], "lug 2": ["cases/pin_lug.toml", "--set", "method.degree=2"],
+    "rough 1": ["rough"], "rough 2": ["rough", *P2], "tied 1": ["tied"], "tied 2": ["tied", "--set", "method.degree=2"],
+    "glued 1": ["glued", "--set", "method.degree=1"], "glued 2": ["glued"],
     "adapted 1": ["cases/corner.toml", *ADAPTED], "adapted 2": ["cases/corner.toml", *ADAPTED, *P2],
 }
 
@@ -85,6 +106,11 @@ TAMPERINGS = {
     "a tension": lambda h, a: number(first(a("edges"), 6), 3, lambda p: 1e-9),
     "a second traction between two bodies": lambda h, a: number(next(row for row in a("edges") if row[2] == 8), 3, lambda f: 5e-324),
     "an edge that two others face": lambda h, a: a("pairs")[0, 1:].__setitem__(slice(None), a("pairs")[1, 1:]),
+    "friction beyond its bound": lambda h, a: number(next(row for row in a("laws") if row[1] == 3), 2, lambda q: 2 * abs(q) + 1),
+    "friction with a larger bound": lambda h, a: [number(row, k, lambda s: 2 * s) for row in a("laws") if row[1] == 3 for k in (4, 5)],
+    "glue for friction": lambda h, a: a("laws")[:, 1].__setitem__(slice(None), np.where(a("laws")[:, 1] == 3, 2, 3).astype(np.uint64)),
+    "glue that slides": lambda h, a: [row[1:2].__isub__(np.uint64(1)) for row in a("laws") if row[1] == 2],
+    "a jump of its own": lambda h, a: number(next(row for row in a("laws") if row[1] == 2), 4, lambda g: g + 1e-3),
     "a gap that is smaller": lambda h, a: [number(row, k, lambda g: g - 0.5) for row in a("edges") if row[2] == 6 for k in (5, 6)],
     "a displacement off what is prescribed": lambda h, a: number(
         a("displacement")[np.flatnonzero(a("prescribed")[:, 0])[0]], 0, lambda v: v + 1e-12),

@@ -17,7 +17,7 @@ import numpy as np
 
 WORDS = {"vertices": "ff", "displacement": "ff", "prescribed": "nfnf", "cuts": "nnf", "triangles": "nnnnnnfffffffff",
          "tensors": "ffffff",
-         "edges": "nnnffff", "directions": "nffff", "frames": "nff", "displacement at cuts": "ff",
+         "edges": "nnnffff", "directions": "nffff", "laws": "nnffff", "frames": "nff", "displacement at cuts": "ff",
          "prescribed at cuts": "nfnf", "bulges": "ffff", "lifts": "nnnf", "polygon": "n", "pairs": "nn", "shares": "f",
          "boundaries": "nn", "forces": "nnnfffff", "w": "ff", "w at cuts": "ff", "w bulges": "ff",
          "dual forces": "nff", "dual w": "ff", "dual w at cuts": "ff", "dual w bulges": "ff", "dual edges": "nffff"}
@@ -120,6 +120,22 @@ def stiffness(moduli, tensors):
     return whole
 
 
+def friction(w, shear, bound):
+    """int s |w| + q w over [0, 1], for w with these Bernstein coefficients of degree 3 and affine q and s with these values at the ends."""
+    power = np.array([[-1, 3, -3, 1], [3, -6, 3, 0], [-3, 3, 0, 0], [1, 0, 0, 0]]) @ w
+    roots = np.roots(power) if power.any() else np.zeros(0)
+    inside = roots.real[(np.abs(roots.imag) <= 1e-9) & (0 < roots.real) & (roots.real < 1)]
+    breaks = np.unique(np.concatenate([[0, 1], inside]))
+    x, weights = np.polynomial.legendre.leggauss(4)
+    found = 0.0
+    for a, b in zip(breaks, breaks[1:]):
+        s = a + (b - a) * (x + 1) / 2
+        values = np.polyval(power, s)
+        q, most = (k[0] + (k[1] - k[0]) * s for k in (shear, bound))
+        found += (b - a) / 2 * (weights * (most * np.abs(values) + q * values)).sum()
+    return found
+
+
 class Body:
     """What a certificate is of, by its arrays."""
 
@@ -161,6 +177,7 @@ class Body:
                and (self.numbers[self.role == 8] == 0).all(), "edges that do not face each other one to one")
         self.pairs, self.facing = pairs, np.full(edges, -1)
         self.facing[pairs[:, 0]] = pairs[:, 1]
+        self.laws(whole["laws"], real["laws"].reshape(-1, 2, 2))
         self.frames(whole, real, with_cuts)
         demand(len(real["shares"]) == len(self.corners), "shares of other triangles")
         self.shares = real["shares"][:, 0]
@@ -169,6 +186,48 @@ class Body:
         self.lift = real["lifts"][:, 0]
         demand((whole["polygon"] < edges).all(), "a polygon of no edges")
         self.polygon = whole["polygon"][:, 0]
+
+    def laws(self, whole, real):
+        """Of each edge 1 where two bodies slide and do not open, 2 where they are glued, 3 with friction; q; and the jump across the
+        direction, or the bound of friction."""
+        edges, on = len(self.ends), whole[:, 0]
+        demand((on < edges).all() and len(set(on)) == len(on) and (self.role[on] == 6).all() and np.isin(whole[:, 1], (1, 2, 3)).all()
+               and (real[whole[:, 1] == 1] == 0).all(), "a law of no edge")
+        self.law, (self.shear, self.beside) = np.zeros(edges, int), np.zeros((2, edges, 2))
+        self.law[on], self.shear[on], self.beside[on] = whole[:, 1], real[:, 0], real[:, 1]
+        demand((self.law != 3) | (np.abs(self.shear) <= self.beside).all(1), "friction beyond its bound: edge")
+        self.tied = np.isin(self.law, (1, 2))
+        d = self.direction
+        demand(~self.tied | ((self.facing >= 0) & self.quadratic & (d[:, 0] == d[:, 1]).all(1)), "bodies that are tied in no way: edge")
+        demand((self.law != 2) | (d[:, 0] == [1, 0]).all(1), "glue along another direction than x: edge")
+
+    def tie(self):
+        """v on the first bodies of tied pairs, from v on the second ones."""
+        on = np.flatnonzero(self.tied)
+        own, other = self.ends[on].ravel(), self.ends[self.facing[on]][:, ::-1].ravel()
+        d, glued = np.repeat(self.direction[on, 0], 2, 0), np.repeat(self.law[on] == 2, 2)
+        jump = np.stack([self.numbers[on, 1], np.where(self.law[on, None] == 2, self.beside[on], 0)], 2).reshape(-1, 2)
+        rows = np.unique(np.column_stack([own, other, d, glued, jump]), axis=0)
+        demand(len(rows) == len(set(own)) and not set(own) & set(other), "a point that is tied to two places")
+        demand(not self.frame[own].any(), "a tied point with a frame")
+        axis = (np.abs(d) == 1) & (d[:, ::-1] == 0)
+        # Where a component is prescribed, the jump is exactly 0.
+        moved = glued[:, None] | (d != 0)
+        least = np.where(glued[:, None], jump, jump[:, :1])
+        exact = (glued | axis.any(1))[:, None] & (~moved | (least == 0)) & (~moved | ~self.frame[other].any(1)[:, None])
+        demand((exact | ~self.given[own]).all(1), "a tied point at a place that is prescribed")
+
+        def tied(own, other, d, glued, jump):
+            axis = ((np.abs(d) == 1) & (d[:, ::-1] == 0)).any(1)
+            along = np.where((d != 0) & axis[:, None], other + d * jump[:, :1], own)
+            slides = np.where(axis[:, None], along, nearest(own - other, d, jump[:, 0]) + other)
+            return np.where(glued[:, None], other + jump, slides)
+
+        v = self.v
+        v[own] = tied(v[own], v[other], d, glued, jump)
+        self.v_own[own] = v[own]
+        bulge, other = self.bulge, self.facing[on]
+        bulge[on] = tied(bulge[on], bulge[other], self.direction[on, 0], self.law[on] == 2, self.data[on])
 
     def frames(self, whole, real, with_cuts):
         """v, and what is prescribed at points, along the axes or along the direction of a frame."""
@@ -196,6 +255,8 @@ class Body:
         oblique = (self.role == 7) & (self.direction[:, 0] != 0).all(1)
         if self.quadratic:
             self.bulge[oblique] = nearest(self.bulge[oblique], self.direction[oblique, 0], self.data[oblique, 0])
+        if self.tied.any():
+            self.tie()
 
     def check_edges(self):
         """Triangles run counter-clockwise and meet at their edges: inner edges have one on each side, others one on the left."""
@@ -258,7 +319,7 @@ class Body:
             d, along = self.direction[:, 0], dot(self.direction[:, 0], self.bulge)
             size = np.abs(d * self.bulge).sum(1) + np.abs(self.data[:, 0])
             demand((self.role != 7) | (np.abs(along - self.data[:, 0]) <= NEAR * size), "v . d is not what is prescribed: edge")
-            may = np.where((self.role <= 3)[:, None], held, np.stack([np.isin(self.role, (6, 7)), self.role < 0], 1))
+            may = np.where((self.role <= 3)[:, None], held, np.stack([np.isin(self.role, (6, 7)), self.law == 2], 1))
             demand((may | (self.data == 0)).all(1), "a bulge of data where there are none: edge")
 
     def jump(self, on, points, bulge):
@@ -274,11 +335,13 @@ class Body:
         """No tension, no penetration; 2 int tau_n (v . d - g) for each edge."""
         on = np.flatnonzero(self.role == 6)
         pressure, gap = self.numbers[on, 0], self.numbers[on, 1]
-        demand(pressure <= 0, "a tension on Gamma_C: number")
+        tied = self.tied[on, None]
+        demand((pressure <= 0) | tied, "a tension on Gamma_C: number")
         side = self.x[self.ends[on, 1]] - self.x[self.ends[on, 0]]
         length = np.sqrt(dot(side, side))
         d = np.where(self.has_direction[on, None, None], self.direction[on], (-turned(side) / length[:, None])[:, None])
-        turns, varies = (d[:, 0] != d[:, 1]).any(1), pressure[:, 0] != pressure[:, 1]
+        shear = self.shear[on]
+        turns, varies = (d[:, 0] != d[:, 1]).any(1), (pressure[:, 0] != pressure[:, 1]) | (shear[:, 0] != shear[:, 1])
         demand(~(turns & varies & self.has_direction[on]), "a pressure that varies along a direction that turns: edge")
         v, b = self.jump(on, self.v, self.bulge)
         bulge = self.data[on, 0]
@@ -287,12 +350,15 @@ class Body:
         g = np.stack([gap[:, 0], gap.mean(1) + 2 * bulge, gap[:, 1]], 1)
         beyond = along(v, d) - along(g[:, :, None], np.ones((len(on), 2, 1)))
         size = np.abs(v).max((1, 2)) + np.abs(g).max(1) + (self.facing[on] >= 0) * np.abs(self.v).max()
-        demand(beyond <= NEAR * size[:, None], "v goes through the obstacle on Gamma_C: number")
+        demand((beyond <= NEAR * size[:, None]) | tied, "v goes through the obstacle on Gamma_C: number")
         # Bernstein coefficients of the product with the pressure, of degree 4, whose mean is its integral.
         integral = np.zeros(len(on))
         for i in range(4):
             for k in range(2):
                 integral += [1, 3, 3, 1][i] / [1, 4, 6, 4, 1][i + k] * beyond[:, i] * pressure[:, k] / 5
+        integral[self.tied[on]] = 0
+        for k in np.flatnonzero(self.law[on] == 3):
+            integral[k] += friction(along(v[k:k + 1], turned(d[k:k + 1]))[0], shear[k], self.beside[on[k]])
         self.on_contact = np.zeros(len(self.corners))
         np.add.at(self.on_contact, self.owner[on], 2 * length * integral)
         self.turning = int((turns & self.has_direction[on]).sum())
@@ -310,8 +376,12 @@ class Body:
         demand(~pressed | (self.numbers[:, 1] == 0).all(1), "a pressure with more than two numbers: edge")
         force[pressed] = -normal[pressed] * self.numbers[pressed, 0, :, None]
         on = self.contact
-        force[on] = length[on] * self.numbers[on, 0, :, None] * self.contact_d
         first, second = self.pairs.T
+        force[on] = length[on] * self.numbers[on, 0, :, None] * self.contact_d
+        force[second] = -force[first][:, ::-1]
+        # The part along the direction of contact.
+        self.push = force.copy()
+        force[on] += length[on] * self.shear[on, :, None] * turned(self.contact_d)
         force[second] = -force[first][:, ::-1]
         d = self.direction[supported]
         force[supported] = (d * self.numbers[supported, 0, :, None]
@@ -375,33 +445,38 @@ class Body:
         of = np.array([slot[first] for first in self.part[self.owner[outer]].tolist()], int)
         origin, length = (np.array([kind[first] for first in group])[of] for kind in (origins, lengths))
         start, end = (self.x[self.ends[outer, k]] - origin for k in range(2))
-        role, d, f = self.role[outer], self.direction[outer, 0], self.edge_forces[outer]
+        role, d, f, law = self.role[outer], self.direction[outer, 0], self.push[outer], self.law[outer]
 
         def wrench(force, turn):
             rows = np.zeros((len(outer), len(group), 3))
             rows[np.arange(len(outer)), of] = np.column_stack([force, turn / length])
             return rows.reshape(len(outer), -1)
 
-        supports = []
-        axes = ((np.isin(role, (1, 3)), np.array([[1.0, 0.0]])), (np.isin(role, (2, 3)), np.array([[0.0, 1.0]])), (role == 7, d))
-        for here, along in axes:
-            along = np.broadcast_to(along, start.shape)
-            # The same at both ends, and opposite.
-            supports.append(wrench(along, cross((start + end) / 2, along))[here])
-            supports.append(wrench(0 * along, cross(end - start, along) / 6)[here])
-        at_start = wrench(f[:, 0] / 2, cross(2 * start + end, f[:, 0]) / 6)
-        at_end = wrench(f[:, 1] / 2, cross(start + 2 * end, f[:, 1]) / 6)
-        # A pressure on one body is one on the other, whose edge runs the other way.
+        # The edges of pairs; what acts on one body acts on the other, whose edge runs the other way.
         place = np.full(len(self.ends), -1)
         place[outer] = np.arange(len(outer))
         first, second = place[self.pairs].T
         here = first >= 0
         first, second = first[here], second[here]
+        d = d.copy()
+        d[second] = d[first]
+        supports = []
+        axes = ((np.isin(role, (1, 3)), np.array([[1.0, 0.0]])), (np.isin(role, (2, 3)), np.array([[0.0, 1.0]])), (role == 7, d),
+                (np.isin(law, (1, 2)), d), (law == 2, turned(d)))
+        for here, along in axes:
+            along = np.broadcast_to(along, start.shape)
+            # The same at both ends, and opposite; between tied bodies on both.
+            same, opposite = wrench(along, cross((start + end) / 2, along)), wrench(0 * along, cross(end - start, along) / 6)
+            same[first], opposite[first] = same[first] - same[second], opposite[first] + opposite[second]
+            supports += [same[here], opposite[here]]
+        at_start = wrench(f[:, 0] / 2, cross(2 * start + end, f[:, 0]) / 6)
+        at_end = wrench(f[:, 1] / 2, cross(start + 2 * end, f[:, 1]) / 6)
         at_start[first], at_end[first] = at_start[first] + at_end[second], at_end[first] + at_start[second]
         along = self.direction[outer]
         turns = self.has_direction[outer] & (along[:, 0] != along[:, 1]).any(1)
-        contact = [at[(role == 6) & ~turns] for at in (at_start, at_end)]
-        contact.append((at_start + at_end)[(role == 6) & turns])
+        may_open = (role == 6) & ~np.isin(law, (1, 2))
+        contact = [at[may_open & ~turns] for at in (at_start, at_end)]
+        contact.append((at_start + at_end)[may_open & turns])
         rows = [np.zeros((3 * len(group),) * 2)]
         for kind in (np.vstack(supports), np.vstack(contact)):
             largest = np.sqrt((kind**2).sum(1)).max(initial=0)
@@ -840,6 +915,7 @@ def check(path):
     of = f"; of the problem with {' and '.join(problem)}" if problem else ""
     count = len(whole["forces"])
     if count:
+        demand((body.law == 0).all(), "forces beside friction, or bodies that do not open")
         Forces(header, whole, real, body, stresses).check()
     return f"bound {bound:.6g}, {bound / header['bound']:.4f} of the claimed one; {count} forces; reservations: {words}{of}"
 

@@ -10,7 +10,7 @@
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::certificate::{Certificate, Edge, Owner, Role, exactly, opposite, place};
+use super::certificate::{Certificate, Edge, Law, Owner, Role, exactly, opposite, place};
 use crate::kernel::Enclosing;
 use crate::kernel::composite::Wrench;
 
@@ -37,9 +37,9 @@ struct FreeForce {
 /// Its variation along the edge.
 #[derive(Clone, Copy)]
 enum Variation {
-    /// On Gamma_D, this direction.
+    /// On Gamma_D, or between tied bodies, this direction.
     Constant([f64; 2]),
-    /// On Gamma_D, this direction times 2 s - 1.
+    /// There, this direction times 2 s - 1.
     Linear([f64; 2]),
     /// On Gamma_C, the force that is there, at these ends.
     Pressure([bool; 2]),
@@ -217,27 +217,24 @@ impl<S: Enclosing> OnEdges<'_, S> {
                     wrenches[root] = wrenches[root].plus(wrench);
                     continue;
                 }
-                let Some(owner) = self.owners[hold.edge][0] else { continue };
                 let force = self.unit(hold).map(|f| f * factor);
-                add(&mut closed.added[hold.edge], force);
-                let wrench = times(self.wrench(hold), factor);
-                wrenches[owner.piece] = wrenches[owner.piece].plus(wrench);
+                let other = self.certificate.facing.get(&hold.edge).copied();
+                // The opposite acts on the other body, which is closed later.
+                let there = other.map(|edge| (edge, opposite(force)));
+                for (edge, force) in std::iter::once((hold.edge, force)).chain(there) {
+                    let Some(owner) = self.owners[edge][0] else { continue };
+                    add(&mut closed.added[edge], force);
+                    let wrench = self.wrench(edge, force);
+                    wrenches[owner.piece] = wrenches[owner.piece].plus(wrench);
+                }
                 let Variation::Pressure(ends) = hold.profile else { continue };
                 let [a, b] = ends.map(|end| if end { factor } else { S::from(0) });
-                let here = Change { edge: hold.edge, factors: [a, b] };
-                let Some(&edge) = self.certificate.facing.get(&hold.edge) else {
-                    closed.changes.push(here);
-                    continue;
-                };
-                // The same pressure acts on the other body, which is closed later.
-                let Some(owner) = self.owners[edge][0] else { continue };
-                let other = FreeForce { edge, profile: Variation::Pressure([ends[1], ends[0]]) };
-                add(&mut closed.added[edge], opposite(force));
-                let wrench = times(self.wrench(other), factor);
-                wrenches[owner.piece] = wrenches[owner.piece].plus(wrench);
-                let is_second = self.certificate.edges[hold.edge].role == Role::Facing;
-                let there = Change { edge, factors: [b, a] };
-                closed.changes.push(if is_second { there } else { here });
+                let second =
+                    other.filter(|_| self.certificate.edges[hold.edge].role == Role::Facing);
+                closed.changes.push(match second {
+                    Some(edge) => Change { edge, factors: [b, a] },
+                    None => Change { edge: hold.edge, factors: [a, b] },
+                });
             }
             for &t in part[1..].iter().rev() {
                 let Some(e) = tree.towards_root[t] else { continue };
@@ -306,7 +303,7 @@ impl<S: Enclosing> OnEdges<'_, S> {
         let pull = self.pull(part);
         let unit = holds.map(|hold| match hold.profile {
             Variation::Stop(c) => stop(c, total.about),
-            _ => self.wrench(hold).about(total.about),
+            _ => self.wrench(hold.edge, self.unit(hold)).about(total.about),
         });
         let factors = solve(unit, total);
         let found = [0, 1, 2].map(|k| {
@@ -334,16 +331,15 @@ impl<S: Enclosing> OnEdges<'_, S> {
             Variation::Linear(d) => [-exactly::<S>(d), exactly(d)],
             Variation::Stop(_) => [Vector2::zeros(); 2],
             Variation::Pressure(ends) => {
-                let force = (self.forces)(hold.edge);
+                let force = self.certificate.push(hold.edge, self.points);
                 [0, 1].map(|k| if ends[k] { force[k] } else { Vector2::zeros() })
             }
         }
     }
 
-    /// Its wrench, about the middle of the edge: int (s - 1/2) E x (f + s (g - f)) = E x (g - f) / 12.
-    fn wrench(&self, hold: FreeForce) -> Wrench<S> {
-        let [start, end] = self.certificate.edges[hold.edge].ends.map(|p| self.points[p]);
-        let [f, g] = self.unit(hold);
+    /// The wrench of a force on edge `e`, about the middle of that: int (s - 1/2) E x (f + s (g - f)) = E x (g - f) / 12.
+    fn wrench(&self, e: usize, [f, g]: [Vector2<S>; 2]) -> Wrench<S> {
+        let [start, end] = self.certificate.edges[e].ends.map(|p| self.points[p]);
         Wrench {
             force: (f + g) / S::from(2),
             moment: (end - start).perp(&(g - f)) / S::from(12),
@@ -354,30 +350,26 @@ impl<S: Enclosing> OnEdges<'_, S> {
     /// Quantities that may change on edge `e`: tractions on Gamma_D, and each pressure on Gamma_C by a part of itself. Where
     /// the direction of contact turns it is the same at both ends, and stays so.
     fn candidates(&self, e: usize) -> impl Iterator<Item = FreeForce> {
-        let of_pressure = |pressure: [f64; 2], along: Option<[[f64; 2]; 2]>| {
-            if pressure == [0.0; 2] {
-                Vec::new()
-            } else if along.is_some_and(|[a, b]| a != b) {
-                vec![Variation::Pressure([true; 2])]
-            } else {
-                vec![Variation::Pressure([true, false]), Variation::Pressure([false, true])]
-            }
+        let any = |along: [f64; 2]| vec![Variation::Constant(along), Variation::Linear(along)];
+        let axes = [[1.0, 0.0], [0.0, 1.0]];
+        let edges = &self.certificate.edges;
+        let first = match edges[e].role {
+            Role::Facing => self.certificate.facing.get(&e).map_or(e, |&first| first),
+            _ => e,
         };
-        let profiles = match self.certificate.edges[e].role {
-            Role::Held(held, _) => {
-                let axes = [[1.0, 0.0], [0.0, 1.0]];
-                let of = |c: usize| [Variation::Constant(axes[c]), Variation::Linear(axes[c])];
-                (0..2).filter(|&c| held[c]).flat_map(of).collect()
+        let profiles = match edges[first].role {
+            Role::Held(held, _) => (0..2).filter(|&c| held[c]).flat_map(|c| any(axes[c])).collect(),
+            Role::Supported { along, .. } => any(along),
+            Role::Contact { law: Law::Bonded { .. }, .. } => {
+                axes.into_iter().flat_map(any).collect()
             }
-            Role::Supported { along, .. } => {
-                vec![Variation::Constant(along), Variation::Linear(along)]
+            Role::Contact { law: Law::Sliding, along: Some([d, _]), .. } => any(d),
+            Role::Contact { pressure: [0.0, 0.0], .. } => Vec::new(),
+            Role::Contact { along: Some([d, end]), .. } if d != end => {
+                vec![Variation::Pressure([true; 2])]
             }
-            Role::Contact { pressure, along, .. } => of_pressure(pressure, along),
-            Role::Facing => {
-                match self.certificate.facing.get(&e).map(|&e| self.certificate.edges[e].role) {
-                    Some(Role::Contact { pressure, along, .. }) => of_pressure(pressure, along),
-                    _ => Vec::new(),
-                }
+            Role::Contact { .. } => {
+                vec![Variation::Pressure([true, false]), Variation::Pressure([false, true])]
             }
             _ => Vec::new(),
         };
@@ -402,7 +394,7 @@ impl<S: Enclosing> OnEdges<'_, S> {
                     continue;
                 }
                 for hold in self.candidates(e) {
-                    let wrench = self.wrench(hold);
+                    let wrench = self.wrench(e, self.unit(hold));
                     let (force, arm) = (double(wrench.force), double(wrench.about) - origin);
                     let moment = (wrench.moment.lower() + wrench.moment.upper()) / 2.0;
                     size = size.max(arm[0].hypot(arm[1]));

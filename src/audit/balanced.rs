@@ -5,9 +5,10 @@ use nalgebra::Vector2;
 
 use super::balance::{Change, Closed, OnEdges, SpanningTree, Unbalanced};
 use super::certificate::{
-    Certificate, Edge, Owner, Piece, Role, Shape, exactly, opposite, support,
+    Certificate, Edge, Law, Owner, Piece, Role, Shape, exactly, opposite, support, turned,
 };
 use super::checks::{Rejection, wrong};
+use super::forces::along;
 use super::on_contact::{OnContact, OnEdge, along_directions, along_the_normal};
 use crate::kernel::composite::{Affine, Composite, Frame, Loads, Wrench};
 use crate::kernel::{Ball, Enclosing, Triangle};
@@ -73,7 +74,8 @@ impl Certificate {
                     let normal = Vector2::new(along[1], -along[0]);
                     p.map(|p| -(normal * S::exactly(p)))
                 }
-                Role::Contact { pressure, .. } => {
+                Role::Contact { law, .. } if law.is_tied() => self.traction(e, &points),
+                Role::Contact { pressure, law, .. } => {
                     if let Some(&value) = pressure.iter().find(|p| !p.is_at_most(0.0)) {
                         return Err(Rejection::Tension { edge: e, value });
                     }
@@ -83,8 +85,12 @@ impl Certificate {
                     }
                     if let Some(owner) = topology.owners[e][0] {
                         on_contact[owner.piece] += contact.term;
+                        if let Law::Friction { shear, bound } = law {
+                            on_contact[owner.piece] +=
+                                self.friction(e, &v, &points, (shear, bound));
+                        }
                     }
-                    contact.force
+                    self.traction(e, &points)
                 }
                 Role::Facing => [Vector2::zeros(); 2],
             });
@@ -128,11 +134,76 @@ impl Certificate {
         }
     }
 
+    /// |E| d at both ends of edge `e` of Gamma_C.
+    fn units<S: Enclosing>(&self, e: usize, points: &[Vector2<S>]) -> [Vector2<S>; 2] {
+        let span = self.span(self.edges[e].ends, points);
+        match self.edges[e].role {
+            Role::Contact { along: Some(d), .. } => {
+                let length = span.dot(&span).sqrt();
+                d.map(|d| exactly::<S>(d) * length)
+            }
+            _ => [Vector2::new(span[1], -span[0]); 2],
+        }
+    }
+
+    /// |E| p d at both ends of edge `e` of Gamma_C, or of the one that faces it.
+    pub(super) fn push<S: Enclosing>(&self, e: usize, points: &[Vector2<S>]) -> [Vector2<S>; 2] {
+        match (self.edges[e].role, self.facing.get(&e)) {
+            (Role::Contact { pressure, .. }, _) => {
+                let units = self.units(e, points);
+                [0, 1].map(|k| units[k] * S::exactly(pressure[k]))
+            }
+            (Role::Facing, Some(&first)) if self.edges[first].role != Role::Facing => {
+                opposite(self.push(first, points))
+            }
+            _ => [Vector2::zeros(); 2],
+        }
+    }
+
+    /// tau N at both ends of edge `e` of Gamma_C.
+    fn traction<S: Enclosing>(&self, e: usize, points: &[Vector2<S>]) -> [Vector2<S>; 2] {
+        let push = self.push(e, points);
+        match self.edges[e].role {
+            Role::Contact { law, .. } if law.shear() != [0.0; 2] => {
+                let units = self.units(e, points);
+                let drag = |k: usize| turned(units[k]) * S::exactly(law.shear()[k]);
+                [0, 1].map(|k| push[k] + drag(k))
+            }
+            _ => push,
+        }
+    }
+
+    /// An upper bound of 2 int s |v . e| + q v . e on edge `e`, e being d turned to the left: |v . e| is at most the function whose
+    /// Bernstein coefficients are the absolute values of its own.
+    fn friction<S: Enclosing>(
+        &self,
+        e: usize,
+        v: &Shape<S>,
+        points: &[Vector2<S>],
+        (shear, bound): ([f64; 2], [f64; 2]),
+    ) -> S {
+        let (v, bulge) = self.jump(e, v);
+        let bulge = bulge.unwrap_or_else(Vector2::zeros);
+        let across = along(v, bulge, self.units(e, points).map(turned));
+        let mut sum = S::from(0);
+        for (i, slip) in across.into_iter().enumerate() {
+            let size = S::exactly(slip.upper().max(-slip.lower()));
+            for (k, weight) in [4 - i as i32, 1 + i as i32].into_iter().enumerate() {
+                let both = size * S::exactly(bound[k]) + slip * S::exactly(shear[k]);
+                sum += both * S::from(weight);
+            }
+        }
+        sum / S::from(10)
+    }
+
     /// The edges of Gamma_C on which v can't be shown to be outside the obstacle, each with how far it may be inside.
     pub fn penetrations(&self) -> Vec<(usize, f64)> {
         let (v, points): (Shape<Ball>, Vec<Vector2<Ball>>) = (self.shape(), self.places());
         let inside = |(e, edge): (usize, &Edge)| {
-            let Role::Contact { along, .. } = edge.role else { return None };
+            let Role::Contact { along, law, .. } = edge.role else { return None };
+            if law.is_tied() {
+                return None;
+            }
             let contact = self.on_contact(e, &v, &points, [Ball::from(0); 2]).ok()?;
             let most = contact.beyond.into_iter().map(Ball::upper).fold(0.0, f64::max);
             let span = self.span(edge.ends, &points);
@@ -142,7 +213,7 @@ impl Certificate {
         self.edges.iter().enumerate().filter_map(inside).collect()
     }
 
-    /// The forces of a pressure on edge `e` of Gamma_C.
+    /// What a pressure on edge `e` of Gamma_C does, and v there.
     fn on_contact<S: Enclosing>(
         &self,
         e: usize,
@@ -151,7 +222,7 @@ impl Certificate {
         pressure: [S; 2],
     ) -> Result<OnContact<S>, Rejection> {
         let edge = &self.edges[e];
-        let Role::Contact { pressure: given, gap, along } = edge.role else {
+        let Role::Contact { pressure: given, gap, along, law } = edge.role else {
             return Err(wrong("edge", e, "expected one of Gamma_C"));
         };
         let (v, bulge) = self.jump(e, v);
@@ -164,7 +235,7 @@ impl Certificate {
                 let normal = Vector2::new(span[1], -span[0]);
                 Ok(along_the_normal(&shape, normal, pressure, length))
             }
-            Some([a, b]) if a != b && given[0] != given[1] => {
+            Some([a, b]) if a != b && [given, law.shear()].iter().any(|[p, q]| p != q) => {
                 Err(wrong("edge", e, "a pressure that varies along a direction that turns"))
             }
             Some([a, b]) => {
@@ -288,12 +359,22 @@ pub(crate) fn outward<S: Enclosing>(
 impl Balanced<f64> {
     /// Gives the edges of the certificate the tractions that balance.
     pub fn give(&self, certificate: &mut Certificate) {
-        for (edge, now) in certificate.edges.iter_mut().zip(&self.in_balance) {
-            match &mut edge.role {
+        for (e, now) in self.in_balance.iter().enumerate() {
+            let units = certificate.units(e, &self.points);
+            match &mut certificate.edges[e].role {
                 Role::Inner(force) | Role::Held(_, force) => *force = now.map(Into::into),
                 Role::Supported { along, force, .. } => {
                     let d = Vector2::from(*along);
                     *force = now.map(|f| f.dot(&d) / d.dot(&d));
+                }
+                Role::Contact { pressure, law, .. } if law.is_tied() => {
+                    for k in 0..2 {
+                        let unit = units[k];
+                        pressure[k] = now[k].dot(&unit) / unit.dot(&unit);
+                        if let Law::Bonded { shear, .. } = law {
+                            shear[k] = now[k].dot(&turned(unit)) / unit.dot(&unit);
+                        }
+                    }
                 }
                 Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } | Role::Facing => {}
             }
@@ -307,8 +388,11 @@ impl Balanced<f64> {
 
     /// Takes over the forces that the certificate has now on edges between triangles and of Gamma_D.
     pub fn rebalance(&mut self, certificate: &Certificate) -> Result<(), Unbalanced> {
-        for (force, edge) in self.forces.iter_mut().zip(&certificate.edges) {
+        for (e, (force, edge)) in self.forces.iter_mut().zip(&certificate.edges).enumerate() {
             match edge.role {
+                Role::Contact { law, .. } if law.is_tied() => {
+                    *force = certificate.traction(e, &self.points);
+                }
                 Role::Inner(now) | Role::Held(_, now) => *force = now.map(Into::into),
                 Role::Supported { along, force: now, traction } => {
                     let [start, end] = edge.ends.map(|p| self.points[p]);

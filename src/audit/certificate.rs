@@ -157,9 +157,86 @@ pub enum Role {
         gap: [f64; 2],
         /// The direction d of contact at both ends, affine between them; `None` is the edge's normal.
         along: Option<[[f64; 2]; 2]>,
+        /// What else holds there.
+        law: Law,
     },
     /// The second body of a pair: the force is minus that on the edge of [`Role::Contact`] that faces this one.
     Facing,
+}
+
+/// The law of an edge of Gamma_C beside its direction d; with e, d turned to the left, tau N = |E| (p d + q e).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Law {
+    /// p <= 0, v . d <= g, and q = 0.
+    #[default]
+    Contact,
+    /// Two bodies that slide and do not open: v . d = g, and q = 0.
+    Sliding,
+    /// Two bodies that are glued, d along x: v . d = g and v . e is the offset.
+    Bonded {
+        /// q at both ends.
+        shear: [f64; 2],
+        /// v . e at both ends.
+        offset: [f64; 2],
+    },
+    /// Contact, and |q| <= s.
+    Friction {
+        /// q at both ends.
+        shear: [f64; 2],
+        /// s at both ends.
+        bound: [f64; 2],
+    },
+}
+
+impl Law {
+    /// q at both ends.
+    pub fn shear(self) -> [f64; 2] {
+        match self {
+            Law::Contact | Law::Sliding => [0.0; 2],
+            Law::Bonded { shear, .. } | Law::Friction { shear, .. } => shear,
+        }
+    }
+
+    /// The jump v . e at both ends that is given.
+    pub fn offset(self) -> [f64; 2] {
+        if let Law::Bonded { offset, .. } = self { offset } else { [0.0; 2] }
+    }
+
+    /// The law is that of glue.
+    pub(super) fn is_bonded(self) -> bool {
+        matches!(self, Law::Bonded { .. })
+    }
+
+    /// v may not open, and p has either sign.
+    pub fn is_tied(self) -> bool {
+        matches!(self, Law::Sliding | Law::Bonded { .. })
+    }
+
+    /// v on the first body, from the vector `own` and from v on the second one: its jump is [g, h] along d and across, or, where the
+    /// bodies slide, nearest to its own with g along d.
+    fn tie<S: Enclosing>(
+        self,
+        own: Vector2<S>,
+        other: Vector2<S>,
+        d: [f64; 2],
+        [g, h]: [f64; 2],
+    ) -> Vector2<S> {
+        let beyond = |c: usize, g: f64| if g == 0.0 { other[c] } else { other[c] + S::exactly(g) };
+        match (self, axis(d)) {
+            (Law::Bonded { .. }, _) => Vector2::new(beyond(0, g), beyond(1, h)),
+            (_, Some(0)) => Vector2::new(beyond(0, g * d[0]), own[1]),
+            (_, Some(_)) => Vector2::new(own[0], beyond(1, g * d[1])),
+            (_, None) => {
+                let d = exactly::<S>(d);
+                own - d * (((own - other).dot(&d) - S::exactly(g)) / d.dot(&d))
+            }
+        }
+    }
+}
+
+/// The axis along which d is a unit vector.
+pub(super) fn axis(d: [f64; 2]) -> Option<usize> {
+    (0..2).find(|&c| d[c].abs() == 1.0 && d[1 - c] == 0.0)
 }
 
 /// Turns values at both ends of an edge into those of the edge that faces it, which runs the other way, with the opposite sign.
@@ -264,7 +341,8 @@ impl Certificate {
     }
 
     /// v at a point that has its own, and what is prescribed there.
-    pub(crate) fn at_own(&self, point: usize) -> Option<([f64; 2], [Option<f64>; 2])> {
+    #[doc(hidden)]
+    pub fn at_own(&self, point: usize) -> Option<([f64; 2], [Option<f64>; 2])> {
         let of =
             |v: &[[f64; 2]], data: &[[Option<f64>; 2]], k: usize| Some((*v.get(k)?, *data.get(k)?));
         match (point.checked_sub(self.vertices.len()), &self.curved) {
@@ -304,6 +382,7 @@ impl Certificate {
             }
         }
         let Some(curved) = &self.curved else {
+            // Two bodies are tied where v has values of its own at cuts.
             let is_known = |vertex: usize| !self.frames.contains_key(&vertex);
             return Shape {
                 points: self.with_cuts(points, &self.displacement, is_known),
@@ -316,6 +395,16 @@ impl Certificate {
                 && is_oblique(along)
             {
                 bulges[e] = nearest(curved.bulges[e], along, curved.data[e][0]);
+            }
+            if let Role::Contact { gap, along: Some([d, _]), law, .. } = edge.role
+                && law.is_tied()
+                && let Some(&other) = self.facing.get(&e)
+            {
+                for (k, p) in edge.ends.into_iter().enumerate() {
+                    let there = points[self.edges[other].ends[1 - k]];
+                    points[p] = law.tie(points[p], there, d, [gap[k], law.offset()[k]]);
+                }
+                bulges[e] = law.tie(bulges[e], bulges[other], d, curved.data[e]);
             }
         }
         Shape { points, bulges: Some(bulges) }

@@ -1,12 +1,12 @@
 //! Conditions of a certificate that come before its evaluation: its indices name things that exist, its triangles hang
 //! together along its edges, v is what is prescribed, and no force acts where nothing holds.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use thiserror::Error;
 
 use super::balance::Unbalanced;
-use super::certificate::{Certificate, Curved, Edge, Lift, Owner, Role, is_oblique};
+use super::certificate::{Certificate, Curved, Edge, Law, Lift, Owner, Role, axis, is_oblique};
 use crate::kernel::{Ball, Material};
 
 /// Why a certificate proves nothing.
@@ -20,6 +20,10 @@ pub enum Rejection {
     Wrong { what: &'static str, index: usize, problem: &'static str },
     #[error("edge {edge} has tau_n = {value} on Gamma_C; expected no tension")]
     Tension { edge: usize, value: f64 },
+    #[error(
+        "edge {edge} has the traction {shear} across the direction of contact; expected no more than the bound {bound}"
+    )]
+    Friction { edge: usize, shear: f64, bound: f64 },
     #[error(
         "edge {edge}: v_n - g can't be shown to be <= 0 (a Bernstein coefficient is up to {value}, per unit of length where contact is along the normal)"
     )]
@@ -140,9 +144,12 @@ impl Certificate {
                 Role::Supported { along, force, traction } => {
                     finite(&force) && finite(&traction) && has_length(along)
                 }
-                Role::Contact { pressure, gap, along } => {
-                    finite(&pressure)
-                        && finite(&gap)
+                Role::Contact { pressure, gap, along, law } => {
+                    let beside = match law {
+                        Law::Friction { bound, .. } => bound,
+                        _ => law.offset(),
+                    };
+                    [pressure, gap, law.shear(), beside].iter().all(|numbers| finite(numbers))
                         && along.is_none_or(|d| finite(d.as_flattened()))
                 }
                 Role::Facing => true,
@@ -214,7 +221,62 @@ impl Certificate {
         if let Some(i) = self.polygon.iter().position(|&e| e >= self.edges.len()) {
             return Err(wrong("edge of the polygon", i, "this edge does not exist"));
         }
-        self.check_facing()
+        self.check_facing()?;
+        self.check_laws()
+    }
+
+    /// Tractions are within the bounds of friction; and where two bodies are tied, each point of the first one has one place on the
+    /// second, which is tied to none, and its v is what is prescribed there.
+    fn check_laws(&self) -> Result<(), Rejection> {
+        let (mut ties, mut seconds) = (BTreeMap::new(), BTreeSet::new());
+        for (e, edge) in self.edges.iter().enumerate() {
+            let Role::Contact { gap, along, law, .. } = edge.role else { continue };
+            if let Law::Friction { shear, bound } = law
+                && let Some(k) = (0..2).find(|&k| !(shear[k].abs() <= bound[k]))
+            {
+                return Err(Rejection::Friction { edge: e, shear: shear[k], bound: bound[k] });
+            }
+            if !law.is_tied() {
+                continue;
+            }
+            let is_right = |[d, end]: &[[f64; 2]; 2]| {
+                let along_x = matches!(law, Law::Sliding) || *d == AXES[0];
+                d == end && has_length(*d) && along_x && self.curved.is_some()
+            };
+            let (Some(&other), Some([d, _])) = (self.facing.get(&e), along.filter(is_right)) else {
+                return Err(wrong("edge", e, "expected two bodies, tied along one direction"));
+            };
+            for (k, p) in edge.ends.into_iter().enumerate() {
+                let second = self.edges[other].ends[1 - k];
+                let jump = [gap[k], law.offset()[k]];
+                let tie = (second, law.is_bonded(), d, jump);
+                seconds.insert(second);
+                if *ties.entry(p).or_insert(tie) != tie {
+                    return Err(wrong("point", p, "is tied to two places"));
+                }
+            }
+        }
+        for (&p, &(second, is_bonded, d, jump)) in &ties {
+            let (Some((_, given)), Some((there, _))) = (self.at_own(p), self.at_own(second)) else {
+                return Err(wrong("point", p, "is tied, and has no value of its own"));
+            };
+            let is_moved = |c: usize| is_bonded || d[c] != 0.0;
+            let is_given = |c: usize| match given[c] {
+                None => true,
+                Some(_) if !is_moved(c) => axis(d).is_some(),
+                Some(value) => {
+                    (is_bonded || axis(d).is_some())
+                        && jump[usize::from(is_bonded && c == 1)] == 0.0
+                        && there[c] == value
+                        && !self.frames.contains_key(&second)
+                }
+            };
+            if seconds.contains(&p) || self.frames.contains_key(&p) || !(is_given(0) && is_given(1))
+            {
+                return Err(wrong("point", p, "is tied to another place than what is prescribed"));
+            }
+        }
+        Ok(())
     }
 
     /// The edges of two bodies face each other one to one, and contact between them has a direction.
@@ -325,7 +387,7 @@ impl Certificate {
             let (bulge, data) = (curved.bulges[e], curved.data[e]);
             let held = match edge.role {
                 Role::Held(held, _) => held,
-                Role::Contact { .. } => [data[0] != 0.0, false],
+                Role::Contact { law, .. } => [data[0] != 0.0, law.is_bonded() && data[1] != 0.0],
                 Role::Supported { along: d, .. } => {
                     if let Some(found) = along(bulge, d, data[0]) {
                         let expected = data[0];

@@ -14,7 +14,7 @@ use std::fmt::Display;
 use nalgebra::Vector2;
 
 use super::balanced::Balanced;
-use super::certificate::{Certificate, Edge, Piece, Role, Shape, exactly, is_oblique};
+use super::certificate::{Certificate, Edge, Law, Piece, Role, Shape, exactly, is_oblique};
 use super::checks::Rejection;
 use super::dual::WrongPair;
 use super::proof::Proof;
@@ -426,6 +426,13 @@ impl Certificate {
         unbalanced: Imbalance<Ball>,
     ) -> Result<(), Rejection> {
         let Some(claimed) = &evidence.between else { return Ok(()) };
+        let has_law =
+            |edge: &Edge| matches!(edge.role, Role::Contact { law, .. } if law != Law::Contact);
+        if let Some(edge) = self.edges.iter().position(has_law) {
+            let problem =
+                format!("a force beside edge {edge}, which slides, is glued or has friction");
+            return Err(Rejection::Force { force: 0, problem });
+        }
         let wrong = |force: usize, problem: &dyn Display| {
             Err(Rejection::Force { force, problem: problem.to_string() })
         };

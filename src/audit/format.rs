@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::certificate::{Certificate, Curved, Cut, Edge, Lift, Piece, Reservations, Role};
+use super::certificate::{Certificate, Curved, Cut, Edge, Law, Lift, Piece, Reservations, Role};
 use super::checks::Rejection;
 use super::forces::{Between, Evidence, ForceTarget, Lifting, Motion, Ramp};
 use super::proof::{Claim, Proof};
@@ -246,6 +246,19 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
             _ => return Err(format!("a direction for edge {e}, which has none, or has one")),
         }
     }
+    for (e, number, [shear, beside]) in arrays.next::<(usize, usize, [[f64; 2]; 2])>("laws")? {
+        match (certificate.edges.get_mut(e).map(|edge| &mut edge.role), number) {
+            (Some(Role::Contact { law: law @ Law::Contact, .. }), 1..=3) => {
+                *law = match number {
+                    1 if [shear, beside] == [[0.0; 2]; 2] => Law::Sliding,
+                    2 => Law::Bonded { shear, offset: beside },
+                    3 => Law::Friction { shear, bound: beside },
+                    _ => return Err(format!("edge {e} slides, with numbers of its own")),
+                };
+            }
+            _ => return Err(format!("a law for edge {e}, which has none, or has one")),
+        }
+    }
     for (point, d) in arrays.next("frames")? {
         if certificate.frames.insert(point, d).is_some() {
             return Err(format!("two frames at point {point}"));
@@ -471,6 +484,16 @@ fn arrays(certificate: &Certificate, shares: &[f64]) -> ArrayWriter {
         _ => None,
     };
     out.add("directions", certificate.edges.iter().enumerate().filter_map(direction));
+    let law = |(e, edge): (usize, &Edge)| -> Option<(usize, usize, [[f64; 2]; 2])> {
+        let Role::Contact { law, .. } = edge.role else { return None };
+        match law {
+            Law::Contact => None,
+            Law::Sliding => Some((e, 1, [[0.0; 2]; 2])),
+            Law::Bonded { shear, offset } => Some((e, 2, [shear, offset])),
+            Law::Friction { shear, bound } => Some((e, 3, [shear, bound])),
+        }
+    };
+    out.add("laws", certificate.edges.iter().enumerate().filter_map(law));
     out.add("frames", certificate.frames.iter().map(|(&point, &d)| (point, d)));
     if let Some(Curved { at_cuts, prescribed: data_at_cuts, bulges, data }) = &certificate.curved {
         out.add("displacement at cuts", at_cuts.iter().copied());
@@ -704,7 +727,7 @@ fn role(e: usize, number: usize, [start, end]: [[f64; 2]; 2]) -> Result<Role, St
         held @ 1..=3 => Role::Held([held & 1 != 0, held & 2 != 0], [start, end]),
         4 => Role::Loaded([start, end]),
         5 if end == [0.0; 2] && start != [0.0; 2] => Role::Pressed(start),
-        6 => Role::Contact { pressure: start, gap: end, along: None },
+        6 => Role::Contact { pressure: start, gap: end, along: None, law: Law::Contact },
         7 => Role::Supported { along: [0.0; 2], force: start, traction: end },
         8 if [start, end] == [[0.0; 2]; 2] => Role::Facing,
         _ => return Err(format!("edge {e} has an unknown role")),

@@ -1,4 +1,4 @@
-//! An edge of Gamma_C in a certificate: the force of tau on it, what v . d - g is at most, and the contact term of the theorem.
+//! An edge of Gamma_C in a certificate: what v . d - g is at most, and the contact term of the theorem.
 //! v . d - g is known not to be positive where its Bernstein coefficients are not.
 
 use nalgebra::Vector2;
@@ -18,8 +18,6 @@ pub(super) struct OnEdge<S> {
 
 /// An edge of Gamma_C.
 pub(super) struct OnContact<S> {
-    /// tau N at both ends.
-    pub force: [Vector2<S>; 2],
     /// An upper bound of v_n - g, the Bernstein coefficients of it or of a multiple: none may be positive.
     pub beyond: [S; 4],
     /// 2 int tau_n (v_n - g)
@@ -48,11 +46,7 @@ pub(super) fn along_the_normal<S: Enclosing>(
     let integral = integral_of_product([p, q], [a, b]);
     let integral = bulge.map_or(integral, |bulge| integral + (p + q) * bulge / S::from(3));
     let middle = bulge.map_or(a, |bulge| (a + b) / S::from(2) + S::from(2) * bulge);
-    OnContact {
-        force: [p, q].map(|p| normal * p),
-        beyond: [a, middle, middle, b],
-        term: S::from(2) * integral,
-    }
+    OnContact { beyond: [a, middle, middle, b], term: S::from(2) * integral }
 }
 
 /// Contact along a direction d that is affine between the ends, with tau N = |E| p d: p is constant where d `turns`. The mean
@@ -89,9 +83,5 @@ pub(super) fn along_directions<S: Enclosing>(
         };
         ([first, middle, middle, last], integral)
     };
-    OnContact {
-        force: [d[0] * (length * p), d[1] * (length * q)],
-        beyond,
-        term: two * length * integral,
-    }
+    OnContact { beyond, term: two * length * integral }
 }

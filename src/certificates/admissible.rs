@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 
+use super::certificate::turned;
 use super::contact::Contact;
 use super::field::Field;
 use super::parts::{Free, ProblemParts, held_along};
@@ -14,14 +15,15 @@ use crate::model::mesh::length;
 /// them; on the edge k of Gamma_C by `further[k]` more than doubles ask for.
 pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Field {
     let mut field = u.clone();
-    let v = &mut field.vertices;
-    for (vertex, v) in v.iter_mut().enumerate() {
+    for (vertex, v) in field.vertices.iter_mut().enumerate() {
         *v = match (parts.held_alone(vertex), parts.prescribed[vertex]) {
             (Some((d, w)), _) => held_along(d, w, *v),
             (None, [Some(x), Some(y)]) => [x, y],
             (None, _) => *v,
         };
     }
+    settle(parts, &mut field);
+    let v = &mut field.vertices;
     let size = u.vertices.iter().flatten().fold(0.0_f64, |max, u| max.max(u.abs()));
     let obstacles = || parts.contact.iter().zip(further).filter(|(edge, _)| !edge.is_pair());
     let mut walls: BTreeMap<usize, Vec<Wall>> = BTreeMap::new();
@@ -111,10 +113,16 @@ pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Fi
             }
         }
     }
-    let pairs = || parts.contact.iter().zip(further).filter(|(edge, _)| edge.is_pair());
+    let may_open = |edge: &Contact| edge.is_pair() && !edge.is_tied();
+    let pairs = || parts.contact.iter().zip(further).filter(|(edge, _)| may_open(edge));
+    for _ in 0..SWEEPS_TOGETHER {
+        for (contact, further) in pairs().filter(|(contact, _)| contact.is_pressed()) {
+            move_apart(parts, contact, &mut field, (size, *further), true);
+        }
+    }
     for _ in 0..SWEEPS {
         let moved = pairs().fold(false, |moved, (contact, further)| {
-            move_apart(parts, contact, &mut field, (size, *further)) || moved
+            move_apart(parts, contact, &mut field, (size, *further), false) || moved
         });
         if !moved {
             break;
@@ -123,16 +131,52 @@ pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Fi
     field
 }
 
+/// Puts v on the obstacle where it is pressed on both sides, and to rest across where it sticks: the method gives way there a little, on
+/// curved boundaries by as much as an edge is off its arc, and the bound counts the pressure times that.
+fn settle(parts: &ProblemParts, v: &mut Field) {
+    let obstacles = || parts.contact.iter().filter(|edge| !edge.is_pair());
+    // At each vertex the direction and the gap, and whether it is pressed and sticks on all edges.
+    let mut at_vertices: BTreeMap<usize, (Vector2<f64>, f64, [bool; 2])> = BTreeMap::new();
+    for edge in obstacles() {
+        for (k, vertex) in parts.mesh.ends(edge.edge).into_iter().enumerate() {
+            let here = (edge.directions[k], edge.gap[k], [true; 2]);
+            let (_, _, rests) = at_vertices.entry(vertex).or_insert(here);
+            *rests = [rests[0] && edge.is_pressed(), rests[1] && edge.sticks()];
+        }
+    }
+    let rest = |v: &mut [f64; 2], d: Vector2<f64>, gap: f64, [is_pressed, sticks]: [bool; 2]| {
+        let (at, e) = (Vector2::from(*v), turned(d));
+        let along = if is_pressed { at.dot(&d) - gap } else { 0.0 };
+        let across = if sticks { at.dot(&e) } else { 0.0 };
+        *v = (at - (d * along + e * across) / d.dot(&d)).into();
+    };
+    for (vertex, (d, gap, rests)) in at_vertices {
+        if matches!(parts.free_at(vertex), Free::All) {
+            rest(&mut v.vertices[vertex], d, gap, rests);
+        }
+    }
+    let Some(bulges) = &mut v.bulges else { return };
+    for edge in obstacles() {
+        let d = (edge.directions[0] + edge.directions[1]) / 2.0;
+        let number = parts.mesh.triangle_edges()[edge.edge.triangle][edge.edge.local];
+        rest(&mut bulges[number], d, edge.gap_bulge, [edge.is_pressed(), edge.sticks()]);
+    }
+}
+
 /// The number of times that two bodies are moved apart: what is moved at one contact moves its neighbours.
 const SWEEPS: usize = 16;
 
-/// Moves two bodies apart where they go through each other: for each Bernstein coefficient of v . d - g that is positive, with the
-/// least energy that some springs at the vertices and in the middles of both edges have, each as stiff as its body.
+/// The number of times that bodies which press each other are moved together before.
+const SWEEPS_TOGETHER: usize = 8;
+
+/// Moves two bodies apart where they go through each other, or `together` where they are open: for each Bernstein coefficient of v . d - g that
+/// is positive, or not zero, with the least energy that some springs at the vertices and in the middles of both edges have, each as stiff as its body.
 fn move_apart(
     parts: &ProblemParts,
     contact: &Contact,
     field: &mut Field,
     (size, further): (f64, f64),
+    together: bool,
 ) -> bool {
     let mesh = parts.mesh;
     let (d, [g, h]) = (contact.directions, contact.gap);
@@ -184,7 +228,7 @@ fn move_apart(
         let beyond = over[j] + margin;
         let give: f64 =
             unknowns.iter().map(|(_, _, effects, ease)| ease * effects[j] * effects[j]).sum();
-        if !(beyond > 0.0 && give > 0.0) {
+        if !((beyond > 0.0 || together) && give > 0.0) {
             continue;
         }
         // A little farther, so that rounding does not ask again.

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::certificate::{Certificate, Edge, Lift, Role, is_oblique, place};
+use super::certificate::{Certificate, Edge, Law, Lift, Role, is_oblique, place};
 use super::data::{Data, length_and_normal};
 use super::errors::CertifyError;
 use super::forces::Evidence;
@@ -391,7 +391,20 @@ impl Comparison<'_> {
                 same(("pressure", self.loads), &p, &pressure)?;
             }
             (Role::Facing, Role::Facing) => {}
-            (Role::Contact { gap: g, along: d, .. }, Role::Contact { gap, along, .. }) => {
+            (
+                Role::Contact { gap: g, along: d, law: found, .. },
+                Role::Contact { gap, along, law, .. },
+            ) => {
+                match (found, law) {
+                    (Law::Contact, Law::Contact) | (Law::Sliding, Law::Sliding) => {}
+                    (Law::Bonded { offset: h, .. }, Law::Bonded { offset, .. }) => {
+                        same(("jump along y", self.lengths), &h, &offset)?;
+                    }
+                    (Law::Friction { bound: s, .. }, Law::Friction { bound, .. }) => {
+                        same(("bound of friction", self.loads), &s, &bound)?;
+                    }
+                    _ => return Err(outside("edge", e, "has another law of contact in the case")),
+                }
                 same(("gap", self.lengths), &g, &gap)?;
                 let [d, along] =
                     [&d, &along].map(|d| d.as_ref().map_or(&[][..], |d| d.as_flattened()));

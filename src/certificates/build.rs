@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector2;
 
 use super::certificate::{
-    Certificate, Curved, Cut, Edge, Piece, Role, Shape, exactly, is_oblique, place,
+    Certificate, Curved, Cut, Edge, Law, Piece, Role, Shape, exactly, is_oblique, place,
 };
 use super::data::{Data, force_of};
 use super::divide::{Division, SubTriangle, cut, divided};
@@ -193,8 +193,16 @@ impl Built {
                 let (mut role, bulge) =
                     parts.role_on(whole, (range, [[0.0; 2]; 2]), curved.is_some());
                 let contact = parts.contact_at(line, (range[0] + range[1]) / 2.0);
-                if let (Role::Contact { pressure, .. }, Some((k, i))) = (&mut role, contact) {
-                    *pressure = parts.contact[k].pressure_between(i, range);
+                if let (Role::Contact { pressure, law, .. }, Some((k, i))) = (&mut role, contact) {
+                    let across;
+                    [*pressure, across] = parts.contact[k].tractions_between(i, range);
+                    match law {
+                        Law::Contact | Law::Sliding => {}
+                        Law::Bonded { shear, .. } => *shear = across,
+                        Law::Friction { shear, bound } => {
+                            *shear = [0, 1].map(|k| across[k].clamp(-bound[k], bound[k]));
+                        }
+                    }
                 }
                 edges[e].role = role;
                 if let Some(curved) = curved {

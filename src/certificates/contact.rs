@@ -15,8 +15,11 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
+use super::certificate::{self, turned};
 use super::field::Field;
 use super::parts::is_curved;
+use crate::contact::friction::Bound;
+use crate::contact::law::Law;
 use crate::contact::piece::Stretch;
 use crate::contact::{EdgeRule, Piece};
 use crate::kernel::edge_integral::positive_interval;
@@ -37,6 +40,10 @@ pub(super) struct Contact {
     pub gap: [f64; 2],
     /// Its value in the middle less their mean; 0 where it is known to be affine.
     pub gap_bulge: f64,
+    /// The law; of the bound of friction the values at both ends.
+    pub law: Law,
+    /// The jump across the direction of contact that glue has: at both ends, and its bulge.
+    pub offset: ([f64; 2], f64),
     /// Where the pressure is affine.
     pub parts: Vec<Part>,
 }
@@ -53,11 +60,12 @@ pub(super) struct Side {
     pub moved: bool,
 }
 
-/// A part of a contact, in units of it, with the pressure at its ends.
+/// A part of a contact, in units of it, with the tractions at its ends: along the direction of contact and across, to the left.
 #[derive(Clone, Copy)]
 pub(super) struct Part {
     pub ends: [f64; 2],
     pub pressure: [f64; 2],
+    pub shear: [f64; 2],
 }
 
 /// Places on an edge of a pair that are nearer to its ends or its middle are these: between nodes that face each other to rounding, or
@@ -111,9 +119,10 @@ impl Profile {
     /// On the part of a contact between these ends.
     fn parts(&self, [from, to]: [f64; 2]) -> Vec<Part> {
         let [first, second] = self.values;
-        let Some(at) = self.cut else { return vec![Part { ends: [from, to], pressure: first }] };
+        let part = |ends, pressure| Part { ends, pressure, shear: [0.0; 2] };
+        let Some(at) = self.cut else { return vec![part([from, to], first)] };
         let at = from + (to - from) * at;
-        vec![Part { ends: [from, at], pressure: first }, Part { ends: [at, to], pressure: second }]
+        vec![part([from, at], first), part([at, to], second)]
     }
 
     fn whole(pressure: [f64; 2]) -> Profile {
@@ -178,10 +187,30 @@ impl Profile {
     }
 }
 
+impl Part {
+    fn tractions(&self) -> [[f64; 2]; 2] {
+        [self.pressure, self.shear]
+    }
+
+    fn pushing(&self) -> [[f64; 2]; 2] {
+        [self.pressure, [0.0; 2]]
+    }
+}
+
+/// The tractions on a part of a contact between tied bodies: of `value`, which is quadratic along it, the affine function with its force
+/// and moment.
+fn tied([s, t]: [f64; 2], value: impl Fn(f64) -> Vector2<f64>) -> Part {
+    let [start, middle, end] = [s, (s + t) / 2.0, t].map(value);
+    let beyond = (middle - (start + end) / 2.0) * (2.0 / 3.0);
+    let [p, q] = [start + beyond, end + beyond];
+    Part { ends: [s, t], pressure: [p.x, q.x], shear: [p.y, q.y] }
+}
+
 impl Contact {
     /// `halved` tells whether each half of an edge has a pressure of its own.
     pub fn new(problem: &Problem, piece: &Piece, u: &[[f64; 2]], halved: bool) -> Contact {
-        let (geometry, degree, p) = (&piece.geometry, piece.degree, piece.p(u));
+        let (geometry, degree, both) = (&piece.geometry, piece.degree, piece.p(u));
+        let (p, across) = both.split_at(geometry.nodes.len());
         let mut directions = [0, 1].map(|a| geometry.nodes[a].direction);
         let sides: Vec<Side> =
             geometry.stretches.iter().map(|s| Side::new(&problem.mesh, s)).collect();
@@ -216,7 +245,7 @@ impl Contact {
         let between = |[from, to]: [f64; 2]| {
             let at = |s: f64| {
                 let shapes = degree.edge_values(from + s * (to - from));
-                shapes.iter().zip(&p).map(|(n, p)| n * p).sum::<f64>()
+                shapes.iter().zip(p).map(|(n, p)| n * p).sum::<f64>()
             };
             profile(&degree.edge_positions().into_iter().map(at).collect::<Vec<f64>>())
         };
@@ -227,7 +256,7 @@ impl Contact {
             breaks.dedup_by(|a, b| *a - *b <= SAME_PLACE);
         }
         let parts = breaks.windows(2).map(|ends| [ends[0], ends[1]]);
-        Contact {
+        let mut contact = Contact {
             edge: piece.edge(),
             boundary: Arc::clone(piece.boundary()),
             sides,
@@ -236,7 +265,137 @@ impl Contact {
             directions,
             gap,
             gap_bulge,
-            parts: parts.flat_map(|ends| between(ends).parts(ends)).collect(),
+            law: geometry.law,
+            offset: ([0.0; 2], 0.0),
+            parts: Vec::new(),
+        };
+        contact.parts = match geometry.law {
+            Law::Contact | Law::Friction(_) => {
+                parts.flat_map(|ends| between(ends).parts(ends)).collect()
+            }
+            Law::Sliding | Law::Bonded => {
+                let value = |s: f64| -> Vector2<f64> {
+                    let shapes = degree.edge_values(s);
+                    let at = |values: &[f64]| -> f64 {
+                        shapes.iter().zip(values).map(|(n, p)| n * p).sum()
+                    };
+                    let along = shapes.iter().zip(geometry.directions()).map(|(n, d)| d * *n).sum();
+                    let lambda = -at(p) / piece.gamma;
+                    if across.is_empty() {
+                        return Vector2::new(lambda, 0.0);
+                    }
+                    along * lambda - turned::<f64>(along) * (at(across) / piece.gamma)
+                };
+                parts.map(|ends| tied(ends, value)).collect()
+            }
+        };
+        if geometry.law == Law::Bonded {
+            contact.glue(piece);
+        }
+        if let Law::Friction(Bound::Tresca(_)) = geometry.law {
+            contact.drag(|s| {
+                let shapes = degree.edge_values(s);
+                -shapes.iter().zip(across).map(|(n, p)| n * p).sum::<f64>() / piece.gamma
+            });
+        }
+        contact
+    }
+
+    /// Turns into the frame of glue, x and y: its gap is a vector.
+    fn glue(&mut self, piece: &Piece) {
+        let nodes = &piece.geometry.nodes;
+        // What the smooth boundaries of one circle are apart is rounding, and so is what a direction is off an axis.
+        let gap = |a: usize| {
+            let least = ROUNDING * piece.length;
+            (nodes[a].direction * nodes[a].gap).map(|g| if g.abs() <= least { 0.0 } else { g })
+        };
+        let mean = (gap(0) + gap(1)) / 2.0;
+        let bulge = match nodes.get(2) {
+            Some(_) if gap(2) == mean => Vector2::zeros(),
+            Some(_) => gap(2) - mean,
+            None => nodes[0].direction * piece.geometry.bulge,
+        };
+        self.directions = [Vector2::x(); 2];
+        self.gap = [gap(0).x, gap(1).x];
+        self.offset = ([gap(0).y, gap(1).y], bulge.y);
+        self.gap_bulge = bulge.x;
+    }
+
+    /// Gives glue the jump at its start that the contact `before` it has at its end, where this is the same place: of two nodes that
+    /// nearly face each other, each has a jump of its own.
+    pub fn join(&mut self, mesh: &Mesh, before: &Contact) {
+        let place = |side: &Side, k: usize| {
+            let [a, b] = mesh.ends(side.edge).map(|vertex| Vector2::from(mesh.vertices()[vertex]));
+            a + (b - a) * side.places[k]
+        };
+        let (own, last) = (self.sides[0], before.sides[0]);
+        let apart = (place(&own, 0) - place(&last, 1)).amax();
+        if [self.law, before.law] == [Law::Bonded; 2] && apart <= SAME_PLACE * own.length {
+            self.gap[0] = before.gap[1];
+            self.offset.0[0] = before.offset.0[1];
+        }
+    }
+
+    /// Gives the parts the tractions of friction, those of `sticking` up to the bound.
+    fn drag(&mut self, sticking: impl Fn(f64) -> f64) {
+        let (turns, mut parts) = (self.turns(), std::mem::take(&mut self.parts));
+        for part in &mut parts {
+            let [s, t] = part.ends;
+            let bound = [s, t].map(|s| self.bound_at(s));
+            let at = |s: f64| sticking(s).clamp(-self.bound_at(s), self.bound_at(s));
+            let [start, middle, end] = [at(s), at((s + t) / 2.0), at(t)];
+            let beyond = (middle - (start + end) / 2.0) * (2.0 / 3.0);
+            part.shear = if turns {
+                [(start + end) / 2.0 + beyond; 2]
+                    .map(|q| q.clamp(-bound[0], bound[0]).clamp(-bound[1], bound[1]))
+            } else {
+                [(start, bound[0]), (end, bound[1])].map(|(q, s)| (q + beyond).clamp(-s, s))
+            };
+        }
+        self.parts = parts;
+    }
+
+    /// The bound of friction at place `s` of the contact.
+    fn bound_at(&self, s: f64) -> f64 {
+        match self.law {
+            Law::Friction(Bound::Tresca([p, q])) => ((1.0 - s) * p + s * q).max(0.0),
+            _ => 0.0,
+        }
+    }
+
+    /// It is pressed from end to end.
+    pub fn is_pressed(&self) -> bool {
+        self.parts.iter().all(|part| part.pressure.iter().all(|&p| p < 0.0))
+    }
+
+    /// Friction keeps it from sliding: the tractions across are nowhere at their bound.
+    pub fn sticks(&self) -> bool {
+        let below = |part: &Part| (0..2).all(|k| part.shear[k].abs() < self.bound_at(part.ends[k]));
+        self.has_friction() && self.parts.iter().all(below)
+    }
+
+    /// Tractions act across the direction of contact up to a bound.
+    pub fn has_friction(&self) -> bool {
+        matches!(self.law, Law::Friction(_))
+    }
+
+    /// Two bodies that may not open.
+    pub fn is_tied(&self) -> bool {
+        matches!(self.law, Law::Sliding | Law::Bonded)
+    }
+
+    /// The law on the part of the contact between two places of it, without tractions across; the bulge of the offset beside it.
+    pub fn law_between(&self, [s, t]: [f64; 2]) -> certificate::Law {
+        let ([p, q], bulge) = self.offset;
+        let offset = [s, t].map(|s| (1.0 - s) * p + s * q + 4.0 * s * (1.0 - s) * bulge);
+        let shear = [0.0; 2];
+        match self.law {
+            Law::Contact => certificate::Law::Contact,
+            Law::Sliding => certificate::Law::Sliding,
+            Law::Bonded => certificate::Law::Bonded { shear, offset },
+            Law::Friction(_) => {
+                certificate::Law::Friction { shear, bound: [s, t].map(|s| self.bound_at(s)) }
+            }
         }
     }
 
@@ -255,49 +414,56 @@ impl Contact {
         if side == 0 { 1.0 } else { -1.0 }
     }
 
-    /// The pressure at both ends of the part of an edge of side `i` between two places, per length of the edge of the first side.
-    pub fn pressure_between(&self, i: usize, places: [f64; 2]) -> [f64; 2] {
+    /// The tractions along the direction of contact and across at both ends of the part of an edge of side `i` between two places, per
+    /// length of the edge of the first side.
+    pub fn tractions_between(&self, i: usize, places: [f64; 2]) -> [[f64; 2]; 2] {
         let ends = places.map(|x| self.sides[i].within(x));
         let middle = (ends[0] + ends[1]) / 2.0;
         let inside = |part: &&Part| part.ends[0] < middle && middle < part.ends[1];
-        let Some(Part { ends: [from, to], pressure: [p, q] }) = self.parts.iter().find(inside)
+        let Some(Part { ends: [from, to], pressure, shear }) = self.parts.iter().find(inside)
         else {
-            return [0.0; 2];
+            return [[0.0; 2]; 2];
         };
         let [start, end] = self.sides[0].places;
         let ratio =
             if self.is_pair() { self.length / (self.sides[0].length * (end - start)) } else { 1.0 };
-        ends.map(|s| {
-            let s = (s - from) / (to - from);
-            // The ends of a part are known to rounding.
-            let p = if s.abs() <= SAME_PLACE {
-                *p
-            } else if (s - 1.0).abs() <= SAME_PLACE || p == q {
-                *q
-            } else {
-                p + s * (q - p)
-            };
-            p * ratio
+        [pressure, shear].map(|[p, q]| {
+            ends.map(|s| {
+                let s = (s - from) / (to - from);
+                // The ends of a part are known to rounding.
+                let p = if s.abs() <= SAME_PLACE {
+                    *p
+                } else if (s - 1.0).abs() <= SAME_PLACE || p == q {
+                    *q
+                } else {
+                    p + s * (q - p)
+                };
+                p * ratio
+            })
         })
     }
 
-    /// int p d phi, with the sign of the side, over the part of its edge between `from` and `to` for these functions phi of degree 2
+    /// int (p d + q e) phi, with the sign of the side, over the part of its edge between `from` and `to` for these functions phi of degree 2
     /// or less, of the place on the edge from 0 to 1: Simpson's rule is exact.
     fn moments<const N: usize>(
         &self,
         i: usize,
         [from, to]: [f64; 2],
         phi: impl Fn(f64) -> [f64; N],
+        tractions: fn(&Part) -> [[f64; 2]; 2],
     ) -> [Vector2<f64>; N] {
         let (mut moments, side) = ([Vector2::zeros(); N], &self.sides[i]);
         let [d, e] = self.directions;
-        for &Part { ends: [s, t], pressure } in &self.parts {
+        for part in &self.parts {
+            let ([s, t], [pressure, shear]) = (part.ends, tractions(part));
             let middle = side.place((s + t) / 2.0);
             if !(from < middle && middle < to) {
                 continue;
             }
-            let [q, r] =
-                [(s, pressure[0]), (t, pressure[1])].map(|(s, p)| (d * (1.0 - s) + e * s) * p);
+            let [q, r] = [(s, 0), (t, 1)].map(|(s, k)| {
+                let d = d * (1.0 - s) + e * s;
+                d * pressure[k] + turned(d) * shear[k]
+            });
             let weight = Contact::sign(i) * self.length * (t - s) / 6.0;
             for (x, q, times) in [(s, q, 1.0), ((s + t) / 2.0, (q + r) / 2.0, 4.0), (t, r, 1.0)] {
                 let phi = phi(side.place(x));
@@ -307,18 +473,22 @@ impl Contact {
         moments
     }
 
-    /// int p d phi for the hat functions of the ends of a side's edge, and for 4 s (1 - s).
+    /// int (p d + q e) phi for the hat functions of the ends of a side's edge, and for 4 s (1 - s).
     pub fn on_edge(&self, i: usize) -> [Vector2<f64>; 3] {
-        self.moments(i, [0.0, 1.0], |s| [1.0 - s, s, 4.0 * s * (1.0 - s)])
+        self.moments(i, [0.0, 1.0], |s| [1.0 - s, s, 4.0 * s * (1.0 - s)], Part::tractions)
     }
 
-    /// int p d phi over the part of a side's edge between two places for the hat functions of its ends.
+    /// int (p d + q e) phi over the part of a side's edge between two places for the hat functions of its ends.
     pub fn on_part(&self, i: usize, [from, to]: [f64; 2]) -> [Vector2<f64>; 2] {
-        self.moments(i, [from, to], |s| [(to - s) / (to - from), (s - from) / (to - from)])
+        let hats = |s: f64| [(to - s) / (to - from), (s - from) / (to - from)];
+        self.moments(i, [from, to], hats, Part::tractions)
     }
 
-    /// The force int p, which is not positive.
+    /// The force int p, which is not positive; none where two bodies are tied.
     pub fn force(&self) -> f64 {
+        if self.is_tied() {
+            return 0.0;
+        }
         let force = |part: &Part| {
             let ([s, t], [p, q]) = (part.ends, part.pressure);
             self.length * (t - s) * (p + q) / 2.0
@@ -326,10 +496,13 @@ impl Contact {
         self.parts.iter().map(force).sum()
     }
 
-    /// int p d . r over side `i` for a motion that is affine along its edge.
-    pub fn against(&self, i: usize, ends: [Vector2<f64>; 2]) -> f64 {
-        let [a, b, _] = self.on_edge(i);
-        a.dot(&ends[0]) + b.dot(&ends[1])
+    /// int p d . r and int (p d + q e) . r over side `i` for a motion that is affine along its edge.
+    pub fn against(&self, i: usize, ends: [Vector2<f64>; 2]) -> [f64; 2] {
+        let hats = |s: f64| [1.0 - s, s];
+        [Part::pushing, Part::tractions].map(|tractions| {
+            let [a, b] = self.moments(i, [0.0, 1.0], hats, tractions);
+            a.dot(&ends[0]) + b.dot(&ends[1])
+        })
     }
 
     /// Multiplies the pressure.

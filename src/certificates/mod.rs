@@ -7,6 +7,7 @@
 //! | `proof` | the checker, of the crate `signorini-audit`: it evaluates a certificate |
 //! | `parts`, `contact`, `field`, `data` | the problem and its discrete solution, as certificates see them |
 //! | `admissible` | v |
+//! | `tie` | v where two bodies do not open |
 //! | `pressed` | y, the displacement under the pressures of tau |
 //! | `tractions`, `quarters`, `divide`, `build` | tau: moments of tractions; the triangles in four; those that are cut; all together |
 //! | `sweeps` | a better tau |
@@ -35,6 +36,7 @@ mod pressed;
 pub mod quantities;
 mod quarters;
 mod sweeps;
+mod tie;
 mod tractions;
 
 pub use self::adapt::{AdaptError, Adapted, Target, adapt, adapt_to};
@@ -42,6 +44,7 @@ use nalgebra::Vector2;
 
 use self::build::Built;
 use self::certificate::Shape;
+use self::contact::Contact;
 pub use self::errors::CertifyError;
 use self::field::Field;
 use self::parts::ProblemParts;
@@ -54,7 +57,7 @@ pub use signorini_audit::{dual, forces, proof};
 
 use self::proof::{Piece, Role};
 pub use self::quantities::ProvedQuantities;
-use crate::contact::Pair;
+use crate::contact::friction::Bound;
 use crate::contact::law::Law;
 use crate::kernel::{Ball, Scalar, Triangle};
 use crate::memory;
@@ -183,20 +186,7 @@ fn certify_near(
             "the body is one of revolution, and certificates are about plane bodies".to_owned(),
         ));
     }
-    let is_glued = |pair: &&Pair| matches!(pair.law, Law::Sliding | Law::Bonded);
-    if let Some(pair) = problem.pairs.iter().find(is_glued) {
-        let [first, second] = pair.boundaries.each_ref().map(|name| quoted(name, '\''));
-        return Err(CertifyError::Unsupported(format!(
-            "{first} and {second} are a pair that may not open; certificates are for the law \"contact\""
-        )));
-    }
-    if let Some(piece) = solution.pieces.iter().find(|p| matches!(p.geometry.law, Law::Friction(_)))
-    {
-        return Err(CertifyError::Unsupported(format!(
-            "the boundary {} has friction; certificates are for contact without friction",
-            quoted(piece.boundary(), '\'')
-        )));
-    }
+    check_laws(solution)?;
     // Beside a quadratic v each is cut in four.
     let quadratic = solution.degree == Degree::Two && start.len() > problem.mesh.vertices().len();
     let quarters = if quadratic { 4 } else { 1 };
@@ -210,22 +200,27 @@ fn certify_near(
     let mesh = &problem.mesh;
     let [y, start, w] = [&y, start, field].map(|nodal| Field::new(mesh, nodal));
     let missed = parts.missed(&w?);
-    let (y, start) = (y?, start?);
+    let (y, mut start) = (y?, start?);
+    // Between tied bodies v has values of its own where nodes face edges, as only a quadratic one has.
+    if parts.contact.iter().any(Contact::is_tied) {
+        start.bulges.get_or_insert_with(|| vec![[0.0; 2]; mesh.edge_count()]);
+    }
     let mut further = vec![0.0; parts.contact.len()];
     let mut outside = || {
         let v = admissible::admissible(&parts, &start, &further);
-        let built = build::build(&parts, &y, &v);
+        let mut built = build::build(&parts, &y, &v);
+        tie::tie(&mut built.certificate)?;
         let found = built.penetrations(&parts);
         found.iter().for_each(|&(k, by)| further[k] += 2.0 * by);
-        (v, built, found.is_empty())
+        Ok::<_, CertifyError>((v, built, found.is_empty()))
     };
     // As far as balls ask for.
-    let (mut v, mut built, mut is_out) = outside();
+    let (mut v, mut built, mut is_out) = outside()?;
     for _ in 0..PUSHES {
         if is_out {
             break;
         }
-        (v, built, is_out) = outside();
+        (v, built, is_out) = outside()?;
     }
     let sweeps = match (asked.forces.is_empty(), problem.pairs.is_empty()) {
         (true, true) => SWEEPS,
@@ -242,7 +237,10 @@ fn certify_near(
         norm if norm > 0.0 => (Ball::point(bound) / Ball::point(norm)).upper(),
         _ => f64::INFINITY,
     };
-    let energy = oscillation.reason.is_none().then(|| {
+    // The energy of friction is not in J(v).
+    let has_energy =
+        oscillation.reason.is_none() && parts.contact.iter().all(|contact| !contact.has_friction());
+    let energy = has_energy.then(|| {
         let b = Ball::point(proof.bound);
         let below = Ball::point(proof.energy[0]) - b * b / Ball::from(2);
         [below.lower(), proof.energy[1]]
@@ -291,6 +289,25 @@ fn certify_near(
     })
 }
 
+/// Refuses the laws of contact that no certificate is about.
+fn check_laws(solution: &Solution) -> Result<(), CertifyError> {
+    for piece in &solution.pieces {
+        let has_slipped = piece.geometry.nodes.iter().any(|node| node.slip != 0.0);
+        let why = match piece.geometry.law {
+            Law::Friction(_) if has_slipped => "has slipped in a load step before",
+            Law::Contact | Law::Bonded | Law::Friction(Bound::Tresca(_)) => continue,
+            Law::Sliding if !piece.geometry.turns() => continue,
+            Law::Sliding => "may not open along a direction that turns",
+            Law::Friction(_) => {
+                "has friction that depends on the pressure; certificates are for a given bound, { tresca = ... }"
+            }
+        };
+        let name = quoted(piece.boundary(), '\'');
+        return Err(CertifyError::Unsupported(format!("the boundary {name} {why}")));
+    }
+    Ok(())
+}
+
 /// Returns whether u_D = 0 and g = 0, so that with u all its multiples t u, t >= 0, are admissible: then a(u, u) = L(u) and
 /// J(u) = -L(u) / 2.
 fn is_loaded_only(certificate: &Certificate) -> bool {
@@ -301,7 +318,7 @@ fn is_loaded_only(certificate: &Certificate) -> bool {
     data.into_iter().all(|&bulge| is_zero(bulge))
         && prescribed.flatten().flatten().all(|&u| u == 0.0)
         && certificate.edges.iter().all(|edge| match edge.role {
-            Role::Contact { gap, .. } => is_zero(gap),
+            Role::Contact { gap, law, .. } => is_zero(gap) && is_zero(law.offset()),
             _ => true,
         })
 }

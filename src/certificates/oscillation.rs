@@ -78,7 +78,14 @@ impl Oscillation {
                 moved.join(", ")
             )
         });
-        let reasons = measured.into_iter().chain(named).chain(moved).chain(cancelled);
+        let rough: Vec<String> = parts.rough().into_iter().map(|name| quoted(name, '\'')).collect();
+        let rough = (!rough.is_empty()).then(|| {
+            format!(
+                "the problem that is bounded has on {} a bound of friction that is affine between nodes",
+                rough.join(", ")
+            )
+        });
+        let reasons = measured.into_iter().chain(named).chain(moved).chain(rough).chain(cancelled);
         let reasons: Vec<String> = reasons.collect();
         let reason = (!reasons.is_empty()).then(|| reasons.join("; "));
         Oscillation { reason, lifts: BTreeMap::new() }

@@ -9,7 +9,7 @@ use super::contact::{Contact, SAME_PLACE};
 use super::data::{Traction, bulge_of, is_within};
 use super::errors::CertifyError;
 use super::field::Field;
-use crate::contact::{Pair, Piece};
+use crate::contact::{Friction, Pair, Piece};
 use crate::kernel::Material;
 use crate::model::boundary_normals::SmoothBoundary;
 use crate::model::constraints::Constraints;
@@ -68,11 +68,15 @@ impl<'a> ProblemParts<'a> {
     ) -> Result<Self, CertifyError> {
         let space = Space::new(&problem.mesh, degree);
         let constraints = Constraints::new(problem, &space)?;
-        let contact: Vec<Contact> = pieces
+        let mut contact: Vec<Contact> = pieces
             .iter()
             .map(|piece| Contact::new(problem, piece, displacement, halved))
             .filter(Contact::has_length)
             .collect();
+        for k in 1..contact.len() {
+            let (before, after) = contact.split_at_mut(k);
+            after[0].join(&problem.mesh, &before[k - 1]);
+        }
         let unsupported = |why: String| Err(CertifyError::Unsupported(why));
         if let Some(point) = problem.points.first() {
             return unsupported(format!(
@@ -231,8 +235,9 @@ impl<'a> ProblemParts<'a> {
                     let [x, y] = [0, 1].map(|c| between([d[c], e[c]], 0.0));
                     [0, 1].map(|k| [x[k], y[k]])
                 });
-                let role = Role::Contact { pressure: [0.0; 2], gap, along };
-                (role, [(t - s) * (t - s) * edge.gap_bulge, 0.0])
+                let law = edge.law_between([s, t]);
+                let role = Role::Contact { pressure: [0.0; 2], gap, along, law };
+                (role, [edge.gap_bulge, edge.offset.1].map(|b| b * (t - s) * (t - s)))
             }
         }
     }
@@ -371,6 +376,14 @@ impl<'a> ProblemParts<'a> {
     pub fn moved(&self) -> BTreeSet<&str> {
         let moved = self.contact.iter().filter(|c| c.sides.iter().any(|side| side.moved));
         moved.map(|contact| &*contact.boundary).collect()
+    }
+
+    /// The boundaries whose bound of friction is not known to be affine.
+    pub fn rough(&self) -> BTreeSet<&str> {
+        let of_pair = |pair: &'a Pair| Some((&pair.boundaries[0], pair.friction.as_ref()?));
+        let all = self.problem.friction.iter().chain(self.problem.pairs.iter().filter_map(of_pair));
+        let is_rough = |friction: &Friction| matches!(friction, Friction::Tresca(bound) if !is_within(bound, 1));
+        all.filter(|(_, friction)| is_rough(friction)).map(|(name, _)| name.as_str()).collect()
     }
 
     /// The contact boundaries of which direction and gap are known at the nodes only: those that turn, and those whose obstacle is

@@ -146,26 +146,26 @@ fn add_on_edge(
 /// Multiplies the pressures so that their work on the motions makes up for what the loads do.
 fn balance(parts: &mut ProblemParts, (bodies, motions): (&Parts, &[FreeMotion]), driven: &[f64]) {
     let mesh = parts.mesh;
-    // The force of each edge, and its mean work on each motion.
-    let against = |edge: &Contact| -> (f64, Vec<f64>) {
+    // The force of each edge, and its mean work on each motion; what is not scaled with it comes off what is missing.
+    let mut missing = driven.to_vec();
+    let mut against = |edge: &Contact| -> (f64, Vec<f64>) {
         let force = -edge.force();
-        let mean = |motion: &FreeMotion| {
+        let mean = |(motion, missing): (&FreeMotion, &mut f64)| {
             let on_side = |(i, side): (usize, &Side)| {
-                if bodies.of_triangle()[side.edge.triangle] != motion.part || !(force > 0.0) {
-                    return 0.0;
+                if bodies.of_triangle()[side.edge.triangle] != motion.part {
+                    return [0.0; 2];
                 }
                 let ends = mesh.ends(side.edge).map(|vertex| mesh.vertices()[vertex]);
-                -edge.against(i, ends.map(|x| motion.at(x).into())) / force
+                edge.against(i, ends.map(|x| motion.at(x).into()))
             };
-            edge.sides.iter().enumerate().map(on_side).sum()
+            let both = edge.sides.iter().enumerate().map(on_side);
+            let [push, all] = both.fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
+            *missing += all;
+            if force > 0.0 { -push / force } else { 0.0 }
         };
-        (force, motions.iter().map(mean).collect())
+        (force, motions.iter().zip(&mut missing).map(mean).collect())
     };
-    let edges: Vec<(f64, Vec<f64>)> = parts.contact.iter().map(against).collect();
-    let mut missing = driven.to_vec();
-    for (force, means) in &edges {
-        missing.iter_mut().zip(means).for_each(|(missing, mean)| *missing -= force * mean);
-    }
+    let edges: Vec<(f64, Vec<f64>)> = parts.contact.iter().map(&mut against).collect();
     // sum force (c . mean) mean = missing
     let rows: Vec<Vec<f64>> = (edges.iter())
         .map(|(force, means)| means.iter().map(|mean| force.sqrt() * mean).collect())

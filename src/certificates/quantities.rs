@@ -21,7 +21,7 @@ use super::Asked;
 use super::balanced::Balanced;
 use super::build::{Built, Line, Station};
 use super::certificate::{Certificate, Role};
-use super::contact::Part;
+use super::contact::Contact;
 use super::dual::ByPair;
 use super::field::Field;
 use super::forces::{Cover, Evidence, ForceTarget, Forces, Mean, Motion, Ramp, WrongLifting};
@@ -31,6 +31,7 @@ use super::proof::Proof;
 use crate::kernel::{Ball, Enclosing};
 use crate::linear::dense::least_squares;
 use crate::model::Degree;
+use crate::quote::quoted;
 use crate::results::Solution;
 
 /// The quantities that a certificate proves beside the bound.
@@ -164,6 +165,10 @@ pub(super) fn zones<S: Enclosing>(
     for (boundary, name) in line.names.iter().enumerate() {
         let stations: Vec<Station> =
             line.stations.iter().copied().filter(|s| line.of[s.edge] == Some(boundary)).collect();
+        let is_tied = |s: &Station| matches!(certificate.edges[s.edge].role, Role::Contact { law, .. } if law.is_tied());
+        if stations.iter().any(is_tied) {
+            continue;
+        }
         let pressure = |s: &Station| match certificate.edges[s.edge].role {
             Role::Contact { pressure, .. } => pressure.map(|p| -p),
             _ => [0.0; 2],
@@ -354,9 +359,7 @@ fn open(parts: &ProblemParts, v: &Field, mean: Mean) -> Vec<bool> {
 /// The edges of Gamma_C that are not pressed from end to end, but for so many next to those that are; where `beyond` is
 /// negative, so many of these, too.
 fn off_contact(parts: &ProblemParts, beyond: i32) -> Vec<bool> {
-    let is_full = |part: &Part| part.pressure.iter().all(|&p| p < 0.0);
-    let mut open: Vec<bool> =
-        parts.contact.iter().map(|edge| !edge.parts.iter().all(is_full)).collect();
+    let mut open: Vec<bool> = parts.contact.iter().map(|edge| !edge.is_pressed()).collect();
     let ends: Vec<[usize; 2]> =
         parts.contact.iter().map(|edge| parts.mesh.ends(edge.edge)).collect();
     let grows = beyond < 0;
@@ -525,6 +528,14 @@ fn list(
             asked.extend([0, 1].map(|c| (Name::Reaction(c), boundary, None)));
             asked.push((Name::ReactionMoment, boundary, None));
         }
+    }
+    let is_other = |contact: &&Contact| contact.is_tied() || contact.has_friction();
+    if let Some(other) = parts.contact.iter().find(is_other) {
+        let of = quoted(&other.boundary, '\'');
+        let why = if other.is_tied() { "does not open" } else { "has friction" };
+        let error = format!("{of} {why}; forces are proved for contact without friction alone");
+        let why = |(name, boundary, weight)| (name, boundary, weight, Err(error.clone()));
+        return (asked.into_iter().map(why).collect(), Evidence::default(), Vec::new());
     }
     let lifter = match Lifter::new(parts, degree, names, open) {
         Ok(lifter) => lifter,

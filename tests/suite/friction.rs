@@ -264,10 +264,16 @@ fn what_is_no_friction_is_refused_with_its_place() {
 
 #[test]
 fn a_certificate_is_refused_with_the_reason() {
-    let problem = rough(block_on_floor(4, Diagonal::Right), 0.01);
+    let floor = block_on_floor(4, Diagonal::Right);
+    let problem = floor.clone().with_friction("bottom", Friction::Coulomb(0.2));
     let solution = solved(&problem, Degree::One);
     let error = certify(&problem, &solution).unwrap_err().to_string();
-    assert!(error.contains("the boundary 'bottom' has friction"), "{error}");
+    assert!(error.contains("friction that depends on the pressure"), "{error}");
+    // The second of two load steps.
+    let mut problem = rough(floor, 0.001);
+    problem.slip = solved(&problem, Degree::One).slip();
+    let error = certify(&problem, &solved(&problem, Degree::One)).unwrap_err().to_string();
+    assert!(error.contains("has slipped in a load step before"), "{error}");
 }
 
 #[test]
@@ -281,7 +287,7 @@ fn friction_across_a_gap_is_reported() {
 }
 
 /// A body of one of the families with friction on all of its contact boundaries: a share of the mean pressure that it has without.
-fn with_random_friction(seed: u64) -> bodies::Body {
+pub fn with_random_friction(seed: u64) -> bodies::Body {
     let mut body = bodies::of_all_families(seed);
     let mut dice = Random(seed + 7_000_000);
     let share = dice.decades(-1.5, 0.7);

@@ -23,6 +23,7 @@ mod enclosure;
 mod exact;
 mod figure;
 mod friction;
+mod friction_certified;
 mod fuzz;
 mod gmsh_live;
 mod held;

@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 
 use proptest::prelude::*;
-use signorini::certificates::proof::{Certificate, Curved, Edge, Piece, Role};
+use signorini::certificates::proof::{Certificate, Curved, Edge, Law, Piece, Role};
 use signorini::kernel::{Ball, Enclosing, Material, Plane, PreciseBall};
 
 use props::bodies::whole;
@@ -122,7 +122,7 @@ impl Draw {
             });
             if p[1] == 0.0 && q[1] == 0.0 {
                 let gap = [gap_at(p[0]), gap_at(q[0])];
-                Role::Contact { pressure: at.map(|t| t[1]), gap, along: None }
+                Role::Contact { pressure: at.map(|t| t[1]), gap, along: None, law: Law::Contact }
             } else if ends.iter().all(|&k| k >= top) {
                 Role::Held([true; 2], force)
             } else if p[0] == 0.0 && q[0] == 0.0 {

@@ -5,7 +5,7 @@ use signorini::certificates::Rejection::{
     Length, NotPrescribed, NotPrescribedAlong, NotPrescribedAlongBetween, NotPrescribedBetween,
     Orientation, OutOfBalance, Penetration, Tension, Unbalanced, Wrong,
 };
-use signorini::certificates::proof::{Certificate, Claim as Said, Edge, Role};
+use signorini::certificates::proof::{Certificate, Claim as Said, Edge, Law, Role};
 use signorini::kernel::{Ball, Material, Plane, PreciseBall};
 
 use crate::by_hand::{Draw, supported};
@@ -36,7 +36,12 @@ fn of_contact(c: &mut Certificate, change: impl Fn(&mut [f64; 2], &mut [f64; 2])
 /// Makes the direction of contact turn along the first edge of Gamma_C, under a pressure and over a gap.
 fn turn_contact(c: &mut Certificate, pressure: [f64; 2], gap: f64, end: [f64; 2]) {
     if let Some(edge) = c.edges.iter_mut().find(|edge| IS_CONTACT(&edge.role)) {
-        edge.role = Role::Contact { pressure, gap: [gap; 2], along: Some([[0.0, -1.0], end]) };
+        edge.role = Role::Contact {
+            pressure,
+            gap: [gap; 2],
+            along: Some([[0.0, -1.0], end]),
+            law: Law::Contact,
+        };
     }
 }
 

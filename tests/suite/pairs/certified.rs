@@ -2,11 +2,12 @@
 //! between its numbers; and what is tampered with is refused.
 
 use signorini::certificates::binding::compare;
-use signorini::certificates::proof::Role;
+use signorini::certificates::proof::{Law as EdgeLaw, Role};
 use signorini::certificates::quantities::Name;
 use signorini::certificates::{
     Asked, Certificate, Continuous, Rejection, Target, adapt, adapt_to, certify,
 };
+use signorini::contact::Friction;
 use signorini::contact::residual::add_internal_forces;
 use signorini::io::certificate;
 use signorini::kernel::Ball;
@@ -100,12 +101,17 @@ fn certified(problem: &Problem, degree: Degree) -> Continuous {
 }
 
 /// The bounds, over the energy norms of the distance to a solution of degree 2 on a mesh with `finest` cells, and the relative bounds.
-fn effectivities(all: &[Two], finest: [usize; 2], degree: Degree) -> Vec<[f64; 2]> {
-    let fine = Two { cells: finest, ..all[0] }.problem();
+fn effectivities(
+    all: &[Two],
+    finest: [usize; 2],
+    degree: Degree,
+    with: &dyn Fn(Problem) -> Problem,
+) -> Vec<[f64; 2]> {
+    let fine = with(Two { cells: finest, ..all[0] }.problem());
     let exact = proved(&fine, &method(Degree::Two)).displacement;
     let space = Space::new(&fine.mesh, Degree::Two);
     let of = |two: &Two| {
-        let c = certified(&two.problem(), degree);
+        let c = certified(&with(two.problem()), degree);
         assert!(c.rigorous, "{:?}", c.reason);
         let by = [0, 1].map(|k| finest[k] / two.cells[k]);
         let v = two.on_finer(&c.displacement, by, &space);
@@ -133,17 +139,17 @@ fn near(found: &[[f64; 2]], limit: f64, rate: f64) {
 fn the_bound_is_above_the_error_by_less_than_half_and_falls_with_the_mesh() {
     for moduli in [[1.0, 1.0], [1.0, 10.0]] {
         let all = [[11, 7], [22, 14], [44, 28]].map(|cells| squares(cells, moduli));
-        near(&effectivities(&all, [88, 56], Degree::One), 1.5, 1.7);
+        near(&effectivities(&all, [88, 56], Degree::One, &|p| p), 1.5, 1.7);
     }
     let all = [[5, 8], [10, 16], [20, 32]].map(narrow);
-    near(&effectivities(&all, [40, 64], Degree::One), 1.7, 1.4);
+    near(&effectivities(&all, [40, 64], Degree::One, &|p| p), 1.7, 1.4);
 }
 
 #[test]
 fn the_bound_of_p2_is_above_the_error_by_less_than_two_and_a_half_times_and_falls_with_the_mesh() {
     for moduli in [[1.0, 1.0], [1.0, 10.0]] {
         let all = [[6, 4], [12, 8], [24, 16]].map(|cells| squares(cells, moduli));
-        near(&effectivities(&all, [96, 64], Degree::Two), 2.5, 1.4);
+        near(&effectivities(&all, [96, 64], Degree::Two, &|p| p), 2.5, 1.4);
     }
 }
 
@@ -428,13 +434,220 @@ fn round_bodies_are_not_adapted_because_their_middles_would_lie_on_chords() {
     }
 }
 
+/// The upper body is dragged on the lower one; the bound is affine.
+fn rough(problem: Problem) -> Problem {
+    let mut problem = problem;
+    problem.pairs[0].friction = Some(Friction::Tresca(expression("0.005 + 0.014*x")));
+    let top = ["0.03", "-0.1 + 0.02*x"].map(|u| Some(expression(u)));
+    problem.with("upper.top", Condition::Displacement(top))
+}
+
 #[test]
-fn pairs_that_may_not_open_have_no_certificate_and_a_reason() {
-    for law in [Law::Sliding, Law::Bonded] {
-        let mut problem = squares([3, 4], [1.0, 1.0]).problem();
+fn the_bound_of_bodies_that_stick_and_slide_is_above_the_error_and_falls_with_the_mesh() {
+    let s = proved(&rough(squares([22, 14], [1.0, 1.0]).problem()), &method(Degree::One));
+    let of = s.boundaries[0].friction.unwrap();
+    assert!(of.sticks > 0.1 && of.slides > 0.1, "{of:?}");
+    let all = [[11, 7], [22, 14], [44, 28]].map(|cells| squares(cells, [1.0, 1.0]));
+    near(&effectivities(&all, [88, 56], Degree::One, &rough), 1.5, 1.6);
+    let all = [[6, 4], [12, 8], [24, 16]].map(|cells| squares(cells, [1.0, 1.0]));
+    near(&effectivities(&all, [96, 64], Degree::Two, &rough), 2.5, 1.3);
+}
+
+const TIED: [Law; 2] = [Law::Sliding, Law::Bonded];
+
+/// J(u) lies between these.
+fn energy(c: &Continuous) -> [f64; 2] {
+    c.energy.unwrap()
+}
+
+/// Two squares that may not open: pulled up, tilted and dragged.
+fn tied(cells: [usize; 2], moduli: [f64; 2], law: Law) -> Problem {
+    let mut problem = squares(cells, moduli).problem();
+    problem.pairs[0].law = law;
+    let top = ["0.05", "0.1 - 0.15*x"].map(|u| Some(expression(u)));
+    problem.with("upper.top", Condition::Displacement(top))
+}
+
+#[test]
+fn the_bound_of_tied_bodies_is_above_the_error_and_falls_with_the_mesh() {
+    for (law, moduli) in TIED.into_iter().flat_map(|law| [(law, [1.0, 1.0]), (law, [1.0, 10.0])]) {
+        // The true energy, from below and from above, to a hundredth of the smallest error.
+        let fine = energy(&certified(&tied([66, 42], moduli, law), Degree::Two));
+        for (degree, limit, rate, meshes) in [
+            (Degree::One, 1.5, 1.6, [[11, 7], [22, 14], [44, 28]]),
+            (Degree::Two, 2.5, 1.4, [[6, 4], [12, 8], [24, 16]]),
+        ] {
+            let of = |cells: [usize; 2]| {
+                let c = certified(&tied(cells, moduli, law), degree);
+                assert!(c.rigorous, "{:?}", c.reason);
+                // J(v) - J(u) is half the square of the error of what satisfies the conditions of u.
+                let error = |k: usize| (2.0 * (energy(&c)[1] - fine[k])).sqrt();
+                println!(
+                    "{law:?} {moduli:?} {degree:?} {cells:?}: {} {} {}",
+                    c.relative,
+                    c.bound / error(0),
+                    c.bound / error(1)
+                );
+                [c.bound / error(1), c.relative, c.bound / error(0)]
+            };
+            let found = meshes.map(of);
+            let both: Vec<[f64; 2]> = found.iter().map(|&[e, relative, _]| [e, relative]).collect();
+            near(&both, limit, rate);
+            assert!(found.iter().all(|[_, _, least]| *least >= 1.0), "{found:?}");
+        }
+    }
+}
+
+#[test]
+fn tied_bodies_that_the_space_has_are_proved_to_rounding() {
+    for (law, degree) in TIED.into_iter().flat_map(|law| DEGREES.map(|degree| (law, degree))) {
+        let mut problem = squares([7, 11], [1.0, 3.0]).problem();
         problem.pairs[0].law = law;
-        let solution = proved(&problem, &method(Degree::One));
-        let error = certify(&problem, &solution).unwrap_err().to_string();
-        assert!(error.contains("may not open"), "{error}");
+        // Pulled apart, all walls held along their normals.
+        let slides = |value: &str| {
+            let displacement = [None, Some(expression(value))];
+            Condition::Mixed { displacement, traction: ["0", "0"].map(expression) }
+        };
+        let wall = || Condition::Mixed {
+            displacement: [Some(expression("0")), None],
+            traction: ["0", "0"].map(expression),
+        };
+        let mut problem =
+            problem.with("upper.top", slides("0.1")).with("lower.bottom", slides("0"));
+        for name in ["upper.left", "upper.right", "lower.left", "lower.right"] {
+            problem = problem.with(name, wall());
+        }
+        let c = certified(&problem, degree);
+        // Newton's method leaves 1e-10 of the forces.
+        assert!(c.rigorous && c.relative <= 1e-8, "{law:?} {degree:?}: {}", c.relative);
+    }
+}
+
+#[test]
+fn a_certificate_of_tied_bodies_that_is_tampered_with_is_refused() {
+    for (law, degree) in TIED.into_iter().flat_map(|law| DEGREES.map(|degree| (law, degree))) {
+        let problem = tied([4, 6], [1.0, 2.0], law);
+        let c = certified(&problem, degree);
+        let (header, bytes) = encoded(&c);
+        let audit = signorini::certificates::format::audit(header, &bytes).unwrap();
+        assert_eq!(audit.certificate, c.certificate);
+        assert_eq!(compare(problem.clone(), &c.certificate, &c.quantities.evidence), Ok(None));
+        let changed = |change: &dyn Fn(&mut Certificate)| {
+            let mut certificate = c.certificate.clone();
+            change(&mut certificate);
+            certificate
+        };
+        let tied = |e: &usize| matches!(c.certificate.edges[*e].role, Role::Contact { .. });
+        let e = (0..c.certificate.edges.len()).find(tied).unwrap();
+        let other = c.certificate.facing[&e];
+        // As contact it is under tension, or goes through.
+        let as_contact = changed(&|certificate| {
+            for edge in &mut certificate.edges {
+                if let Role::Contact { law, .. } = &mut edge.role {
+                    *law = EdgeLaw::Contact;
+                }
+            }
+        });
+        let refused = as_contact.evaluate::<Ball>();
+        assert!(
+            matches!(refused, Err(Rejection::Tension { .. } | Rejection::Penetration { .. })),
+            "{refused:?}"
+        );
+        let difference = compare(problem.clone(), &as_contact, &c.quantities.evidence).unwrap_err();
+        assert!(difference.to_string().contains("another law of contact"), "{difference}");
+        // A point with two places on the other body, and one that is held elsewhere.
+        let gap = changed(&|certificate| {
+            if let Role::Contact { gap, .. } = &mut certificate.edges[e].role {
+                *gap = gap.map(|g| g + 1e-9);
+            }
+        });
+        assert!(matches!(gap.evaluate::<Ball>(), Err(Rejection::Wrong { .. })));
+        let difference = compare(problem, &gap, &c.quantities.evidence).unwrap_err();
+        assert!(difference.to_string().contains("the gap"), "{difference}");
+        // v on the first body is what it is on the second one, whatever the file says.
+        let moved = changed(&|certificate| {
+            let p = certificate.edges[e].ends[0];
+            let vertices = certificate.vertices.len();
+            let c = if law == Law::Sliding { 1 } else { 0 };
+            match (p.checked_sub(vertices), &mut certificate.curved) {
+                (Some(cut), Some(curved)) => curved.at_cuts[cut][c] += 1.0,
+                _ => certificate.displacement[p][c] += 1.0,
+            }
+        });
+        assert_eq!(moved.evaluate::<Ball>().unwrap().bound.to_bits(), c.proof.bound.to_bits());
+        let there = changed(&|certificate| {
+            let p = certificate.edges[other].ends[0];
+            let vertices = certificate.vertices.len();
+            match (p.checked_sub(vertices), &mut certificate.curved) {
+                (Some(cut), Some(curved)) => curved.at_cuts[cut][1] += 0.01,
+                _ => certificate.displacement[p][1] += 0.01,
+            }
+        });
+        assert!(there.evaluate::<Ball>().unwrap().bound > c.proof.bound);
+        // A traction of the wrong sign is not in balance.
+        let sign = changed(&|certificate| {
+            if let Role::Contact { pressure, .. } = &mut certificate.edges[e].role {
+                *pressure = pressure.map(|p| -p);
+            }
+        });
+        let claim = signorini::certificates::proof::Claim {
+            shares: c.proof.shares.clone(),
+            bound: c.bound,
+            forces: Default::default(),
+        };
+        assert!(matches!(sign.audit(&claim), Err(Rejection::OutOfBalance { .. })));
+    }
+}
+
+#[test]
+fn a_tied_point_is_where_it_is_prescribed() {
+    for degree in DEGREES {
+        // The walls of the upper body are held, those of the lower one are free.
+        let wall = || Condition::displacement(|_| 0.0, |[_, y]| 0.05 * y);
+        let problem = tied([4, 6], [1.0, 2.0], Law::Bonded)
+            .with("upper.left", wall())
+            .with("upper.right", wall())
+            .with("upper.top", Condition::displacement(|_| 0.0, |_| 0.05));
+        let c = certified(&problem, degree);
+        assert!(c.certificate.evaluate::<Ball>().is_ok());
+        let is_held = |[p, _]: &[usize; 2]| c.certificate.at_own(*p).unwrap().1[0].is_some();
+        let pairs = c.certificate.edges.iter().enumerate().flat_map(|(e, edge)| {
+            let is_first = matches!(edge.role, Role::Contact { .. });
+            let other = c.certificate.facing.get(&e).filter(|_| is_first);
+            other.into_iter().flat_map(|&other| {
+                let [a, b] = c.certificate.edges[other].ends;
+                [[edge.ends[0], b], [edge.ends[1], a]]
+            })
+        });
+        let [_, second] = pairs.into_iter().find(is_held).unwrap();
+        let mut moved = c.certificate.clone();
+        moved.displacement[second][0] -= 1e-12;
+        let refused = moved.evaluate::<Ball>();
+        assert!(matches!(refused, Err(Rejection::Wrong { what: "point", .. })), "{refused:?}");
+    }
+}
+
+#[test]
+fn a_pair_that_slides_along_a_round_boundary_without_opening_has_no_certificate_and_a_reason() {
+    let mut problem = case("press_fit.toml", &[]).problem;
+    problem.pairs[0].law = Law::Sliding;
+    let solution = proved(&problem, &method(Degree::One));
+    let error = certify(&problem, &solution).unwrap_err().to_string();
+    assert!(error.contains("may not open along a direction that turns"), "{error}");
+}
+
+#[test]
+fn round_bodies_that_are_glued_are_certified_with_the_jump_that_they_have() {
+    for (degree, most) in DEGREES.into_iter().zip([0.2, 0.1]) {
+        let mut problem = case("press_fit.toml", &[]).problem;
+        problem.pairs[0].law = Law::Bonded;
+        let solution = proved(&problem, &method(degree));
+        let c = certify(&problem, &solution).unwrap();
+        println!("{degree:?}: {}", c.relative);
+        assert!(c.relative <= most, "{degree:?}: {}", c.relative);
+        let (header, bytes) = encoded(&c);
+        let audit = signorini::certificates::format::audit(header, &bytes).unwrap();
+        let reason = compare(problem, &audit.certificate, &audit.forces).unwrap();
+        assert_eq!(reason, c.reason);
     }
 }

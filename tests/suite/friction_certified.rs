@@ -1,0 +1,204 @@
+//! Certificates of Tresca's problem: the bound is above the error and near it, bodies at random are certified and audited, and what is
+//! tampered with is refused.
+
+use signorini::certificates::binding::compare;
+use signorini::certificates::proof::{Claim, Law, Role};
+use signorini::certificates::{Certificate, Continuous, Rejection, certify, format};
+use signorini::contact::Friction;
+use signorini::kernel::Ball;
+use signorini::model::{Condition, Degree, Problem};
+use signorini::results::Solution;
+use signorini::solve::{Settings, solve};
+
+use crate::bodies::number_from;
+use crate::common::exact::{slip_tip, stick_slip, with_friction};
+use crate::common::*;
+use crate::friction::with_random_friction;
+
+fn solved(problem: &Problem, degree: Degree) -> Solution {
+    let (solution, _) = solve(problem, &method(degree, EXACT), &Settings::default()).unwrap();
+    assert_eq!(solution.verdict.name(), "proved");
+    solution
+}
+
+#[test]
+fn the_bound_is_above_the_error_of_exact_solutions_and_falls_with_the_mesh() {
+    for (exact, degree, first, limit, rate) in [
+        (slip_tip(), Degree::One, 8, 1.5, 1.7),
+        (slip_tip(), Degree::Two, 4, 2.5, 2.2),
+        (stick_slip(), Degree::One, 16, 1.5, 1.7),
+        (stick_slip(), Degree::Two, 8, 2.5, 2.5),
+    ] {
+        let ladder = with_friction(&exact, degree, first);
+        let mut last = f64::INFINITY;
+        for level in 0..3 {
+            let (_, problem, s) = ladder.solve(level).unwrap();
+            let c = certify(&problem, &s).unwrap();
+            let error = error_of(&problem, &exact, &c.displacement);
+            let found = c.bound / error;
+            println!("{degree:?} {level}: {found} {}", c.relative);
+            assert!((1.0..=limit).contains(&found), "{found}");
+            assert!(c.bound * rate <= last, "{} {last}", c.bound);
+            last = c.bound;
+        }
+    }
+}
+
+/// A block of n x n cells on a rough floor, moved by its top; all data are affine.
+fn block(n: usize, [turn, drag, bound]: [f64; 3]) -> Problem {
+    let top = [format!("{drag} + {turn}*x/2"), format!("-0.05 - {turn}*x")];
+    let top = [0, 1].map(|c| Some(expression(&top[c])));
+    let bound = expression(&format!("{bound}*(1 + x)"));
+    let problem = Problem::of(unit_square(n).mesh().unwrap(), unit_material());
+    Problem { body_force: [expression("0"), expression("0")], ..problem }
+        .with("top", Condition::Displacement(top))
+        .with("bottom", Condition::Contact { gap: expression("0") })
+        .with_friction("bottom", Friction::Tresca(bound))
+}
+
+/// J(v) with the energy of friction, int s |v_t|, at least and at most: by the values of the edges' ends, of v itself where it is affine.
+fn energy(c: &Continuous) -> [f64; 2] {
+    let (v, points) = (c.certificate.shape::<Ball>(), c.certificate.places::<Ball>());
+    let mut work = [0.0; 2];
+    for (e, edge) in c.certificate.edges.iter().enumerate() {
+        let Role::Contact { law: Law::Friction { bound, .. }, .. } = edge.role else { continue };
+        let [x, y] = edge.ends.map(|p| points[p].x.centre());
+        let [a, b] = edge.ends.map(|p| v.points[p].x.centre());
+        let bulge = v.bulges.as_ref().map_or(0.0, |bulges| bulges[e].x.centre());
+        let count = 1000;
+        let rule = (0..count).map(|i| {
+            let s = (f64::from(i) + 0.5) / f64::from(count);
+            let slip = (1.0 - s) * a + s * b + 4.0 * s * (1.0 - s) * bulge;
+            ((1.0 - s) * bound[0] + s * bound[1]) * slip.abs()
+        });
+        let mean = rule.sum::<f64>() / f64::from(count);
+        // The midpoint rule is off by less than this part.
+        work[0] += (y - x).abs() * mean * (1.0 - 1e-5);
+        work[1] += (y - x).abs() * mean * (1.0 + 1e-5);
+    }
+    [c.proof.energy[0] + work[0], c.proof.energy[1] + work[1]]
+}
+
+#[test]
+fn no_certificate_of_a_block_at_random_is_false_beside_one_on_a_finer_mesh() {
+    let (mut both, mut telling) = (0, 0);
+    for seed in 1..=40 {
+        let mut random = Random(seed);
+        random.next();
+        let data =
+            [random.between(-0.03, 0.03), random.between(-0.04, 0.04), random.decades(-3.5, -1.0)];
+        let (n, degree) = (random.whole(2, 6), DEGREES[random.below(2)]);
+        let certified = |n: usize| {
+            let problem = block(n, data);
+            let s = solved(&problem, degree);
+            let slides = s.boundaries[0].friction.unwrap();
+            let c = certify(&problem, &s).unwrap();
+            assert!(c.rigorous, "{:?}", c.reason);
+            let (header, bytes) = encoded(&c);
+            let audit = format::audit(header, &bytes).unwrap();
+            assert_eq!(compare(problem, &audit.certificate, &audit.forces), Ok(None));
+            (c, slides)
+        };
+        let ((coarse, slides), (fine, _)) = (certified(n), certified(4 * n));
+        both += usize::from(slides.sticks > 0.05 && slides.slides > 0.05);
+        // J(v) - J(u) is at least half the square of the distance and at most half that of the bound.
+        let below = |c: &Continuous| energy(c)[0] - c.bound * c.bound / 2.0;
+        assert!(below(&coarse) <= energy(&fine)[1], "seed {seed}");
+        assert!(below(&fine) <= energy(&coarse)[1], "seed {seed}");
+        // The control: half the bound is false on many.
+        let half = energy(&coarse)[0] - coarse.bound * coarse.bound / 8.0;
+        telling += usize::from(half > energy(&fine)[1]);
+        assert!(fine.bound < 0.7 * coarse.bound, "seed {seed}: {} {}", fine.bound, coarse.bound);
+    }
+    println!("{both} stick and slide, {telling} with half the bound");
+    assert!(both >= 5 && telling >= 20, "{both} {telling}");
+}
+
+#[test]
+fn bodies_at_random_with_friction_have_certificates_and_these_are_of_their_problems() {
+    let from = number_from("SIGNORINI_BODIES_FROM", 1);
+    let count = number_from("SIGNORINI_BODIES", 40);
+    let (mut certified, mut missed) = (0, Vec::new());
+    for seed in from..from + count {
+        let body = with_random_friction(seed);
+        let Ok((solution, _)) = solve(&body.problem, &body.method, &Settings::default()) else {
+            continue;
+        };
+        if solution.verdict.name() != "proved" {
+            continue;
+        }
+        certified += 1;
+        let outcome = certify(&body.problem, &solution).map_err(|error| error.to_string());
+        let outcome = outcome.and_then(|c| {
+            let (header, bytes) = encoded(&c);
+            let audit = format::audit(header, &bytes).map_err(|error| error.to_string())?;
+            compare(body.problem.clone(), &audit.certificate, &audit.forces)
+                .map_err(|error| error.to_string())
+        });
+        if let Err(error) = outcome {
+            missed.push(format!("seed {seed}: {}: {error} [{}]", body.kind, body.said));
+        }
+    }
+    println!("{certified} certificates\n{}", missed.join("\n"));
+    assert!(2 * certified >= count, "{certified}");
+    assert!(20 * missed.len() as u64 <= certified, "{}", missed.join("\n"));
+}
+
+#[test]
+fn a_certificate_with_friction_that_is_tampered_with_is_refused() {
+    for degree in DEGREES {
+        let problem = block(6, [0.01, 0.02, 0.016]);
+        let s = solved(&problem, degree);
+        let of = s.boundaries[0].friction.unwrap();
+        assert!(of.sticks > 0.1 && of.slides > 0.1, "{of:?}");
+        let c = certify(&problem, &s).unwrap();
+        let claim =
+            Claim { shares: c.proof.shares.clone(), bound: c.bound, forces: Default::default() };
+        assert!(c.certificate.audit(&claim).is_ok());
+        let law = |edge: &signorini::certificates::proof::Edge| match edge.role {
+            Role::Contact { law: Law::Friction { shear, bound }, .. } => Some((shear, bound)),
+            _ => None,
+        };
+        // An edge on which it slides from end to end.
+        let slides = |e: &usize| {
+            law(&c.certificate.edges[*e]).is_some_and(|(shear, bound)| shear == bound.map(|s| -s))
+        };
+        let e = (0..c.certificate.edges.len()).find(slides).unwrap();
+        let with = |change: fn(&mut [f64; 2], &mut [f64; 2])| {
+            let mut certificate = c.certificate.clone();
+            if let Role::Contact { law: Law::Friction { shear, bound }, .. } =
+                &mut certificate.edges[e].role
+            {
+                change(shear, bound);
+            }
+            certificate
+        };
+        // One unit in the last place over the bound.
+        let over = with(|shear, _| shear[0] = shear[0].next_down());
+        assert!(matches!(over.evaluate::<Ball>(), Err(Rejection::Friction { .. })));
+        let nan = with(|_, bound| bound[1] = f64::NAN);
+        assert!(matches!(nan.evaluate::<Ball>(), Err(Rejection::Wrong { .. })));
+        // With the wrong sign it is not in balance; made so, it costs what it does to slide.
+        let sign = with(|shear, _| *shear = shear.map(|q| -q));
+        assert!(matches!(sign.audit(&claim), Err(Rejection::OutOfBalance { .. })));
+        assert!(sign.evaluate::<Ball>().unwrap().bound > 1.01 * c.proof.bound);
+        // A larger bound is one of another problem: sliding is not at the bound.
+        let larger = with(|_, bound| *bound = bound.map(|s| 1.1 * s));
+        assert!(larger.evaluate::<Ball>().unwrap().bound > c.proof.bound);
+        let evidence = &c.quantities.evidence;
+        let difference = compare(problem.clone(), &larger, evidence).unwrap_err().to_string();
+        assert!(difference.contains("the bound of friction"), "{difference}");
+        let without: Certificate = {
+            let mut certificate = c.certificate.clone();
+            for edge in &mut certificate.edges {
+                if let Role::Contact { law, .. } = &mut edge.role {
+                    *law = Law::Contact;
+                }
+            }
+            certificate
+        };
+        let difference = compare(problem, &without, evidence).unwrap_err().to_string();
+        assert!(difference.contains("another law of contact"), "{difference}");
+        assert!(matches!(without.audit(&claim), Err(Rejection::OutOfBalance { .. })));
+    }
+}
