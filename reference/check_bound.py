@@ -223,9 +223,9 @@ class Body:
             slides = np.where(axis[:, None], along, nearest(own - other, d, jump[:, 0]) + other)
             return np.where(glued[:, None], other + jump, slides)
 
-        v = self.v
+        demand(~moved | ~self.given[own] | (self.v[other] == self.value[own]), "a tied point off what is prescribed: point")
+        self.v = v = self.v.copy()
         v[own] = tied(v[own], v[other], d, glued, jump)
-        self.v_own[own] = v[own]
         bulge, other = self.bulge, self.facing[on]
         bulge[on] = tied(bulge[on], bulge[other], self.direction[on, 0], self.law[on] == 2, self.data[on])
 

@@ -116,7 +116,8 @@ pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Fi
     let may_open = |edge: &Contact| edge.is_pair() && !edge.is_tied();
     let pairs = || parts.contact.iter().zip(further).filter(|(edge, _)| may_open(edge));
     for _ in 0..SWEEPS_TOGETHER {
-        for (contact, further) in pairs().filter(|(contact, _)| contact.is_pressed()) {
+        let pressed = |contact: &Contact| contact.is_pressed() && !contact.is_sliver();
+        for (contact, further) in pairs().filter(|(contact, _)| pressed(contact)) {
             move_apart(parts, contact, &mut field, (size, *further), true);
         }
     }
@@ -134,7 +135,8 @@ pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Fi
 /// Puts v on the obstacle where it is pressed on both sides, and to rest across where it sticks: the method gives way there a little, on
 /// curved boundaries by as much as an edge is off its arc, and the bound counts the pressure times that.
 fn settle(parts: &ProblemParts, v: &mut Field) {
-    let obstacles = || parts.contact.iter().filter(|edge| !edge.is_pair());
+    let is_off = |edge: &&Contact| edge.has_friction() || edge.gap_bulge != 0.0;
+    let obstacles = || parts.contact.iter().filter(|edge| !edge.is_pair()).filter(is_off);
     // At each vertex the direction and the gap, and whether it is pressed and sticks on all edges.
     let mut at_vertices: BTreeMap<usize, (Vector2<f64>, f64, [bool; 2])> = BTreeMap::new();
     for edge in obstacles() {

@@ -72,6 +72,9 @@ pub(super) struct Part {
 /// to what a mesh generator leaves, there would be slivers.
 pub(super) const SAME_PLACE: f64 = 1e-6;
 
+/// The part of an edge below which a contact is a sliver.
+const SLIVER: f64 = 0.1;
+
 /// Places that differ by less are the same but for rounding, and so are directions.
 const ROUNDING: f64 = 1e-11;
 
@@ -361,6 +364,11 @@ impl Contact {
             Law::Friction(Bound::Tresca([p, q])) => ((1.0 - s) * p + s * q).max(0.0),
             _ => 0.0,
         }
+    }
+
+    /// Of two edges only a small part faces each other.
+    pub fn is_sliver(&self) -> bool {
+        self.sides.iter().any(|side| (side.places[1] - side.places[0]).abs() < SLIVER)
     }
 
     /// It is pressed from end to end.

@@ -7,7 +7,10 @@
 //!
 //! Then |sigma(u) - m|^2 + A + B = M^2 \[Q2\]: the mean stress has about half the bound of theorem 7.2. From it follow
 //!
-//! - int_S |sigma_n| <= M^2 / d where g - v_n >= d on S, and int_S (g - u_n) <= M^2 / p where tau_n <= -p on S ([`Zone`]);
+//! With a bound s of friction A and B have the integrals of s |v_t| + sigma_t v_t and s |u_t| + tau_t u_t, too.
+//!
+//! - int_S |sigma_n| <= M^2 / d where g - v_n >= d on S, and int_S (g - u_n) <= M^2 / p where tau_n <= -p on S, and
+//!   int_S |u_t| <= M^2 / q where |tau_t| <= s - q ([`Zone`]);
 //! - for every w in H^1 the functional R(w) = L(w) - int sigma(u) : eps(w), which is the force of the body on what holds it,
 //!   in the mean with w on the boundary, lies within M |w|_a of L(w) - int m : eps(w) \[Q3\].
 
@@ -20,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use super::Asked;
 use super::balanced::Balanced;
 use super::build::{Built, Line, Station};
-use super::certificate::{Certificate, Role};
+use super::certificate::{Certificate, Law, Role};
 use super::contact::Contact;
 use super::dual::ByPair;
 use super::field::Field;
@@ -144,6 +147,9 @@ pub enum Limit {
     /// The integral of the opening int (g - u_n) is at most this.
     #[cfg_attr(feature = "files", serde(rename = "opening_at_most"))]
     Opening(f64),
+    /// The integral of the slip int |u_t| is at most this.
+    #[cfg_attr(feature = "files", serde(rename = "slip_at_most"))]
+    Slip(f64),
 }
 
 /// Parts of the largest gap, and of the largest pressure, from which stretches are made.
@@ -173,6 +179,15 @@ pub(super) fn zones<S: Enclosing>(
             Role::Contact { pressure, .. } => pressure.map(|p| -p),
             _ => [0.0; 2],
         };
+        // By how much friction could bear more: affine less convex, so that the least is at an end.
+        let margin = |s: &Station| match certificate.edges[s.edge].role {
+            Role::Contact { law: Law::Friction { shear, bound }, .. } => {
+                let at = |k: usize| (bound[k] - shear[k].abs()).next_down();
+                at(0).min(at(1))
+            }
+            _ => 0.0,
+        };
+        let margins: Vec<f64> = stations.iter().map(margin).collect();
         let gaps: Vec<f64> =
             stations.iter().map(|s| smallest(&certificate.gap(s.edge, state))).collect();
         let pressures: Vec<f64> =
@@ -202,6 +217,7 @@ pub(super) fn zones<S: Enclosing>(
         };
         add(&gaps, Limit::Force, &|_| if force > 0.0 { force } else { f64::INFINITY });
         add(&pressures, Limit::Opening, &|length| length * bent);
+        add(&margins, Limit::Slip, &|length| length * bent);
     }
     zones
 }

@@ -268,7 +268,7 @@ fn without_forces(header: &Header, arrays: &[u8]) -> (Header, Vec<u8>) {
 /// Of `[adapt]`, whose vertices lie between chord and curve of the round contact; a vertex off the curve by as much again is noticed.
 #[test]
 fn a_certificate_on_an_adapted_pin_is_one_of_its_case() {
-    let of_pin = || case("pin.toml", &["adapt.target=\"1 %\""]);
+    let of_pin = || case("pin.toml", &["adapt.target=\"0.5 %\""]);
     let (_, solved) = run::solve(of_pin(), None, &|_| {}).unwrap();
     let mut certificate = solved.certified.unwrap().unwrap().certificate;
     let of_case = |certificate: &_| compare(of_pin().problem, certificate, &Evidence::default());

@@ -2,8 +2,9 @@
 //! tampered with is refused.
 
 use signorini::certificates::binding::compare;
-use signorini::certificates::proof::{Claim, Law, Role};
-use signorini::certificates::{Certificate, Continuous, Rejection, certify, format};
+use signorini::certificates::proof::{Claim, Edge, Law, Role};
+use signorini::certificates::quantities::{Limit, Zone};
+use signorini::certificates::{Certificate, Continuous, Rejection, Target, adapt, certify, format};
 use signorini::contact::Friction;
 use signorini::kernel::Ball;
 use signorini::model::{Condition, Degree, Problem};
@@ -23,11 +24,11 @@ fn solved(problem: &Problem, degree: Degree) -> Solution {
 
 #[test]
 fn the_bound_is_above_the_error_of_exact_solutions_and_falls_with_the_mesh() {
-    for (exact, degree, first, limit, rate) in [
-        (slip_tip(), Degree::One, 8, 1.5, 1.7),
-        (slip_tip(), Degree::Two, 4, 2.5, 2.2),
-        (stick_slip(), Degree::One, 16, 1.5, 1.7),
-        (stick_slip(), Degree::Two, 8, 2.5, 2.5),
+    for (exact, tip, degree, first, limit, rate) in [
+        (slip_tip(), 0.5, Degree::One, 8, 1.5, 1.7),
+        (slip_tip(), 0.5, Degree::Two, 4, 2.5, 2.2),
+        (stick_slip(), 1.0 / 3.0, Degree::One, 16, 1.5, 1.7),
+        (stick_slip(), 1.0 / 3.0, Degree::Two, 8, 2.5, 2.5),
     ] {
         let ladder = with_friction(&exact, degree, first);
         let mut last = f64::INFINITY;
@@ -40,6 +41,15 @@ fn the_bound_is_above_the_error_of_exact_solutions_and_falls_with_the_mesh() {
             assert!((1.0..=limit).contains(&found), "{found}");
             assert!(c.bound * rate <= last, "{} {last}", c.bound);
             last = c.bound;
+            // What is proved to stick is where the exact solution does: (f) for x < 1/2, (e) for x < 1/3.
+            let is_slip = |zone: &&Zone| matches!(zone.limit, Limit::Slip(_));
+            let stuck: Vec<&Zone> = c.quantities.zones.iter().filter(is_slip).collect();
+            assert!(stuck.iter().all(|zone| zone.to <= tip + 1e-9), "{stuck:?}");
+            assert!(
+                level < 2 || degree == Degree::One || !stuck.is_empty(),
+                "{:?}",
+                c.quantities.zones
+            );
         }
     }
 }
@@ -79,9 +89,35 @@ fn energy(c: &Continuous) -> [f64; 2] {
     [c.proof.energy[0] + work[0], c.proof.energy[1] + work[1]]
 }
 
+/// int |v_t| on the floor between two places, by the ends of edges.
+fn slip_between(c: &Continuous, [from, to]: [f64; 2]) -> f64 {
+    let (v, points) = (c.certificate.shape::<f64>(), c.certificate.places::<f64>());
+    let of = |edge: &Edge| {
+        let [a, b] = edge.ends.map(|p| (points[p].x, v.points[p].x.abs()));
+        let inside = a.0.min(b.0) >= from - 1e-9 && a.0.max(b.0) <= to + 1e-9;
+        if inside { (b.0 - a.0).abs() * (a.1 + b.1) / 2.0 } else { 0.0 }
+    };
+    let rough = |edge: &&Edge| matches!(edge.role, Role::Contact { .. });
+    c.certificate.edges.iter().filter(rough).map(of).sum()
+}
+
+#[test]
+fn a_mesh_is_adapted_to_a_bound_of_a_problem_with_friction() {
+    for (degree, relative) in [(Degree::One, 0.05), (Degree::Two, 0.01)] {
+        let problem = block(4, [0.01, 0.02, 0.016]);
+        let target = Target { relative, max_unknowns: 20_000 };
+        let how = (&method(degree, EXACT), &Settings::default());
+        let (problem, adapted) = adapt(problem, how.0, how.1, target, &|_| {}).unwrap();
+        let c = adapted.certified.unwrap();
+        println!("{degree:?}: {:?}", adapted.levels.iter().map(|l| l.relative).collect::<Vec<_>>());
+        assert!(adapted.unmet.is_none() && c.relative <= relative, "{:?}", adapted.unmet);
+        assert_eq!(compare(problem, &c.certificate, &c.quantities.evidence), Ok(None));
+    }
+}
+
 #[test]
 fn no_certificate_of_a_block_at_random_is_false_beside_one_on_a_finer_mesh() {
-    let (mut both, mut telling) = (0, 0);
+    let (mut both, mut telling, mut stuck) = (0, 0, 0);
     for seed in 1..=40 {
         let mut random = Random(seed);
         random.next();
@@ -105,13 +141,20 @@ fn no_certificate_of_a_block_at_random_is_false_beside_one_on_a_finer_mesh() {
         let below = |c: &Continuous| energy(c)[0] - c.bound * c.bound / 2.0;
         assert!(below(&coarse) <= energy(&fine)[1], "seed {seed}");
         assert!(below(&fine) <= energy(&coarse)[1], "seed {seed}");
+        for Zone { from, to, limit, .. } in &coarse.quantities.zones {
+            if let Limit::Slip(most) = limit {
+                stuck += 1;
+                let slip = slip_between(&fine, [*from, *to]);
+                assert!(slip <= *most, "seed {seed}: {slip} {most}");
+            }
+        }
         // The control: half the bound is false on many.
         let half = energy(&coarse)[0] - coarse.bound * coarse.bound / 8.0;
         telling += usize::from(half > energy(&fine)[1]);
         assert!(fine.bound < 0.7 * coarse.bound, "seed {seed}: {} {}", fine.bound, coarse.bound);
     }
-    println!("{both} stick and slide, {telling} with half the bound");
-    assert!(both >= 5 && telling >= 20, "{both} {telling}");
+    println!("{both} stick and slide, {telling} with half the bound, {stuck} stretches");
+    assert!(both >= 5 && telling >= 20 && stuck >= 1, "{both} {telling} {stuck}");
 }
 
 #[test]
@@ -155,7 +198,7 @@ fn a_certificate_with_friction_that_is_tampered_with_is_refused() {
         let claim =
             Claim { shares: c.proof.shares.clone(), bound: c.bound, forces: Default::default() };
         assert!(c.certificate.audit(&claim).is_ok());
-        let law = |edge: &signorini::certificates::proof::Edge| match edge.role {
+        let law = |edge: &Edge| match edge.role {
             Role::Contact { law: Law::Friction { shear, bound }, .. } => Some((shear, bound)),
             _ => None,
         };

@@ -367,6 +367,7 @@ fn no_more_contact_and_no_more_opening_than_the_zones_say() {
                         most,
                     )
                 }
+                Limit::Slip(_) => panic!("there is no friction"),
                 Limit::Opening(most) => {
                     limits[1] += 1;
                     (sum(&|k, p| (p[k].gap - p[k].u_n).max(0.0)), most)
@@ -549,6 +550,7 @@ fn limits_of_zones_and_the_peak_are_what_the_theorem_says_of_the_certificate() {
                     let inside = gaps.iter().filter(|(x, _)| from <= *x && *x <= to);
                     (most, inside.fold(f64::INFINITY, |least, (_, gap)| least.min(*gap)))
                 }
+                Limit::Slip(_) => panic!("there is no friction"),
                 Limit::Opening(most) => {
                     limits[1] += 1;
                     let inside =

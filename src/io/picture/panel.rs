@@ -132,6 +132,8 @@ fn strip((zones, reserved): (&[Zone], bool), [stress, length]: [&str; 2], axes: 
         let (kind, integral) = match zone.limit {
             Limit::Opening(integral) => (0, integral),
             Limit::Force(integral) => (1, integral),
+            // The strip is about contact.
+            Limit::Slip(_) => continue,
         };
         let mean = integral / (zone.to - zone.from);
         most[kind] = Some(most[kind].map_or(mean, |most| most.max(mean)));

@@ -410,6 +410,20 @@ fn a_mesh_of_two_bodies_is_adapted_to_a_bound() {
 }
 
 #[test]
+fn a_mesh_of_tied_bodies_is_adapted_to_a_bound() {
+    for (law, degree) in TIED.into_iter().flat_map(|law| DEGREES.map(|degree| (law, degree))) {
+        let relative = if degree == Degree::One { 0.15 } else { 0.03 };
+        let target = Target { relative, max_unknowns: 40_000 };
+        let problem = tied([3, 4], [1.0, 1.0], law);
+        let (problem, adapted) =
+            adapt(problem, &method(degree), &Settings::default(), target, &|_| {}).unwrap();
+        let c = adapted.certified.unwrap();
+        assert!(adapted.unmet.is_none() && c.relative <= relative, "{:?}", adapted.unmet);
+        assert_eq!(compare(problem, &c.certificate, &c.quantities.evidence), Ok(None));
+    }
+}
+
+#[test]
 fn a_mesh_of_two_bodies_is_adapted_to_the_force_between_them() {
     let problem = squares([3, 4], [1.0, 1.0]).problem();
     let target = Target { relative: 0.02, max_unknowns: 40_000 };
