@@ -7,7 +7,6 @@ mod new;
 mod progress;
 mod signals;
 mod solve;
-mod study;
 mod sweep;
 
 use std::io::{self, Write};
@@ -66,7 +65,6 @@ pub fn run() -> ExitCode {
             let extent = Extent { files: *files, jobs: usize::from(*jobs) };
             sweep::run(case, axes, extent, out.as_deref(), quiet)
         }
-        Task::Convergence { case, study, out } => study::run(case, study, out.as_deref(), quiet),
         Task::Completions { shell } => Ok(completions(*shell)),
     };
     ended(done.and_then(|Done { text, code }| say(&text).map(|()| code)))

@@ -55,8 +55,13 @@ impl Arguments {
                 {
                     "a case is solved by 'signorini solve CASE.toml'"
                 }
+                ErrorKind::InvalidSubcommand
+                    if word(ContextKind::InvalidSubcommand) == "convergence" =>
+                {
+                    "in the sources: 'cargo run --release -p study -- convergence CASE.toml'"
+                }
                 ErrorKind::InvalidSubcommand if !is_similar => {
-                    "the commands are new, check, solve, sweep, certify, audit, convergence, completions"
+                    "the commands are new, check, solve, sweep, certify, audit, completions"
                 }
                 ErrorKind::UnknownArgument if word(ContextKind::InvalidArg) == "-o" => {
                     "the folder to write to is set by '--out DIR'"
@@ -159,16 +164,6 @@ pub enum Task {
         #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
         out: Option<PathBuf>,
     },
-    /// Solve a case with an exact solution on finer and finer meshes; write convergence.csv and convergence.svg
-    Convergence {
-        #[command(flatten)]
-        case: CaseArguments,
-        #[command(flatten)]
-        study: StudyOptions,
-        /// The folder to write to [default: out/ and the name of the case]
-        #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-        out: Option<PathBuf>,
-    },
     /// Print the completion script for a shell
     Completions {
         /// The shell
@@ -246,20 +241,6 @@ impl FromStr for Within {
             None => Err("expected a share of the energy norm, such as \"5 %\", or of the contact force of a boundary, such as \"force bottom 2 %\"".to_owned()),
         }
     }
-}
-
-/// The scope of a convergence study; empty lists stand for the case's own degree and mesh.
-#[derive(Args)]
-pub struct StudyOptions {
-    /// The number of meshes, each with twice as many cells along each axis as the one before; the first is the case's
-    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=12))]
-    pub levels: u8,
-    /// Polynomial degrees, such as 1,2 [default: that of the case]
-    #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=2))]
-    pub degree: Vec<u8>,
-    /// Structured or perturbed meshes, or both: structured,perturbed [default: those of the case]
-    #[arg(long, value_delimiter = ',', value_parser = ["structured", "perturbed"])]
-    pub mesh: Vec<String>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

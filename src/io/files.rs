@@ -100,7 +100,7 @@ impl Output {
     }
 
     /// Stages a file, unless it has a number that cannot be written.
-    pub(crate) fn stage_made(
+    pub fn stage_made(
         &mut self,
         file: &'static str,
         content: Result<impl AsRef<[u8]>, NotFinite>,

@@ -20,11 +20,11 @@ use super::revolution;
 use super::run::Solved;
 use super::vtu::{CellKind, DataArray, Grid, vtu};
 use crate::certificates::Continuous;
+use crate::exact::Errors;
 use crate::memory;
 use crate::model::{Degree, Space};
 use crate::results::{Extreme, Solution};
 use crate::solve::{ContactQuadrature, Gamma0};
-use crate::study::Errors;
 
 const PICTURE: &str = "picture.svg";
 

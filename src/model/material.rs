@@ -337,7 +337,7 @@ fn least_in_plane(material: &Material<f64>) -> f64 {
 }
 
 /// The largest eigenvalue of A, to rounding.
-pub(crate) fn largest_eigenvalue(material: &Material<f64>) -> f64 {
+pub fn largest_eigenvalue(material: &Material<f64>) -> f64 {
     eigenvalues(material)[1]
 }
 
