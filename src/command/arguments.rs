@@ -118,8 +118,9 @@ pub enum Task {
     Certify {
         #[command(flatten)]
         case: CaseArguments,
-        /// The displacement at the vertices of the case's mesh: .vtu, or .csv with x, y, ux, uy
-        #[arg(long, value_name = "FIELD", value_hint = ValueHint::FilePath)]
+        /// The displacement at the vertices of the case's mesh, and where its degree is 2 also in the middles of the edges: .csv with
+        /// x, y, ux, uy
+        #[arg(long, value_name = "FIELD.csv", value_hint = ValueHint::FilePath)]
         displacement: PathBuf,
         /// The folder to write to [default: out/, the name of the case, and certified]
         #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
