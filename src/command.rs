@@ -5,7 +5,6 @@ mod certify;
 mod engine;
 mod new;
 mod progress;
-mod signals;
 mod solve;
 mod sweep;
 
@@ -50,7 +49,6 @@ pub fn run() -> ExitCode {
         // What was asked for: help, or the version.
         Err(text) => return ended(heard(text.print()).map(|()| 0)),
     };
-    signals::watch();
     let done = match &task {
         Task::Solve { case, options } => solve::run(case, options, quiet, verbose),
         Task::Audit { certificate, case, settings } => {
@@ -75,7 +73,6 @@ fn ended(said: Result<u8, Failure>) -> ExitCode {
     match said {
         Ok(code) => ExitCode::from(code),
         Err(failure) => {
-            signals::give_way();
             complain(&format!("error: {failure}"));
             ExitCode::from(code(&failure))
         }
