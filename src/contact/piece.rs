@@ -440,7 +440,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     }
 
     /// Returns whether both lie on the same boundary with the same partner.
-    pub fn is_of_same_boundary<T>(&self, other: &Piece<T>) -> bool {
+    pub(crate) fn is_of_same_boundary<T>(&self, other: &Piece<T>) -> bool {
         let names = |piece: &PieceGeometry| {
             piece.stretches.iter().map(|s| Arc::clone(&s.boundary)).collect::<Vec<_>>()
         };
@@ -448,7 +448,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     }
 
     /// What its law answers, component by component, each with the numbers of the component's values among those of the piece.
-    pub fn responses(&self) -> impl Iterator<Item = (Response, Range<usize>)> + use<S> {
+    pub(crate) fn responses(&self) -> impl Iterator<Item = (Response, Range<usize>)> + use<S> {
         let (count, law) = (self.degree.nodes_per_edge(), self.geometry.law);
         law.responses().iter().enumerate().map(move |(k, &r)| (r, k * count..(k + 1) * count))
     }
@@ -500,7 +500,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     }
 
     /// The direction of functional `i`, n~ or across it.
-    pub fn direction_of(&self, i: usize) -> Vector2<S> {
+    pub(crate) fn direction_of(&self, i: usize) -> Vector2<S> {
         let count = self.degree.nodes_per_edge();
         let d = self.direction(i % count);
         if i < count { d } else { across(d) }
@@ -522,7 +522,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     }
 
     /// int 1 / gamma, in a body of revolution int r / gamma.
-    pub fn whole_weight(&self) -> S {
+    pub(crate) fn whole_weight(&self) -> S {
         let weight = self.weight();
         self.radii.map_or(weight, |[start, end]| weight * (start + end) / <S as From<i32>>::from(2))
     }

@@ -74,7 +74,7 @@ impl Materials {
     }
 
     /// The place of triangle `t`'s material among the materials: two triangles with the same place share theirs.
-    pub fn place_of(&self, t: usize) -> usize {
+    pub(crate) fn place_of(&self, t: usize) -> usize {
         self.of_triangle.get(t).copied().unwrap_or(0)
     }
 
@@ -100,7 +100,7 @@ impl Materials {
     }
 
     /// Returns whether the body is one of revolution, of which the mesh is the meridian.
-    pub fn are_of_revolution(&self) -> bool {
+    pub(crate) fn are_of_revolution(&self) -> bool {
         self.distinct.first().is_some_and(|material| material.plane() == Plane::Axisymmetric)
     }
 

@@ -124,7 +124,7 @@ impl Unproved {
     }
 
     /// Returns whether (8) is known to have exactly one solution all the same.
-    pub fn is_unique(&self) -> bool {
+    pub(crate) fn is_unique(&self) -> bool {
         let by_friction =
             matches!(self, Unproved::NotIsolated | Unproved::TooManyFunctionals { .. });
         let by_contact = matches!(self, Unproved::HeldByContact | Unproved::NotCoercive { .. });
