@@ -353,18 +353,11 @@ impl<S: Scalar + From<f64>> Piece<S> {
             length = chords.length;
             gamma += data[1].gamma;
         }
-        let radii: Option<Vec<PieceRadii<S>>> = (0..data.len())
-            .map(|i| {
-                let of = |edge: BoundaryEdge| {
-                    geometry
-                        .stretches
-                        .iter()
-                        .position(|s| s.edge == edge)
-                        .and_then(|k| data[k].radii)
-                };
-                geometry.radii(i, of)
-            })
-            .collect();
+        let corners = |edge: BoundaryEdge| {
+            data[geometry.stretches.iter().position(|s| s.edge == edge)?].radii
+        };
+        let radii = (0..data.len()).map(|i| geometry.radii(i, corners));
+        let radii: Option<Vec<PieceRadii<S>>> = radii.collect();
         let radii_of = |i: usize| radii.as_ref().map(|radii| radii[i]);
         let mut piece = Piece {
             geometry: Arc::clone(geometry),
@@ -410,17 +403,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
                     rings[0].extend(own_p0);
                     rings[1].extend(own_stress);
                 }
-                let count = degree.nodes_per_edge();
-                for (all, own) in piece.p0[k * count..].iter_mut().zip(p0) {
-                    all.extend(own);
-                }
-                for (all, own) in piece.sigma_n[2 * k..].iter_mut().zip(sigma_n) {
-                    let own = own.into_iter();
-                    match shares {
-                        Some((weight, ratio)) => all.extend(own.map(|f| f * (weight * ratio))),
-                        None => all.extend(own),
-                    }
-                }
+                piece.append(k, [p0, sigma_n], shares.map(|(weight, ratio)| weight * ratio));
             }
             piece.sides.push(Side {
                 normal: data.normal,
@@ -432,6 +415,20 @@ impl<S: Scalar + From<f64>> Piece<S> {
             });
         }
         piece
+    }
+
+    /// Appends the entries that a side has in the rows of component `k`; its stress has a share in that of the piece.
+    fn append(&mut self, k: usize, [p0, sigma_n]: Rows<S>, share: Option<S>) {
+        let count = self.degree.nodes_per_edge();
+        for (all, own) in self.p0[k * count..].iter_mut().zip(p0) {
+            all.extend(own);
+        }
+        for (all, own) in self.sigma_n[2 * k..].iter_mut().zip(sigma_n) {
+            match share {
+                Some(share) => all.extend(own.into_iter().map(|f| f * share)),
+                None => all.extend(own),
+            }
+        }
     }
 
     /// The name of the boundary of the second side, if there is one.

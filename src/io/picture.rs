@@ -45,8 +45,15 @@ pub fn draw(case: &Case, solution: &Solution, results: &Results) -> Result<Strin
     picture(&Scene::of(case, solution, results))
 }
 
-fn picture(scene: &Scene) -> Result<String, NotFinite> {
-    let (factor, magnification) = scene.magnification();
+/// What is drawn, on the page.
+struct Placed {
+    frame: PageMap,
+    deformed: Vec<Point>,
+    lines: Vec<ContactLine>,
+}
+
+/// Places the body, its displacement magnified by `factor`, and what it touches.
+fn placed(scene: &Scene, factor: f64) -> Result<Placed, NotFinite> {
     let deformed = scene.deformed(factor);
     check_finite("deformed points", deformed.iter().map(Point::as_slice))?;
     let lines = ContactLine::all(scene, factor);
@@ -56,8 +63,14 @@ fn picture(scene: &Scene) -> Result<String, NotFinite> {
     let drawn = drawn.flat_map(|[x, y]| halves.iter().map(move |side| [side * x, y]));
     let frame = PageMap::around(drawn.chain(around.copied()), [MARGIN, HEADER]);
     check_finite("page", [frame.page([0.0; 2]).as_slice(), &[frame.width, frame.height]])?;
-    let deformed: Vec<Point> = deformed.into_iter().map(|p| frame.page(p)).collect();
-    let lines: Vec<ContactLine> = lines.into_iter().map(|line| line.on(&frame)).collect();
+    let deformed = deformed.into_iter().map(|p| frame.page(p)).collect();
+    let lines = lines.into_iter().map(|line| line.on(&frame)).collect();
+    Ok(Placed { frame, deformed, lines })
+}
+
+fn picture(scene: &Scene) -> Result<String, NotFinite> {
+    let (factor, magnification) = scene.magnification();
+    let Placed { frame, deformed, lines } = placed(scene, factor)?;
     let colours = Colours::of(scene);
     let (pressure, obstacle) = (pressure(&lines), obstacle(&lines));
 
