@@ -109,6 +109,10 @@ fn a_full_standard_error_leaves_the_exit_code_as_it_is() {
         assert_eq!(output(child).status.code(), Some(expected), "{arguments:?}");
         let quiet = command(&folder, arguments).arg("--quiet").stderr(full()).spawn().unwrap();
         assert_eq!(output(quiet).status.code(), Some(code), "{arguments:?}");
+        let mut closed = Command::new("sh");
+        closed.args(["-c", "exec \"$0\" \"$@\" <&- >&- 2>&-", env!("CARGO_BIN_EXE_signorini")]);
+        let closed = closed.args(arguments).current_dir(&folder).status().unwrap();
+        assert_eq!(closed.code(), Some(code), "{arguments:?}");
     }
 }
 
