@@ -8,6 +8,7 @@ a documented exit code, never by a panic. A small disk needs leave to mount one 
 import argparse
 import hashlib
 import json
+import os
 import random
 import resource
 import shutil
