@@ -1,6 +1,6 @@
 """python3 .ci/faults.py PROGRAM [--rounds N]
 
-What a command meets in the open: it is killed at any moment, runs twice at a time, finds the disk full, talks to nobody, and is
+What a command meets in the open: it is killed at any moment, runs twice at a time, finds the disk full, gets much of everything, and is
 started in a folder that somebody else has prepared. The program must leave sets of files that are whole or not there, and end with
 a documented exit code, never by a panic. A small disk needs leave to mount one (root); without it that part says so.
 """
@@ -128,7 +128,7 @@ class Bench:
         return "result.json" in names, left
 
     def kills(self):
-        """A run over an earlier one is stopped at a random moment, outright or by a signal that it can see."""
+        """A run over an earlier one is stopped at a random moment."""
         cases, known = self.cases(40)
         out = self.room / "kills" / "case"
         start = time.monotonic()
@@ -148,8 +148,7 @@ class Bench:
             expect(code in (0, -how), f"kills: {how.name} gave {code}: {run.stderr.read()}")
             whole, left = self.whole(out, known, f"kills: {how.name}")
             expect(before <= left, f"kills: {how.name} removed {sorted(before - left)}, which is not its own")
-            most = 1 if code == -signal.SIGKILL else 0
-            expect(len(left - before) <= most, f"kills: {how.name}, code {code} left {sorted(left - before)}")
+            expect(len(left - before) <= (code != 0), f"kills: {how.name}, code {code} left {sorted(left - before)}")
             counts["killed"] += code != 0
             counts["whole"] += whole
             counts["left"] += len(left - before)
@@ -198,40 +197,6 @@ class Bench:
                 subprocess.run(["umount", disk], check=True)
         expect(refused > 3, "the disks were not small enough")
         return f"{refused} runs refused for lack of space, the earlier set as it was"
-
-    def streams(self):
-        """Closed and full standard streams, with every task."""
-        (case, _), _ = self.cases(8)
-        for arguments, code in (
-            (["solve", case, "--out", self.room / "streams"], 0), (["check", case], 0), (["--help"], 0),
-            (["solve", self.room / "nowhere.toml"], 2), (["solve"], 2), (["solve", case, "--out", case / "out"], 1),
-        ):
-            command = [self.program, *map(str, arguments)]
-            read, write = os.pipe()
-            os.close(read)
-            with open("/dev/full", "w") as full:
-                for out, err in ((write, None), (None, write), (write, write), (full, None), (None, full), (full, full)):
-                    run = subprocess.run(command, stdout=out or subprocess.DEVNULL, stderr=err or subprocess.DEVNULL)
-                    allowed = {code, 1} if out is full else {code}
-                    expect(run.returncode in allowed, f"streams: {arguments[0]} gave {run.returncode}, expected {code}")
-            os.close(write)
-            closed = subprocess.run(["sh", "-c", 'exec "$0" "$@" <&- >&- 2>&-', *command])
-            expect(closed.returncode == code, f"streams: {arguments[0]} with closed streams gave {closed.returncode}")
-        return "solve, check, help and failures: no panic"
-
-    def memory(self):
-        """With less and less address space: an answer, or exit code 1 with a message."""
-        big = self.room / "big.toml"
-        big.write_text(CASE.format(title="Big", n=600, load=-4))
-        said, refused = set(), 0
-        for megabytes in (40, 60, 80, 100, 150, 200, 300, 400, 600, 900):
-            limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (megabytes << 20,) * 2)
-            run = self.run("check", big, preexec_fn=limit)
-            expect(run.returncode in (0, 1), f"memory: {megabytes} MB gave {run.returncode}: {run.stderr}")
-            refused += run.returncode
-            said.add("bytes of memory" in run.stderr or run.returncode == 0)
-        expect(refused and said == {True}, f"memory: {refused} refused, {said}")
-        return f"{refused} of 10 refused, each with the number of bytes"
 
     def large_inputs(self):
         """Many of everything: the time grows like the number, not like its square."""
@@ -307,7 +272,7 @@ def main():
     bench = Bench(str(Path(options.program).resolve()), options.rounds)
     failed = False
     try:
-        for part in (bench.kills, bench.races, bench.small_disk, bench.streams, bench.memory, bench.large_inputs, bench.hostile_folder):
+        for part in (bench.kills, bench.races, bench.small_disk, bench.large_inputs, bench.hostile_folder):
             start = time.monotonic()
             try:
                 said = part()

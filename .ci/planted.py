@@ -35,7 +35,7 @@ TREE = TARGET / "tree"
 BUILD = TARGET / "build"
 PROGRAM = BUILD / "debug/props"
 # Each crate has a switch of its own.
-CRATES = {"src": "signorini", "src/kernel": "signorini-kernel", "src/audit": "signorini-audit"}
+CRATES = {"src": "signorini", "src/kernel": "signorini-kernel", "src/audit": "signorini-audit", "study/src": "study"}
 SWITCH = """//! Which of the planted mistakes is on: `.ci/planted.py`.
 
 /// Whether it is mistake `k`.

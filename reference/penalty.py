@@ -2,14 +2,12 @@
 
     python3 reference/penalty.py cases/gap.toml --out out/penalty --eps 1e-2 1e-3 1e-4
 
-writes OUT/eps_<eps>.vtu and .csv (x, y, ux, uy at the vertices) for each eps, a length over a modulus. `signorini certify CASE.toml
---displacement OUT/eps_<eps>.vtu` then proves how wrong each is (docs/certificates.md). With [exact] the true error is printed. One process; needs DOLFINx (README.md).
+writes OUT/eps_<eps>.csv (x, y, ux, uy at the nodes) for each eps, a length over a modulus. `signorini certify CASE.toml
+--displacement OUT/eps_<eps>.csv` then proves how wrong each is (docs/certificates.md). With [exact] the true error is printed. One process; needs DOLFINx (README.md).
 """
 
 import argparse
-import shutil
 import sys
-import tempfile
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -17,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 import numpy as np
 import ufl
-from dolfinx import fem, io
+from dolfinx import fem
 from fenicsx.case import read_case
 from fenicsx.edges import ContactEdges
 from fenicsx.errors import errors
@@ -92,17 +90,12 @@ def main():
         u = solve(problem, eps, start)
         start = u.x.array.copy()
         name = arguments.out / f"eps_{eps:.0e}"
-        u.name = "displacement"
-        with tempfile.TemporaryDirectory() as folder:  # DOLFINx writes three files, of which one is the grid
-            with io.VTKFile(MPI.COMM_SELF, f"{folder}/u.pvd", "w") as file:
-                file.write_function(u)
-            shutil.move(next(Path(folder).glob("*.vtu")), f"{name}.vtu")
         table = np.hstack((problem.nodes, u.x.array.reshape(-1, 2)))
         np.savetxt(f"{name}.csv", table, delimiter=",", header="x,y,ux,uy", comments="", fmt="%.17g")
         true = ""
         if case.exact:
             true = f": energy error {errors(problem, SimpleNamespace(u=u, edges=ContactEdges(problem, GAMMA0)))['energy']:.6g}"
-        print(f"{name}.vtu{true}")
+        print(f"{name}.csv{true}")
 
 
 if __name__ == "__main__":

@@ -5,9 +5,7 @@ mod certify;
 mod engine;
 mod new;
 mod progress;
-mod signals;
 mod solve;
-mod study;
 mod sweep;
 
 use std::io::{self, Write};
@@ -51,7 +49,6 @@ pub fn run() -> ExitCode {
         // What was asked for: help, or the version.
         Err(text) => return ended(heard(text.print()).map(|()| 0)),
     };
-    signals::watch();
     let done = match &task {
         Task::Solve { case, options } => solve::run(case, options, quiet, verbose),
         Task::Audit { certificate, case, settings } => {
@@ -66,7 +63,6 @@ pub fn run() -> ExitCode {
             let extent = Extent { files: *files, jobs: usize::from(*jobs) };
             sweep::run(case, axes, extent, out.as_deref(), quiet)
         }
-        Task::Convergence { case, study, out } => study::run(case, study, out.as_deref(), quiet),
         Task::Completions { shell } => Ok(completions(*shell)),
     };
     ended(done.and_then(|Done { text, code }| say(&text).map(|()| code)))
@@ -77,7 +73,6 @@ fn ended(said: Result<u8, Failure>) -> ExitCode {
     match said {
         Ok(code) => ExitCode::from(code),
         Err(failure) => {
-            signals::give_way();
             complain(&format!("error: {failure}"));
             ExitCode::from(code(&failure))
         }

@@ -118,6 +118,9 @@ pub mod certificates;
 pub mod contact;
 #[cfg(not(kani))]
 #[doc(hidden)]
+pub mod exact;
+#[cfg(not(kani))]
+#[doc(hidden)]
 pub mod held;
 #[cfg(not(kani))]
 pub mod io;
@@ -138,9 +141,6 @@ pub mod quote;
 pub mod results;
 #[cfg(not(kani))]
 pub mod solve;
-#[cfg(not(kani))]
-#[doc(hidden)]
-pub mod study;
 
 // For a program with its problem in code.
 #[cfg(all(not(kani), feature = "files"))]

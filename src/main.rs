@@ -1,4 +1,4 @@
-//! The command `signorini`: reads a case file, solves it (once, or on finer and finer meshes), writes the files and says
+//! The command `signorini`: reads a case file, solves it, writes the files and says
 //! what came out.
 //!
 //! Exit codes: 0 solved and proved; 1 no result: could not solve, could not write; 2 the case is wrong, and then nothing is

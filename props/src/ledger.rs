@@ -104,7 +104,7 @@ struct Places {
 impl Places {
     fn read() -> Result<Places, String> {
         let mut files = Vec::new();
-        for folder in ["props/src/claims", "src"] {
+        for folder in ["props/src/claims", "src", "study/src"] {
             add(&root().join(folder), &mut files).map_err(|why| format!("{folder}: {why}"))?;
         }
         Ok(Places { files })

@@ -14,7 +14,7 @@
 //! symmetric with S n = c and tau the composite stress with the traction c on the edge and minus the divergence of the first for
 //! a load.
 //!
-//! Without them the bound of P2 is 1.40 times as large for the smooth solution of `signorini convergence` on 8 x 8 cells, and at
+//! Without them the bound of P2 is 1.40 times as large for the smooth solution of `study -- convergence` on 8 x 8 cells, and at
 //! most 1.16 times for loads given as expressions in cases.
 
 use nalgebra::Vector2;

@@ -55,8 +55,13 @@ impl Arguments {
                 {
                     "a case is solved by 'signorini solve CASE.toml'"
                 }
+                ErrorKind::InvalidSubcommand
+                    if word(ContextKind::InvalidSubcommand) == "convergence" =>
+                {
+                    "in the sources: 'cargo run --release -p study -- convergence CASE.toml'"
+                }
                 ErrorKind::InvalidSubcommand if !is_similar => {
-                    "the commands are new, check, solve, sweep, certify, audit, convergence, completions"
+                    "the commands are new, check, solve, sweep, certify, audit, completions"
                 }
                 ErrorKind::UnknownArgument if word(ContextKind::InvalidArg) == "-o" => {
                     "the folder to write to is set by '--out DIR'"
@@ -113,8 +118,9 @@ pub enum Task {
     Certify {
         #[command(flatten)]
         case: CaseArguments,
-        /// The displacement at the vertices of the case's mesh: .vtu, or .csv with x, y, ux, uy
-        #[arg(long, value_name = "FIELD", value_hint = ValueHint::FilePath)]
+        /// The displacement at the vertices of the case's mesh, and where its degree is 2 also in the middles of the edges: .csv with
+        /// x, y, ux, uy
+        #[arg(long, value_name = "FIELD.csv", value_hint = ValueHint::FilePath)]
         displacement: PathBuf,
         /// The folder to write to [default: out/, the name of the case, and certified]
         #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
@@ -155,16 +161,6 @@ pub enum Task {
         /// Solve so many runs at the same time, each with memory of its own
         #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
         jobs: u16,
-        /// The folder to write to [default: out/ and the name of the case]
-        #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-        out: Option<PathBuf>,
-    },
-    /// Solve a case with an exact solution on finer and finer meshes; write convergence.csv and convergence.svg
-    Convergence {
-        #[command(flatten)]
-        case: CaseArguments,
-        #[command(flatten)]
-        study: StudyOptions,
         /// The folder to write to [default: out/ and the name of the case]
         #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
         out: Option<PathBuf>,
@@ -246,20 +242,6 @@ impl FromStr for Within {
             None => Err("expected a share of the energy norm, such as \"5 %\", or of the contact force of a boundary, such as \"force bottom 2 %\"".to_owned()),
         }
     }
-}
-
-/// The scope of a convergence study; empty lists stand for the case's own degree and mesh.
-#[derive(Args)]
-pub struct StudyOptions {
-    /// The number of meshes, each with twice as many cells along each axis as the one before; the first is the case's
-    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=12))]
-    pub levels: u8,
-    /// Polynomial degrees, such as 1,2 [default: that of the case]
-    #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=2))]
-    pub degree: Vec<u8>,
-    /// Structured or perturbed meshes, or both: structured,perturbed [default: those of the case]
-    #[arg(long, value_delimiter = ',', value_parser = ["structured", "perturbed"])]
-    pub mesh: Vec<String>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -32,7 +32,7 @@ pub fn certify(
             quote::path(&folder)
         )));
     }
-    let field = read_field(displacement, &case.problem.mesh)?;
+    let field = read_field(displacement, &case.problem.mesh, case.method.degree)?;
     let watcher = |phase| phases.enter_solve(phase);
     let course = Course::default().watched_by(&watcher);
     let (solution, _) = solve_along(&case.problem, &case.method, &case.settings, course)

@@ -17,8 +17,6 @@ use signorini::io::outputs::{FILES, FILES_OF_FENICSX};
 use signorini::io::result::Results;
 use signorini::quote;
 
-use super::signals;
-
 const NO_DOLFINX: &str = "the engine fenicsx needs DOLFINx and Python 3.11 or later, and neither python3 nor /usr/bin/python3 can import it: install it (Debian, Ubuntu: apt-get install python3-dolfinx)";
 
 fn not_started(program: &Path, error: &io::Error) -> Failure {
@@ -92,7 +90,7 @@ fn safe(python: &Path) -> Command {
 }
 
 fn run(command: &mut Command) -> io::Result<Output> {
-    signals::run(command.stdout(Stdio::piped()).stderr(Stdio::piped()))
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?.wait_with_output()
 }
 
 /// PYTHONPATH with the package in front. Entries that are not paths from the root are left out: they would be folders of

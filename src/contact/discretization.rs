@@ -267,7 +267,7 @@ impl<'a> Discretization<'a> {
     }
 
     /// The Euclidean norm of a functional over the free degrees of freedom.
-    pub fn free_norm(&self, functional: &[[f64; 2]]) -> f64 {
+    pub(crate) fn free_norm(&self, functional: &[[f64; 2]]) -> f64 {
         let frames = self.constraints.frames();
         let nodes = functional.iter().zip(self.constraints.values()).enumerate();
         let free = nodes.flat_map(|(node, (&f, prescribed))| {

@@ -47,7 +47,7 @@ pub enum Bound {
 
 impl Bound {
     /// m at the nodes of the piece, where P_n has the values `normal`.
-    pub fn at_nodes<S: Scalar + From<f64>>(self, gamma: S, normal: &[S]) -> Vec<S> {
+    pub(crate) fn at_nodes<S: Scalar + From<f64>>(self, gamma: S, normal: &[S]) -> Vec<S> {
         let exact = <S as From<f64>>::from;
         match self {
             Bound::Tresca(ends) => {

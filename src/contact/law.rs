@@ -26,7 +26,7 @@ pub enum Law {
 impl Law {
     /// Responses to each component of the jump by itself: along the direction of contact, and across if the law feels that, but
     /// for friction.
-    pub fn responses(self) -> &'static [Response] {
+    pub(crate) fn responses(self) -> &'static [Response] {
         match self {
             Law::Contact | Law::Friction(_) => &[Response::Unilateral],
             Law::Sliding => &[Response::Bilateral],

@@ -89,7 +89,7 @@ fn largest(radii: Radii) -> f64 {
 }
 
 /// int clip(P; \[m\]+) N_a for P and m of this degree with the nodal values `p` and `m`, by the rule of the method.
-pub fn of_friction(
+pub(crate) fn of_friction(
     rule: &EdgeRule,
     degree: Degree,
     p: &[PreciseBall],

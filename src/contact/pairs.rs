@@ -100,7 +100,7 @@ impl Pair {
     ///
     /// # Errors
     /// A reach that is not positive, or beyond 3/2 of the least radius of curvature; unknown boundaries.
-    pub fn reach_on(&self, mesh: &Mesh, smooth: &SmoothBoundary) -> Result<f64, DataError> {
+    pub(crate) fn reach_on(&self, mesh: &Mesh, smooth: &SmoothBoundary) -> Result<f64, DataError> {
         let (curvature, place) = self.largest_curvature(mesh, smooth)?;
         match self.reach {
             None => Ok((self.smaller_body(mesh)? / 4.0).min(1.0 / curvature)),

@@ -353,18 +353,11 @@ impl<S: Scalar + From<f64>> Piece<S> {
             length = chords.length;
             gamma += data[1].gamma;
         }
-        let radii: Option<Vec<PieceRadii<S>>> = (0..data.len())
-            .map(|i| {
-                let of = |edge: BoundaryEdge| {
-                    geometry
-                        .stretches
-                        .iter()
-                        .position(|s| s.edge == edge)
-                        .and_then(|k| data[k].radii)
-                };
-                geometry.radii(i, of)
-            })
-            .collect();
+        let corners = |edge: BoundaryEdge| {
+            data[geometry.stretches.iter().position(|s| s.edge == edge)?].radii
+        };
+        let radii = (0..data.len()).map(|i| geometry.radii(i, corners));
+        let radii: Option<Vec<PieceRadii<S>>> = radii.collect();
         let radii_of = |i: usize| radii.as_ref().map(|radii| radii[i]);
         let mut piece = Piece {
             geometry: Arc::clone(geometry),
@@ -410,17 +403,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
                     rings[0].extend(own_p0);
                     rings[1].extend(own_stress);
                 }
-                let count = degree.nodes_per_edge();
-                for (all, own) in piece.p0[k * count..].iter_mut().zip(p0) {
-                    all.extend(own);
-                }
-                for (all, own) in piece.sigma_n[2 * k..].iter_mut().zip(sigma_n) {
-                    let own = own.into_iter();
-                    match shares {
-                        Some((weight, ratio)) => all.extend(own.map(|f| f * (weight * ratio))),
-                        None => all.extend(own),
-                    }
-                }
+                piece.append(k, [p0, sigma_n], shares.map(|(weight, ratio)| weight * ratio));
             }
             piece.sides.push(Side {
                 normal: data.normal,
@@ -434,13 +417,27 @@ impl<S: Scalar + From<f64>> Piece<S> {
         piece
     }
 
+    /// Appends the entries that a side has in the rows of component `k`; its stress has a share in that of the piece.
+    fn append(&mut self, k: usize, [p0, sigma_n]: Rows<S>, share: Option<S>) {
+        let count = self.degree.nodes_per_edge();
+        for (all, own) in self.p0[k * count..].iter_mut().zip(p0) {
+            all.extend(own);
+        }
+        for (all, own) in self.sigma_n[2 * k..].iter_mut().zip(sigma_n) {
+            match share {
+                Some(share) => all.extend(own.into_iter().map(|f| f * share)),
+                None => all.extend(own),
+            }
+        }
+    }
+
     /// The name of the boundary of the second side, if there is one.
     pub fn partner(&self) -> Option<&Arc<str>> {
         self.geometry.stretches.get(1).map(|stretch| &stretch.boundary)
     }
 
     /// Returns whether both lie on the same boundary with the same partner.
-    pub fn is_of_same_boundary<T>(&self, other: &Piece<T>) -> bool {
+    pub(crate) fn is_of_same_boundary<T>(&self, other: &Piece<T>) -> bool {
         let names = |piece: &PieceGeometry| {
             piece.stretches.iter().map(|s| Arc::clone(&s.boundary)).collect::<Vec<_>>()
         };
@@ -448,7 +445,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     }
 
     /// What its law answers, component by component, each with the numbers of the component's values among those of the piece.
-    pub fn responses(&self) -> impl Iterator<Item = (Response, Range<usize>)> + use<S> {
+    pub(crate) fn responses(&self) -> impl Iterator<Item = (Response, Range<usize>)> + use<S> {
         let (count, law) = (self.degree.nodes_per_edge(), self.geometry.law);
         law.responses().iter().enumerate().map(move |(k, &r)| (r, k * count..(k + 1) * count))
     }
@@ -500,7 +497,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     }
 
     /// The direction of functional `i`, n~ or across it.
-    pub fn direction_of(&self, i: usize) -> Vector2<S> {
+    pub(crate) fn direction_of(&self, i: usize) -> Vector2<S> {
         let count = self.degree.nodes_per_edge();
         let d = self.direction(i % count);
         if i < count { d } else { across(d) }
@@ -522,7 +519,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     }
 
     /// int 1 / gamma, in a body of revolution int r / gamma.
-    pub fn whole_weight(&self) -> S {
+    pub(crate) fn whole_weight(&self) -> S {
         let weight = self.weight();
         self.radii.map_or(weight, |[start, end]| weight * (start + end) / <S as From<i32>>::from(2))
     }

@@ -205,7 +205,7 @@ impl Parts {
     }
 
     /// The part of each triangle.
-    pub fn of_triangle(&self) -> &[usize] {
+    pub(crate) fn of_triangle(&self) -> &[usize] {
         &self.of_triangle
     }
 

@@ -35,13 +35,12 @@ use super::input::{self, Failure, FileError, MOST_OF_A_CASE, Position};
 use super::remarks::Words;
 use crate::certificates::{Asked, Target};
 use crate::contact::Pair;
+use crate::exact::{Exact, Kind};
 use crate::kernel::Plane;
 use crate::memory;
 use crate::model::{Mesh, Perturbation, Problem, SharedFunction, Structured};
 use crate::quote;
 use crate::solve::{Method, Settings};
-use crate::study::Exact;
-use crate::study::exact::Kind;
 
 /// A contact problem and how to solve it.
 #[non_exhaustive]

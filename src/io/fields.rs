@@ -169,7 +169,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::io::vtu::reader::Reader;
+    use crate::io::vtu::tests::arrays;
     use crate::kernel::{Material, Plane};
     use crate::model::{Condition, Degree, Diagonal, Rectangle};
     use crate::solve::{Method, Settings, solve};
@@ -191,12 +191,10 @@ mod tests {
     fn each_array_of_the_solution_has_the_numbers_of_its_name() {
         let (problem, s) = solved();
         let indicators: Vec<f64> = (0..16).map(|t| f64::from(t) + 0.5).collect();
-        let file = solution_vtu(&s, &problem, Some(&indicators)).unwrap();
-        let reader = Reader::new(std::str::from_utf8(&file).unwrap()).unwrap();
+        let arrays = arrays(&solution_vtu(&s, &problem, Some(&indicators)).unwrap());
         let array = |section: &str, name: &str| -> Vec<f64> {
-            let arrays = reader.arrays(section);
-            let array = arrays.iter().find(|array| array.name() == Some(name)).unwrap();
-            reader.numbers(array, 1 << 10).unwrap()
+            let array = arrays.iter().find(|(names, _)| *names == [section, name]);
+            array.unwrap().1.clone()
         };
         let of_cell = |name: &str| array("CellData", name);
         let (stress, von_mises) = (of_cell("stress"), of_cell("von_mises"));

@@ -5,14 +5,13 @@
 //! each new file is renamed into its place, and the new result.json comes last. So the files beside a result.json belong to
 //! it, whenever a run is stopped and however many run at a time; where there is none, a run is under way or was stopped.
 //!
-//! A run that fails leaves neither files nor new folders. One that is killed outright may leave its temporary folder.
+//! A run that fails leaves neither files nor new folders. One that is stopped may leave its temporary folder.
 
 use std::collections::hash_map::RandomState;
 use std::fs::{self, File, OpenOptions};
 use std::hash::{BuildHasher, Hasher};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use thiserror::Error;
 
@@ -23,7 +22,9 @@ use crate::quote;
 #[derive(Debug)]
 pub struct Output {
     folder: PathBuf,
-    unfinished: Unfinished,
+    room: PathBuf,
+    /// The folders that did not exist before, innermost first.
+    made: Vec<PathBuf>,
     names: Vec<String>,
     /// Files of earlier runs, which a reader could take for files of this one where it does not write them itself.
     replaced: &'static [&'static str],
@@ -74,16 +75,11 @@ impl Output {
         let made = folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
         let number = RandomState::new().build_hasher().finish();
         let room = folder.join(format!(".signorini-{number:016x}.tmp"));
-        let unfinished = Unfinished { room, made };
-        let mut all = all_unfinished();
-        match fs::create_dir_all(&folder).and_then(|()| fs::create_dir(&unfinished.room)) {
-            Ok(()) => {
-                all.push(unfinished.clone());
-                Ok(Output { folder, unfinished, names: Vec::new(), replaced: &[] })
-            }
+        let output = Output { folder, room, made, names: Vec::new(), replaced: &[] };
+        match fs::create_dir_all(&output.folder).and_then(|()| fs::create_dir(&output.room)) {
+            Ok(()) => Ok(output),
             Err(error) => {
-                unfinished.remove();
-                let (folder, why) = (quote::path(&folder), reason(&error));
+                let (folder, why) = (quote::path(&output.folder), reason(&error));
                 Err(Failure::failed(format!("cannot make the folder {folder}: {why}")))
             }
         }
@@ -100,7 +96,7 @@ impl Output {
     }
 
     /// Stages a file, unless it has a number that cannot be written.
-    pub(crate) fn stage_made(
+    pub fn stage_made(
         &mut self,
         file: &'static str,
         content: Result<impl AsRef<[u8]>, NotFinite>,
@@ -113,7 +109,7 @@ impl Output {
 
     /// The temporary folder, for another program to write to.
     pub fn room(&self) -> &Path {
-        &self.unfinished.room
+        &self.room
     }
 
     /// Stages a file that another program has written into [`Output::room`].
@@ -162,19 +158,16 @@ impl Output {
     pub fn publish(mut self) -> Result<Vec<PathBuf>, Failure> {
         // A system without locks takes its chance.
         let lock = File::open(&self.folder).and_then(|folder| folder.lock().map(|()| folder));
-        // From here on a signal waits until the set is whole.
-        let all = all_unfinished();
         let renamed = self.rename_all();
-        drop((all, lock));
+        drop(lock);
         renamed?;
-        self.unfinished.made.clear();
+        self.made.clear();
         Ok(self.names.iter().map(|name| self.folder.join(name)).collect())
     }
 
     fn rename_all(&self) -> Result<(), Failure> {
         let Some((last, others)) = self.names.split_last() else { return Ok(()) };
         let place = |name: &str| self.folder.join(name);
-        let sync = || sync_folder(&self.folder).map_err(|error| self.wrong(last, error));
         let remove = |name: &str| match fs::symlink_metadata(place(name)) {
             Ok(found) if !found.is_dir() => {
                 fs::remove_file(place(name)).map_err(|error| self.wrong(name, error))
@@ -185,78 +178,19 @@ impl Output {
             fs::rename(self.room().join(name), place(name)).map_err(|error| self.wrong(name, error))
         };
         remove(last)?;
-        sync()?;
         let is_stale = |name: &&&str| !self.names.iter().any(|staged| staged == **name);
         self.replaced.iter().filter(is_stale).try_for_each(|name| remove(name))?;
         others.iter().try_for_each(rename)?;
-        sync()?;
-        rename(last)?;
-        sync()
+        rename(last)
     }
 }
 
-/// Removes the temporary folder, and the new folders of a run that did not come to the end of [`Output::publish`].
+/// Removes the temporary folder, and the new folders of a run that did not come to the end of [`Output::publish`]. What cannot be
+/// removed stays: the failure that led here is the one to report.
 impl Drop for Output {
     fn drop(&mut self) {
-        let mut all = all_unfinished();
-        self.unfinished.remove();
-        all.retain(|other| other.room != self.unfinished.room);
-    }
-}
-
-/// The folders that a run would leave behind if it ended now.
-#[derive(Clone, Debug)]
-struct Unfinished {
-    room: PathBuf,
-    /// The folders that did not exist before, innermost first.
-    made: Vec<PathBuf>,
-}
-
-/// The run may be adding a file while its folder is removed.
-const ATTEMPTS: usize = 64;
-
-impl Unfinished {
-    /// Removes it. What cannot be removed stays: the failure that led here is the one to report.
-    fn remove(&self) {
-        for _ in 0..ATTEMPTS {
-            if fs::remove_dir_all(&self.room).is_ok() || !self.room.exists() {
-                break;
-            }
-        }
-        for folder in &self.made {
-            let _ = fs::remove_dir(folder);
-        }
-    }
-}
-
-static UNFINISHED: Mutex<Vec<Unfinished>> = Mutex::new(Vec::new());
-
-/// Locks the list of what the runs of this process have not finished; none begins or finishes as long as it is held.
-fn all_unfinished() -> MutexGuard<'static, Vec<Unfinished>> {
-    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Removes what the runs of this process have not finished, for a process that is told to end: afterwards it can begin or
-/// finish no other, but waits. A set on its way to its place gets there first.
-pub fn abandon() {
-    let all = all_unfinished();
-    all.iter().for_each(Unfinished::remove);
-    std::mem::forget(all);
-}
-
-/// Brings the names in a folder to the disk, where folders can be opened for that.
-fn sync_folder(folder: &Path) -> io::Result<()> {
-    if cfg!(not(unix)) {
-        return Ok(());
-    }
-    match File::open(folder)?.sync_all() {
-        // Some file systems have nothing to bring.
-        Err(error)
-            if matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) =>
-        {
-            Ok(())
-        }
-        result => result,
+        let _ = fs::remove_dir_all(&self.room);
+        self.made.iter().for_each(|folder| drop(fs::remove_dir(folder)));
     }
 }
 

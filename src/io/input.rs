@@ -80,7 +80,7 @@ impl Failure {
     }
 
     /// Puts words around the message.
-    pub(super) fn map(self, words: impl FnOnce(String) -> String) -> Failure {
+    pub fn map(self, words: impl FnOnce(String) -> String) -> Failure {
         Failure { message: words(self.message), ..self }
     }
 

@@ -8,9 +8,6 @@ pub mod certificate;
 #[cfg(feature = "files")]
 #[doc(hidden)]
 pub mod checked;
-#[cfg(feature = "files")]
-#[doc(hidden)]
-pub mod convergence;
 mod csv;
 #[cfg(feature = "files")]
 #[doc(hidden)]

@@ -20,11 +20,11 @@ use super::revolution;
 use super::run::Solved;
 use super::vtu::{CellKind, DataArray, Grid, vtu};
 use crate::certificates::Continuous;
+use crate::exact::Errors;
 use crate::memory;
 use crate::model::{Degree, Space};
 use crate::results::{Extreme, Solution};
-use crate::solve::{ContactQuadrature, Gamma0};
-use crate::study::Errors;
+use crate::solve::{ContactQuadrature, Gamma0, Method};
 
 const PICTURE: &str = "picture.svg";
 
@@ -266,15 +266,7 @@ pub fn results(
         units: case.units.clone(),
         thickness: case.thickness,
         materials: case.materials.clone(),
-        choices: Some(Choices {
-            degree: case.method.degree.number(),
-            gamma0_auto: case.method.gamma0 == Gamma0::Auto,
-            contact_quadrature: match case.method.quadrature {
-                ContactQuadrature::Exact => "exact".to_owned(),
-                ContactQuadrature::Gauss(points) => points.to_string(),
-            },
-            allow_noncoercive: case.method.allow_noncoercive,
-        }),
+        choices: Some(choices(&case.method)),
         remarks,
         mesh: MeshSizes::new(mesh, solution.nodes.len(), solution.pieces.len()),
         gamma: GammaChoice::from(&solution.gamma),
@@ -299,13 +291,7 @@ pub fn results(
         }),
         adapt: solved.adaptation.clone(),
         errors,
-        seconds: Seconds {
-            read: read.as_secs_f64(),
-            assemble: solved.times.assemble().as_secs_f64(),
-            solve: solved.times.solve().as_secs_f64(),
-            certify: solved.times.certify.as_secs_f64(),
-            write: 0.0,
-        },
+        seconds: seconds(solved, read),
     };
     let is_asked = extra.certificate || case.asks_for_certificate();
     if let (Some(Err(error)), true) = (&solved.certified, is_asked) {
@@ -316,6 +302,29 @@ pub fn results(
         results.missing.push(format!("mesh that meets the target of [adapt]: {reason}"));
     }
     Ok(results)
+}
+
+fn choices(method: &Method) -> Choices {
+    Choices {
+        degree: method.degree.number(),
+        gamma0_auto: method.gamma0 == Gamma0::Auto,
+        contact_quadrature: match method.quadrature {
+            ContactQuadrature::Exact => "exact".to_owned(),
+            ContactQuadrature::Gauss(points) => points.to_string(),
+        },
+        allow_noncoercive: method.allow_noncoercive,
+    }
+}
+
+/// The seconds of each part of the work before the files are written.
+fn seconds(solved: &Solved, read: Duration) -> Seconds {
+    Seconds {
+        read: read.as_secs_f64(),
+        assemble: solved.times.assemble().as_secs_f64(),
+        solve: solved.times.solve().as_secs_f64(),
+        certify: solved.times.certify.as_secs_f64(),
+        write: 0.0,
+    }
 }
 
 /// The reason why there are no errors where there is an exact solution.

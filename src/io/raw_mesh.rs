@@ -21,7 +21,7 @@ use crate::quote::number;
 type Result<T> = std::result::Result<T, Failure>;
 
 /// Something for points, curves and surfaces each.
-pub type ByDimension<T> = [T; 3];
+pub(crate) type ByDimension<T> = [T; 3];
 
 /// Nodes, elements, and the names of what the elements lie on.
 #[derive(Default)]

@@ -17,6 +17,7 @@ use crate::certificates::adapt::AdaptedLevel;
 use crate::certificates::quantities::{Limit, Quantity, Zone};
 use crate::certificates::{CertifyError, Continuous, Ramp};
 use crate::contact::contact_line::Gamma;
+use crate::exact::Errors;
 use crate::held::solvability::Play;
 use crate::model::Mesh;
 use crate::proof::Intervals;
@@ -25,7 +26,6 @@ use crate::quote;
 use crate::results::{
     ContactBoundary, EnergyBalance, GammaReport, MethodReport, Quantities, Status,
 };
-use crate::study::Errors;
 
 /// The content of result.json, in its order.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use super::case::{MaterialEcho, Measure, Units};
 use super::certificate::Audit;
-use super::convergence::Study;
 use super::result::{
     Adaptation, ContinuousCertificate, DiscreteCertificate, GammaChoice, IsolatedSolution,
     MeshSizes, NewtonHistory, Results, Seconds, StressPeak,
@@ -575,11 +574,6 @@ fn distance(certificate: &ContinuousCertificate, lines: &mut Lines) {
         let of = "for the displacement pushed out of the obstacle, as in certificate.json";
         lines.line("", format!("at most {pushed_out} {of}"));
     }
-}
-
-pub fn studied(case: &Case, studies: &[Study], files: &[PathBuf]) -> String {
-    let tables: Vec<String> = studies.iter().map(Study::table).collect();
-    format!("{}\n\n{}\nwritten: {}\n", quote::line(&case.title), tables.join("\n"), written(files))
 }
 
 pub fn swept(sweep: &Sweep, files: &[PathBuf]) -> String {

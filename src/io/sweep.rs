@@ -26,7 +26,7 @@ use crate::results::Solution;
 use crate::results::answers::label;
 
 /// The most runs of a sweep: more are a mistake of the person who asks for them.
-pub const MOST_RUNS: usize = 10_000;
+pub(crate) const MOST_RUNS: usize = 10_000;
 
 /// The largest number of remarks below the table.
 const MOST_REMARKS: usize = 20;

@@ -328,7 +328,7 @@ impl LowerTriangle {
     ///
     /// # Errors
     /// A pattern that does not join the sides of the piece.
-    pub fn add_contact_springs(
+    pub(crate) fn add_contact_springs(
         &mut self,
         numbering: &Numbering,
         piece: &Piece,

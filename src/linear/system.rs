@@ -109,7 +109,7 @@ impl<'d, 'p> System<'d, 'p> {
     }
 
     /// B: calls `f` with the unknown, the number of the functional and the entry.
-    pub fn each_functional(&self, mut f: impl FnMut(usize, usize, f64)) {
+    pub(crate) fn each_functional(&self, mut f: impl FnMut(usize, usize, f64)) {
         for piece in &self.d.contact {
             for (i, functional) in piece.functionals().zip(&piece.p0) {
                 for (&node, &entries) in piece.nodes.iter().zip(functional) {
@@ -154,7 +154,7 @@ impl<'d, 'p> System<'d, 'p> {
 
     /// The energy norm that the body would have at least with a strain of the size of `u` over the longest side of its box, or of
     /// 1 where that is smaller.
-    pub fn norm_if_strained(&self, u: &[[f64; 2]]) -> f64 {
+    pub(crate) fn norm_if_strained(&self, u: &[[f64; 2]]) -> f64 {
         let mesh = self.d.space.mesh();
         let ends = |c: usize| {
             let at = mesh.vertices().iter().map(|x| x[c]);

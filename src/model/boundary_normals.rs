@@ -22,7 +22,7 @@ use nalgebra::Vector2;
 use super::mesh::{BoundaryEdge, Mesh, NO_ANGLE, length};
 
 /// A bend of more degrees is a corner: a circle of nine edges turns by as much at a vertex, a chamfer by 45.
-pub const SMOOTH: f64 = 40.0;
+pub(crate) const SMOOTH: f64 = 40.0;
 
 /// The normals at the ends of all boundary edges.
 #[derive(Clone, Debug)]
@@ -178,7 +178,7 @@ impl SmoothEdge {
     }
 
     /// The point of the chord at `s`, from 0 to 1.
-    pub fn on_chord(&self, s: f64) -> Vector2<f64> {
+    pub(crate) fn on_chord(&self, s: f64) -> Vector2<f64> {
         let [a, b] = self.ends;
         if s < 0.5 { a + (b - a) * s } else { b + (a - b) * (1.0 - s) }
     }

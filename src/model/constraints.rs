@@ -189,7 +189,7 @@ impl Constraints {
 
     /// The components held by each displacement boundary; a direction that two boundaries prescribe counts for the one that
     /// is first in alphabetical order.
-    pub fn holders(&self) -> &BTreeMap<String, Vec<Held>> {
+    pub(crate) fn holders(&self) -> &BTreeMap<String, Vec<Held>> {
         &self.holders
     }
 

@@ -117,7 +117,7 @@ impl Degree {
     /// The length by which an edge counts in kappa, along which the direction of contact turns by an angle with this cosine, if it does,
     /// of one component or of both; in a body of revolution with r at the two ends of the piece, and at the start and the end of the
     /// edge and opposite.
-    pub fn counted_length<S: Scalar>(
+    pub(crate) fn counted_length<S: Scalar>(
         self,
         length: S,
         turning: Option<(S, bool)>,

@@ -139,7 +139,7 @@ pub struct Resultants {
 impl Resultants {
     /// The axial forces of a whole revolution, and the radial ones of a radian, where these are those of a radian.
     #[must_use]
-    pub fn of_the_revolution(mut self) -> Self {
+    pub(crate) fn of_the_revolution(mut self) -> Self {
         let forces = self.boundaries.values_mut().chain([&mut self.body]);
         forces.for_each(|f| f[1] *= std::f64::consts::TAU);
         self

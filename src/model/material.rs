@@ -11,6 +11,7 @@ use thiserror::Error;
 
 use crate::held::rigid::NEGLIGIBLE;
 use crate::kernel::{Ball, Material, Plane, Stress};
+use crate::linear::dense::singular_vectors;
 
 /// Why there is no such material.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -73,7 +74,7 @@ impl Materials {
     }
 
     /// The place of triangle `t`'s material among the materials: two triangles with the same place share theirs.
-    pub fn place_of(&self, t: usize) -> usize {
+    pub(crate) fn place_of(&self, t: usize) -> usize {
         self.of_triangle.get(t).copied().unwrap_or(0)
     }
 
@@ -99,7 +100,7 @@ impl Materials {
     }
 
     /// Returns whether the body is one of revolution, of which the mesh is the meridian.
-    pub fn are_of_revolution(&self) -> bool {
+    pub(crate) fn are_of_revolution(&self) -> bool {
         self.distinct.first().is_some_and(|material| material.plane() == Plane::Axisymmetric)
     }
 
@@ -274,28 +275,16 @@ pub fn eigenvalues(material: &Material<f64>) -> [f64; 2] {
     }
     let [xx, xy, xz, yy, yz, zz] = material.stiffness();
     let root = 2.0_f64.sqrt();
-    let mut matrix = [[xx, xy, root * xz], [xy, yy, root * yz], [root * xz, root * yz, 2.0 * zz]];
-    // Jacobi's rotations: five rounds are more than doubles can tell.
-    for (p, q) in [(0, 1), (0, 2), (1, 2)].into_iter().cycle().take(15) {
-        if matrix[p][q] == 0.0 {
-            continue;
-        }
-        let theta = (matrix[q][q] - matrix[p][p]) / (2.0 * matrix[p][q]);
-        let tangent = theta.signum() / (theta.abs() + theta.hypot(1.0));
-        let cosine = 1.0 / tangent.hypot(1.0);
-        let sine = tangent * cosine;
-        for row in &mut matrix {
-            let (a, b) = (row[p], row[q]);
-            (row[p], row[q]) = (cosine * a - sine * b, sine * a + cosine * b);
-        }
-        let (a, b) = (matrix[p], matrix[q]);
-        matrix[p] = std::array::from_fn(|k| cosine * a[k] - sine * b[k]);
-        matrix[q] = std::array::from_fn(|k| sine * a[k] + cosine * b[k]);
-    }
-    let diagonal = [0, 1, 2].map(|i| matrix[i][i]);
-    let [least, most] = [f64::min, f64::max].map(|f| diagonal.into_iter().fold(diagonal[0], f));
-    // A NaN is passed over by both.
-    if diagonal.iter().all(|x| x.is_finite()) { [least, most] } else { [f64::NAN; 2] }
+    let matrix = [[xx, xy, root * xz], [xy, yy, root * yz], [root * xz, root * yz, 2.0 * zz]];
+    // Of A/size + 1, which is positive, the singular values are the eigenvalues.
+    let size = matrix
+        .iter()
+        .map(|row| row.iter().map(|c| c.abs()).sum())
+        .fold(f64::MIN_POSITIVE, f64::max);
+    let entry = |i: usize, j: usize| matrix[i][j] / size + f64::from(u8::from(i == j));
+    let rows = [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)).to_vec());
+    let values = singular_vectors(&rows, 3);
+    [&values[2], &values[0]].map(|(value, _)| (value - 1.0) * size)
 }
 
 /// A lower bound c of the smallest eigenvalue of A, as near as rounding allows; 0 or less if the law is not elliptic. In a body
@@ -337,7 +326,7 @@ fn least_in_plane(material: &Material<f64>) -> f64 {
 }
 
 /// The largest eigenvalue of A, to rounding.
-pub(crate) fn largest_eigenvalue(material: &Material<f64>) -> f64 {
+pub fn largest_eigenvalue(material: &Material<f64>) -> f64 {
     eigenvalues(material)[1]
 }
 

@@ -314,7 +314,7 @@ impl Mesh {
     }
 
     /// The places of the [`ends`](Mesh::ends) of a boundary edge.
-    pub(crate) fn places_of_ends(&self, edge: BoundaryEdge) -> [[f64; 2]; 2] {
+    pub fn places_of_ends(&self, edge: BoundaryEdge) -> [[f64; 2]; 2] {
         self.ends(edge).map(|vertex| self.vertices[vertex])
     }
 

@@ -68,7 +68,7 @@ fn nearness(mesh: &Mesh) -> f64 {
 
 impl Mesh {
     /// Moves the vertices that are next to x = 0 onto it, and returns how many there were.
-    pub fn snap_to_axis(&mut self) -> usize {
+    pub(crate) fn snap_to_axis(&mut self) -> usize {
         let near = nearness(self);
         self.move_vertices(|[x, y]| {
             let moves = x != 0.0 && x.abs() <= near;

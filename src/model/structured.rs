@@ -40,7 +40,7 @@ pub struct Rectangle {
 }
 
 /// The most cells that a rectangle may have: beyond it the factorisation would not fit into the memory of one machine.
-pub const MOST_CELLS: usize = 4_000_000;
+pub(crate) const MOST_CELLS: usize = 4_000_000;
 
 impl Rectangle {
     /// The mesh of this rectangle.

@@ -125,7 +125,7 @@ impl Unproved {
     }
 
     /// Returns whether (8) is known to have exactly one solution all the same.
-    pub fn is_unique(&self) -> bool {
+    pub(crate) fn is_unique(&self) -> bool {
         let by_friction =
             matches!(self, Unproved::NotIsolated | Unproved::TooManyFunctionals { .. });
         let by_contact = matches!(self, Unproved::HeldByContact | Unproved::NotCoercive { .. });
@@ -408,18 +408,15 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             let times = |z: &[PreciseBall]| product.times(z);
             let body = isolated::Body { system, factor, times: &times, crude: &crude, coercivity };
             let rest = isolated::Rest { rho, z: &dual.z, left: up(dual.left + up_to), size };
-            if pressed.is_nowhere() {
-                let known = match &mut self.known {
-                    Some(known) => known,
-                    none => none.insert(isolated::Known::new(&body, &self.lines, None)?),
-                };
-                let known = (&*known, None);
-                isolated = Some(isolated::isolate(known, &self.lines, &at.u, system, &rest)?);
-            } else {
-                let known = isolated::Known::new(&body, &self.lines, Some(springs))?;
-                let known = (&known, self.known.as_ref());
-                isolated = Some(isolated::isolate(known, &self.lines, &at.u, system, &rest)?);
-            }
+            let (now, without) = match &mut self.known {
+                without if !pressed.is_nowhere() => {
+                    (&isolated::Known::new(&body, &self.lines, Some(springs))?, without.as_ref())
+                }
+                Some(known) => (&*known, None),
+                none => (&*none.insert(isolated::Known::new(&body, &self.lines, None)?), None),
+            };
+            let known = (now, without);
+            isolated = Some(isolated::isolate(known, &self.lines, &at.u, system, &rest)?);
         }
         let rho = isolated.map_or(rho, |isolated| isolated.rho);
         let exact = up(rho / coercivity.sqrt());
@@ -435,10 +432,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             Some(slides) => Cow::Owned(slid(at.u.clone(), reported, slides)),
             None => Cow::Borrowed(&at.u),
         };
-        for (node, (exactly, reported)) in nodes.iter_mut().zip(exactly.iter().zip(reported)) {
-            let off = [0, 1].map(|c| exactly[c] - PreciseBall::from(reported[c]));
-            *node = up(*node + length(off));
-        }
+        widen(&mut nodes, &exactly, reported);
         let pressure = match isolated {
             Some(isolated) => isolated.pressure,
             None if pressed.edges().any(|is| is) => rho,
@@ -450,14 +444,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         }
         let hardly_strains = up(root(at.energy) + radius) <= NEGLIGIBLE * if_strained;
         let is_measured = !hardly_strains && norm > 0.0;
-        let isolation = isolated.map(|Isolated { within, everywhere, limits, .. }| {
-            // The distance from the displacement whose residual is known to the one that is reported.
-            let within = within.map(|within| (within - at.moved) * (1.0 - f64::EPSILON));
-            let within = within.filter(|within| radius <= *within);
-            let relative = |within: f64| within / up(root(at.energy)) * (1.0 - f64::EPSILON);
-            let relative = within.filter(|_| is_measured).map(relative);
-            Isolation { within, relative, everywhere, limits }
-        });
+        let isolation = isolated.map(|isolated| isolation(isolated, at, radius, is_measured));
         let relative = is_measured.then(|| up(radius / norm));
         Ok(Enclosure {
             kappa,
@@ -471,6 +458,29 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             isolation,
         })
     }
+}
+
+/// Adds to each bound at a node what `exactly` and the reported displacement are apart.
+fn widen(nodes: &mut [f64], exactly: &[[PreciseBall; 2]], reported: &[[f64; 2]]) {
+    for (node, (exactly, reported)) in nodes.iter_mut().zip(exactly.iter().zip(reported)) {
+        let off = [0, 1].map(|c| exactly[c] - PreciseBall::from(reported[c]));
+        *node = up(*node + length(off));
+    }
+}
+
+/// What is known of other solutions, from where the residual is known carried to the displacement that is reported.
+fn isolation(
+    Isolated { within, everywhere, limits, .. }: Isolated,
+    at: &EnclosedResidual,
+    radius: f64,
+    is_measured: bool,
+) -> Isolation {
+    // The distance from the displacement whose residual is known to the one that is reported.
+    let within = within.map(|within| (within - at.moved) * (1.0 - f64::EPSILON));
+    let within = within.filter(|within| radius <= *within);
+    let relative = |within: f64| within / up(root(at.energy)) * (1.0 - f64::EPSILON);
+    let relative = within.filter(|_| is_measured).map(relative);
+    Isolation { within, relative, everywhere, limits }
 }
 
 impl Enclosure {

@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 
 use faer::Mat;
 use faer::linalg::solvers::Solve;
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::DMatrix;
 
 use crate::kernel::ball::larger;
 use crate::kernel::{Ball, Triangle};
@@ -357,14 +357,8 @@ fn motions_of_roots(
     bounds.iter().all(|bound| bound.is_finite()).then_some(bounds)
 }
 
-/// The inverse of a matrix with these rows, in doubles: by Cramer's rule for one part.
+/// The inverse of a matrix with these rows, in doubles.
 fn inverse(rows: &[&[f64]]) -> DMatrix<f64> {
-    if let [a, b, c] = rows {
-        let [a, b, c] = [a, b, c].map(|row| Vector3::new(row[0], row[1], row[2]));
-        let columns = [b.cross(&c), c.cross(&a), a.cross(&b)];
-        let scale = a.dot(&columns[0]);
-        return DMatrix::from_fn(3, 3, |i, j| columns[j][i] / scale);
-    }
     let n = rows.len();
     let lu = Mat::from_fn(n, n, |i, j| rows[i][j]).partial_piv_lu();
     let inverse = lu.solve(Mat::<f64>::identity(n, n));

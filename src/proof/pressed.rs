@@ -286,7 +286,7 @@ impl Pressed {
     }
 
     /// Returns whether it is empty.
-    pub fn is_nowhere(&self) -> bool {
+    pub(crate) fn is_nowhere(&self) -> bool {
         self.parts.is_empty()
     }
 
@@ -388,7 +388,7 @@ fn root_of(line: &Piece<PreciseBall>) -> f64 {
 }
 
 /// An upper bound of a polynomial on an edge by its Bernstein coefficients, from its values at the nodes.
-pub fn greatest(degree: Degree, p: &[PreciseBall]) -> f64 {
+pub(crate) fn greatest(degree: Degree, p: &[PreciseBall]) -> f64 {
     degree.bernstein(p).iter().map(|p| p.upper()).fold(f64::NEG_INFINITY, f64::max)
 }
 

@@ -135,13 +135,13 @@ pub fn derivatives(
 }
 
 /// Those where all springs act.
-pub fn all_springs(edges: &impl ContactEnergy, stiffness: f64) -> Derivatives {
+pub(crate) fn all_springs(edges: &impl ContactEnergy, stiffness: f64) -> Derivatives {
     let closed: Vec<f64> = (0..edges.count()).flat_map(|e| edges.closed(e)).collect();
     derivatives(edges, stiffness, &closed)
 }
 
 /// Those where none acts but what cannot let go.
-pub fn no_springs(edges: &impl ContactEnergy) -> Derivatives {
+pub(crate) fn no_springs(edges: &impl ContactEnergy) -> Derivatives {
     let of = |e: usize| {
         let closed: Vec<DoubleDouble> = edges.closed(e).into_iter().map(Into::into).collect();
         match edges.lets_go(e) {

@@ -354,31 +354,8 @@ impl Route for Coulomb<'_, '_, '_> {
         let system = self.system;
         let precisely = at.precisely;
         let is_first = std::mem::replace(&mut self.first, false);
-        let given = system.course.displacement(system.d).filter(|_| is_first);
-        if let Some(given) = given {
-            // With the prescribed components as they are.
-            let free = system.d.constraints.values().iter().map(|held| held.map(|c| c.is_none()));
-            for ((u, free), given) in iterate.u.iter_mut().zip(free).zip(given) {
-                for c in (0..2).filter(|&c| free[c]) {
-                    u[c] = given[c].into();
-                }
-            }
-            *at = iterate.evaluate(system, precisely);
-        } else if is_first {
-            let start = if system.d.slides.is_some() { f64::INFINITY } else { 0.0 };
-            let pieces = system.d.contact.len();
-            self.tresca(iterate, residuals, until, (&vec![[start; 3]; pieces], false))?;
-            *at = iterate.evaluate(system, precisely);
-            let pressures = self.pressures(at);
-            // A body that the bounds of this start do not hold is left where friction glued it.
-            let held = self.tresca(iterate, residuals, until, (&pressures, true));
-            if system.d.slides.is_none() {
-                held?;
-            }
-            *at = iterate.evaluate(system, precisely);
-        }
         if is_first {
-            self.at_start = self.factorizations;
+            self.begin(iterate, at, residuals, until)?;
         }
         let mut way = Way { is_first, precisely, ..Way::default() };
         let mut is_continued = false;
@@ -447,6 +424,42 @@ struct Way {
 }
 
 impl<'d, 'p> Coulomb<'_, 'd, 'p> {
+    /// Goes to the displacement from which the first pass starts: the one that is given, or Tresca's with what presses without
+    /// friction.
+    fn begin(
+        &mut self,
+        iterate: &mut Iterate,
+        at: &mut Evaluation,
+        residuals: &mut Vec<f64>,
+        until: Until,
+    ) -> Result<(), SolveError> {
+        let (system, precisely) = (self.system, at.precisely);
+        let slides = system.d.slides.is_some();
+        if let Some(given) = system.course.displacement(system.d) {
+            // With the prescribed components as they are.
+            let free = system.d.constraints.values().iter().map(|held| held.map(|c| c.is_none()));
+            for ((u, free), given) in iterate.u.iter_mut().zip(free).zip(given) {
+                for c in (0..2).filter(|&c| free[c]) {
+                    u[c] = given[c].into();
+                }
+            }
+        } else {
+            let start = if slides { f64::INFINITY } else { 0.0 };
+            let pieces = system.d.contact.len();
+            self.tresca(iterate, residuals, until, (&vec![[start; 3]; pieces], false))?;
+            *at = iterate.evaluate(system, precisely);
+            let pressures = self.pressures(at);
+            // A body that the bounds of this start do not hold is left where friction glued it.
+            let held = self.tresca(iterate, residuals, until, (&pressures, true));
+            if !slides {
+                held?;
+            }
+        }
+        *at = iterate.evaluate(system, precisely);
+        self.at_start = self.factorizations;
+        Ok(())
+    }
+
     /// Takes Newton's steps for F as long as they lead on; returns the evaluation at the end of one that does not.
     fn newton(
         &mut self,

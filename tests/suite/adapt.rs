@@ -12,8 +12,8 @@ use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
 use signorini::model::{Condition, Materials, PointSupport, Problem};
 use signorini::solve::{Method, Settings, solve};
-use signorini::study::Ladder;
-use signorini::study::ladder::fitted_slope;
+use study::Ladder;
+use study::ladder::fitted_slope;
 
 /// To a mesh of at most so many unknowns, whatever the bound is there.
 fn as_fine_as(max_unknowns: usize) -> Target {

@@ -7,13 +7,13 @@ use crate::common::exact::{on_square, singular, smooth};
 use crate::common::*;
 use signorini::certificates::proof::Role;
 use signorini::certificates::{Continuous, certify};
+use signorini::exact::Kind;
 use signorini::io::certificate;
 use signorini::model::Degree;
 use signorini::model::{Condition, Problem, SharedFunction};
 use signorini::results::Solution;
 use signorini::solve::{Settings, solve};
-use signorini::study::Ladder;
-use signorini::study::exact::Kind;
+use study::Ladder;
 
 /// A block on a roller at its left side, fixed at its top by its normal and its tangent, pressed on a floor that slopes; turned
 /// by an angle. The displacement along the normal of the roller is `on_roller` of X and Y, the coordinates of the block as it

@@ -20,7 +20,7 @@ use signorini::model::Degree;
 use signorini::model::{Condition, Obstacle, Problem, Side};
 use signorini::results::Solution;
 use signorini::solve::{Gamma0, Method, Settings, discretize, solve};
-use signorini::study::Ladder;
+use study::Ladder;
 
 /// The bounds on three levels of a ladder, each of which is above the true error of the same field, by less than a factor.
 fn bounds(what: &str, ladder: &Ladder, limit: f64) -> [f64; 3] {

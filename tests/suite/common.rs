@@ -5,13 +5,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use signorini::certificates::Continuous;
+use signorini::exact::{Errors, Exact};
 use signorini::io::certificate::{self, Header};
 use signorini::io::{Case, Expression};
 use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
 use signorini::model::{Condition, Diagonal, Mesh, Problem, Rectangle, SharedFunction, Space};
 use signorini::solve::{ContactQuadrature, Gamma0, Method};
-use signorini::study::{Errors, Exact};
 
 pub const DEGREES: [Degree; 2] = [Degree::One, Degree::Two];
 pub const EXACT: ContactQuadrature = ContactQuadrature::Exact;
@@ -173,10 +173,11 @@ pub mod exact {
     use std::f64::consts::PI;
     use std::sync::Arc;
 
+    use signorini::exact::Exact;
+    use signorini::exact::{Corner, Kind, Singular, SlipTip, Smooth, StickSlip};
     use signorini::model::{Degree, Perturbation, Structured, Trapezoid};
     use signorini::solve::Settings;
-    use signorini::study::exact::{Corner, Kind, Singular, SlipTip, Smooth, StickSlip};
-    use signorini::study::{Exact, Ladder};
+    use study::Ladder;
 
     use super::{EXACT, method, unit_material, unit_square};
 

@@ -23,16 +23,17 @@ use crate::common::exact::{
 use approx::assert_relative_eq;
 use signorini::contact::contact_line::assemble;
 use signorini::contact::{Discretization, EdgeRule, Piece, residual};
+use signorini::exact::{Errors, Exact};
 use signorini::kernel::P2;
 use signorini::model::Degree;
 use signorini::model::{Space, loads};
 use signorini::nalgebra::Vector2;
 use signorini::solve::iterate::Evaluated;
 use signorini::solve::{Gamma0, Settings, solve_discrete};
-use signorini::study::interpolation::{Interpolation, seminorms};
-use signorini::study::ladder::{fitted_slope, rates};
-use signorini::study::{Errors, Exact, a_priori};
-use signorini::study::{Ladder, Theorem};
+use study::a_priori;
+use study::interpolation::{Interpolation, seminorms};
+use study::ladder::{fitted_slope, rates};
+use study::{Ladder, Theorem};
 
 const LEVELS: usize = 4;
 const COARSEST: usize = 8;

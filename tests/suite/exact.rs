@@ -13,13 +13,13 @@ use approx::{abs_diff_eq, assert_relative_eq};
 
 use crate::common::Random;
 use crate::common::exact::{corner, on_square, on_trapezoid, singular, smooth};
+use signorini::exact::errors::POINTS;
+use signorini::exact::{Corner, Patch, Singular, SlipTip, Smooth, StickSlip};
+use signorini::exact::{Errors, Exact};
 use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
 use signorini::model::Space;
 use signorini::nalgebra::{Matrix2, Vector2};
-use signorini::study::errors::POINTS;
-use signorini::study::exact::{Corner, Patch, Singular, SlipTip, Smooth, StickSlip};
-use signorini::study::{Errors, Exact};
 
 /// A solution, its name, and its body: the unit square, or the wedge 0 < theta < omega.
 struct Sample {
@@ -312,7 +312,7 @@ fn values_agree_with_those_computed_elsewhere() {
 }
 
 /// The ladders whose integrals are tested, with the level that has 8 x 8 cells.
-fn ladders(degree: Degree) -> Vec<signorini::study::Ladder> {
+fn ladders(degree: Degree) -> Vec<study::Ladder> {
     vec![
         on_square(&smooth(3.0, 2.0, 1.0 / 3.0), degree, 8),
         on_square(&smooth(4.0, 3.0, 0.5), degree, 8),
@@ -324,7 +324,7 @@ fn ladders(degree: Degree) -> Vec<signorini::study::Ladder> {
 }
 
 /// The five errors by two rules, as the largest relative difference.
-fn difference_of_rules(ladder: &signorini::study::Ladder, points: [usize; 2]) -> f64 {
+fn difference_of_rules(ladder: &study::Ladder, points: [usize; 2]) -> f64 {
     let (_, problem, solution) = ladder.solve(0).unwrap();
     let space = Space::new(&problem.mesh, Degree::Two);
     let [a, b] = points.map(|points| {
@@ -382,7 +382,7 @@ fn control_errors_by_a_rule_that_ignores_where_the_solution_is_not_smooth_do_mov
     /// A solution that hides its features.
     #[derive(Debug)]
     struct Hidden(Exact);
-    impl signorini::study::ExactSolution for Hidden {
+    impl signorini::exact::ExactSolution for Hidden {
         fn material(&self) -> &Material<f64> {
             self.0.material()
         }

@@ -7,6 +7,7 @@ use signorini::certificates::certify;
 use signorini::contact::friction::Bound;
 use signorini::contact::law::Law;
 use signorini::contact::{Discretization, Friction};
+use signorini::exact::Exact;
 use signorini::kernel::{Material, Plane, PreciseBall};
 use signorini::linear::system::System;
 use signorini::model::Degree;
@@ -16,8 +17,7 @@ use signorini::proof::enclosure::enclose;
 use signorini::results::{RouteName, Solution, Verdict};
 use signorini::solve::route;
 use signorini::solve::{Course, Gamma0, Method, Settings, SolveError, Times, discretize, solve};
-use signorini::study::Exact;
-use signorini::study::ladder::rates;
+use study::ladder::rates;
 
 use crate::bodies::{self, FAILURES, PROVED};
 use crate::common::exact::{slip_tip, stick_slip, with_friction};

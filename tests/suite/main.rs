@@ -14,7 +14,6 @@ mod certify;
 mod command;
 mod convergence;
 #[cfg(feature = "cli")]
-mod convergence_command;
 mod course;
 mod documents;
 #[cfg(all(feature = "cli", unix))]

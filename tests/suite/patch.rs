@@ -3,14 +3,14 @@
 
 use std::sync::Arc;
 
+use signorini::exact::Exact;
+use signorini::exact::{self, Kind, Patch};
 use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
 use signorini::model::{Diagonal, Problem};
 use signorini::nalgebra::Vector2;
 use signorini::results::Solution;
 use signorini::solve::{Settings, solve};
-use signorini::study::Exact;
-use signorini::study::exact::{self, Kind, Patch};
 
 use super::tensor::{FULL, spruce};
 use crate::common::*;

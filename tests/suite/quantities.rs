@@ -10,14 +10,14 @@ use signorini::certificates::quantities::{Limit, Name};
 use signorini::certificates::{
     Asked, Continuous, Ramp, Target, adapt, adapt_to, certify, certify_with, forces,
 };
+use signorini::exact::Exact;
+use signorini::exact::{self, Kind, Patch};
 use signorini::io::certificate::{self, Header};
 use signorini::kernel::Ball;
 use signorini::model::Degree;
 use signorini::model::{Condition, Perturbation, Problem, Structured};
 use signorini::results::Solution;
 use signorini::solve::{Method, Settings, solve};
-use signorini::study::Exact;
-use signorini::study::exact::{self, Kind, Patch};
 
 use super::certify::accepts;
 use super::common::exact::singular;

@@ -7,6 +7,8 @@ use approx::assert_relative_eq;
 use crate::common::exact::on_square;
 use crate::common::*;
 use signorini::certificates::{certify, format};
+use signorini::exact::Exact;
+use signorini::exact::Smooth;
 use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
 use signorini::model::material::{
@@ -15,8 +17,7 @@ use signorini::model::material::{
 use signorini::model::{Condition, Diagonal, Mesh, Obstacle, Problem};
 use signorini::results::{Solution, Verdict};
 use signorini::solve::{Settings, solve};
-use signorini::study::exact::Smooth;
-use signorini::study::{Exact, Ladder};
+use study::Ladder;
 
 /// Entries of one size that couple all strains: eigenvalues 2.3, 5.2 and 13.5.
 pub const FULL: [f64; 6] = [12.0, 3.0, 2.0, 5.0, -1.0, 2.0];

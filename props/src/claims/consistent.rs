@@ -8,13 +8,13 @@
 //! is a test (tests/suite/exact.rs).
 
 use signorini::contact::Discretization;
+use signorini::exact::ExactSolution;
+use signorini::exact::errors::POINTS;
 use signorini::kernel::{ContactPoint, Element, P1, P2, positive_part};
 use signorini::model::graded_quadrature::Rule;
 use signorini::model::{Condition, Degree};
 use signorini::nalgebra::Vector2;
 use signorini::solve::discretize_any;
-use signorini::study::ExactSolution;
-use signorini::study::errors::POINTS;
 
 use super::known::{CLASSES, Sample, samples};
 use crate::claim::Outcome;

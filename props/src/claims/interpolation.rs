@@ -1,5 +1,5 @@
 //! Theorem 3.5 with a number, for P1 and nu = 1/2 (docs/theory.md, 9.6): the interpolation estimates (22)-(24) with the
-//! constants of `signorini::study::interpolation`, on quadratics over rationals, and the bound that follows from them against
+//! constants of `study::interpolation`, on quadratics over rationals, and the bound that follows from them against
 //! the errors of the solver.
 //!
 //! ```text
@@ -13,9 +13,9 @@ use signorini::kernel::{Material, Plane, Triangle, positive_part};
 use signorini::model::{Degree, Space};
 use signorini::nalgebra::{Matrix2, Vector2};
 use signorini::solve::Gamma0;
-use signorini::study::Ladder;
-use signorini::study::a_priori;
-use signorini::study::interpolation::{
+use study::Ladder;
+use study::a_priori;
+use study::interpolation::{
     Interpolation, gradient_constant_squared, seminorms, trace_constant_squared,
 };
 

@@ -5,12 +5,13 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use proptest::prelude::*;
+use signorini::exact::Exact;
+use signorini::exact::{Corner, Kind, Singular, Smooth};
 use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
 use signorini::model::{Diagonal, Perturbation, Problem, Rectangle, Structured, Trapezoid};
 use signorini::solve::{Method, Settings};
-use signorini::study::exact::{Corner, Kind, Singular, Smooth};
-use signorini::study::{Exact, Ladder};
+use study::Ladder;
 
 /// A solution with its parameters.
 #[derive(Clone, Debug)]

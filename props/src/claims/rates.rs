@@ -6,9 +6,10 @@
 //! faster (0 < nu < 1/2), and the end of contact, in H^(5/2), where P1 has the rate 1 and P2 the rate 3/2 of Remark 3.7.
 //! The whole study is `tests/suite/convergence.rs` and `docs/convergence.md`.
 
+use signorini::exact::Errors;
 use signorini::model::Degree;
-use signorini::study::ladder::fitted_slope;
-use signorini::study::{Errors, Ladder, Theorem};
+use study::ladder::fitted_slope;
+use study::{Ladder, Theorem};
 
 use super::known::{Known, Sample};
 use crate::claim::{Claim, Outcome, noticed, text};

@@ -3,7 +3,8 @@
 //! is their square root, with the root of kappa where one belongs.
 
 use proptest::prelude::*;
-use signorini::study::{Errors, a_priori};
+use signorini::exact::Errors;
+use study::a_priori;
 
 use props::claims::rates;
 use props::claims::theorem_3_4::scaled_sides;

@@ -67,7 +67,7 @@ impl Facing {
     }
 
     /// Where the point of boundary `i`, on the edge `e` of it, comes to lie on the chord of that edge.
-    pub fn on_chord(&self, i: usize, e: usize, curve: &SmoothEdge) -> f64 {
+    pub(crate) fn on_chord(&self, i: usize, e: usize, curve: &SmoothEdge) -> f64 {
         let s = self.at[i].iter().flatten().find(|place| place.edge == e).map(|place| place.s);
         match s {
             // The place of a node is exact.

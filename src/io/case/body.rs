@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::table::{Spot, Table, Value};
+use crate::exact::{self, Exact};
 use crate::io::expression::Expression;
 use crate::io::input::FileError;
 use crate::kernel::{Material, Plane};
@@ -13,7 +14,6 @@ use crate::model::material::{
 };
 use crate::model::{Materials, Mesh, SharedFunction, SurfaceForce};
 use crate::quote::{self, key as shown, quoted};
-use crate::study::{Exact, exact};
 
 const MODULI: [&str; 6] = ["lambda", "mu", "young", "poisson", "stiffness", "orthotropic"];
 

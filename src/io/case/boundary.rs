@@ -7,13 +7,12 @@ use super::body::constant;
 use super::exact::read_kind;
 use super::table::{Spot, Table, Value};
 use crate::contact::Pair;
+use crate::exact::{Exact, Kind};
 use crate::io::input::FileError;
 use crate::model::{
     BoundaryEdge, Condition, Hand, Mesh, Obstacle, Path, PointSupport, SharedFunction, Side,
 };
 use crate::quote::{listed, names, quoted};
-use crate::study::Exact;
-use crate::study::exact::Kind;
 
 type Obstacles<'s> = BTreeMap<&'s str, (Spot<'s>, Obstacle)>;
 

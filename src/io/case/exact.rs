@@ -1,16 +1,15 @@
 //! The section \[exact\] of a case file: a built-in exact solution, which supplies loads, boundary data and gap.
 //! Their parameters: docs/case.md, which a test compares with what is read here.
 //!
-//! The solutions themselves: [`exact`](crate::study::exact).
+//! The solutions themselves: [`exact`](crate::exact).
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
 use super::table::{Table, Value};
+use crate::exact::{Corner, Exact, Kind, Patch, Singular, Smooth};
 use crate::io::input::FileError;
 use crate::kernel::Material;
-use crate::study::Exact;
-use crate::study::exact::{Corner, Kind, Patch, Singular, Smooth};
 
 /// Reads the parameters of a solution, beside the key that names it.
 type Read = fn(&Table, Material<f64>) -> Result<Exact, FileError>;

@@ -49,7 +49,7 @@ impl Linked {
     }
 
     /// They are on the two boundaries of a pair, or in two bodies that are one.
-    pub fn may_meet(&self, a: usize, b: usize) -> bool {
+    pub(crate) fn may_meet(&self, a: usize, b: usize) -> bool {
         let [p, q] = [a, b].map(|vertex| self.body[vertex]);
         self.pairs.iter().any(|[first, second]| {
             [(first, second), (second, first)].into_iter().any(|(first, second)| {

@@ -6,6 +6,13 @@ use std::sync::Arc;
 use super::{BoundaryEdge, Mesh, MeshError};
 use crate::model::groups::groups;
 
+/// A mesh after vertices have been copied, and the copies of each of them, the vertex itself first.
+struct Copied {
+    vertices: Vec<[f64; 2]>,
+    triangles: Vec<[usize; 3]>,
+    copies: BTreeMap<usize, Vec<usize>>,
+}
+
 impl Mesh {
     /// Splits the body along the edges that two named surfaces have in common. The boundary of the first towards the second is
     /// called `first|second`, the other one `second|first`. A vertex around which triangles go on from one surface to the other
@@ -23,14 +30,7 @@ impl Mesh {
             return Err(MeshError::NameOfSplit { name: name.clone() });
         }
         let triangles = self.triangles();
-        // The two triangles of each edge, each with its number of the edge.
-        let mut beside = vec![[None; 2]; self.edge_count()];
-        for (t, edges) in self.triangle_edges().iter().enumerate() {
-            for (local, &e) in edges.iter().enumerate() {
-                let side = usize::from(beside[e][0].is_some());
-                beside[e][side] = Some(BoundaryEdge { triangle: t, local });
-            }
-        }
+        let beside = self.beside();
         let inner = || beside.iter().filter_map(|sides| Some([sides[0]?, sides[1]?]));
         let cut = |[a, b]: [BoundaryEdge; 2]| -> Option<[BoundaryEdge; 2]> {
             let is = |i: usize, edge: BoundaryEdge| of[i].contains(&edge.triangle);
@@ -56,23 +56,7 @@ impl Mesh {
             3 * triangles.len(),
             joined.filter(|[c, _]| on_cut.contains(&triangles[c / 3][c % 3])),
         );
-        let mut vertices = self.vertices().to_vec();
-        let mut split = triangles.to_vec();
-        let mut vertex_of = BTreeMap::new();
-        let mut copies: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for (t, corners) in triangles.iter().enumerate() {
-            for (k, vertex) in corners.iter().enumerate().filter(|(_, v)| on_cut.contains(v)) {
-                split[t][k] = *vertex_of.entry(group[3 * t + k]).or_insert_with(|| {
-                    let copies = copies.entry(*vertex).or_default();
-                    let copy = if copies.is_empty() { *vertex } else { vertices.len() };
-                    if copy == vertices.len() {
-                        vertices.push(vertices[*vertex]);
-                    }
-                    copies.push(copy);
-                    copy
-                });
-            }
-        }
+        let Copied { vertices, triangles: split, copies } = self.copied(&on_cut, &group);
         let ends = |edge: &BoundaryEdge| [1, 2].map(|k| split[edge.triangle][(edge.local + k) % 3]);
         let topology = &self.topology;
         let mut named: Vec<(String, Vec<[usize; 2]>)> = topology
@@ -103,6 +87,39 @@ impl Mesh {
         };
         let points = topology.points.iter().map(|(name, members)| (name.clone(), all(members)));
         mesh.with_names(topology.surfaces.clone(), points.collect())
+    }
+
+    /// The two triangles of each edge, each with its number of the edge.
+    fn beside(&self) -> Vec<[Option<BoundaryEdge>; 2]> {
+        let mut beside = vec![[None; 2]; self.edge_count()];
+        for (t, edges) in self.triangle_edges().iter().enumerate() {
+            for (local, &e) in edges.iter().enumerate() {
+                let side = usize::from(beside[e][0].is_some());
+                beside[e][side] = Some(BoundaryEdge { triangle: t, local });
+            }
+        }
+        beside
+    }
+
+    /// Copies each vertex in `on_cut` once for every group of corners at it but the first.
+    fn copied(&self, on_cut: &BTreeSet<usize>, group: &[usize]) -> Copied {
+        let (mut vertices, mut triangles) = (self.vertices().to_vec(), self.triangles().to_vec());
+        let mut vertex_of = BTreeMap::new();
+        let mut copies: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (t, corners) in self.triangles().iter().enumerate() {
+            for (k, vertex) in corners.iter().enumerate().filter(|(_, v)| on_cut.contains(v)) {
+                triangles[t][k] = *vertex_of.entry(group[3 * t + k]).or_insert_with(|| {
+                    let copies = copies.entry(*vertex).or_default();
+                    let copy = if copies.is_empty() { *vertex } else { vertices.len() };
+                    if copy == vertices.len() {
+                        vertices.push(vertices[*vertex]);
+                    }
+                    copies.push(copy);
+                    copy
+                });
+            }
+        }
+        Copied { vertices, triangles, copies }
     }
 }
 

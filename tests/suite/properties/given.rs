@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use proptest::array::uniform2;
+use signorini::exact::Exact;
+use signorini::exact::{Corner, Kind, Singular, Smooth};
 use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
 use signorini::model::graded_quadrature::{Features, Rule};
@@ -16,10 +18,8 @@ use signorini::solve::{
     ContactQuadrature, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings, SolveError,
     discretize,
 };
-use signorini::study::Exact;
-use signorini::study::Ladder;
-use signorini::study::exact::{Corner, Kind, Singular, Smooth};
-use signorini::study::ladder::{fitted_slope, rates};
+use study::Ladder;
+use study::ladder::{fitted_slope, rates};
 
 use super::{Outcome, for_all, properties, text};
 use crate::common::{constant, unit_material};

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use proptest::array::{uniform2, uniform3, uniform6};
 use signorini::contact::contact_line::Coercivity;
 use signorini::contact::{Discretization, EdgeRule};
+use signorini::exact::{Errors, ExactSolution};
 use signorini::kernel::DoubleDouble;
 use signorini::kernel::edge_integral::ExactEdge;
 use signorini::kernel::element::displacement_gradient;
@@ -14,7 +15,6 @@ use signorini::model::Degree;
 use signorini::model::{Condition, Materials, Problem, quadrature};
 use signorini::nalgebra::{Matrix2, Vector2};
 use signorini::solve::{ContactQuadrature, Gamma0, Method, SolveError, discretize};
-use signorini::study::{Errors, ExactSolution};
 
 use super::bodies::small_bodies;
 use super::{Outcome, field, for_all, properties, text};

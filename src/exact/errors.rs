@@ -12,7 +12,7 @@ use nalgebra::Vector2;
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
-use super::exact::ExactSolution;
+use super::ExactSolution;
 use crate::contact::Piece;
 use crate::kernel::element::displacement_gradient;
 use crate::kernel::{ContactPoint, Element, positive_part};

@@ -3,17 +3,19 @@
 //!
 //! a(v^h, w) = a(u, w) = L(w) + int_{Gamma_C} sigma_n(u) w_n for all w in V^h.
 
-use crate::contact::Discretization;
-use crate::contact::contact_line::Gamma;
-use crate::linear::factor::Factor;
-use crate::linear::matrix;
-use crate::linear::matrix::{Neighbours, Numbering};
-use crate::linear::ordering::nested_dissection;
-use crate::model::Problem;
-use crate::model::graded_quadrature::Rule;
-use crate::results::Solution;
-use crate::solve::{ContactQuadrature, Gamma0, Method, SolveError, discretize};
-use crate::study::{Errors, ExactSolution, a_priori, errors};
+use signorini::contact::Discretization;
+use signorini::contact::contact_line::Gamma;
+use signorini::exact::{Errors, ExactSolution, errors};
+use signorini::linear::factor::Factor;
+use signorini::linear::matrix;
+use signorini::linear::matrix::{Neighbours, Numbering};
+use signorini::linear::ordering::nested_dissection;
+use signorini::model::Problem;
+use signorini::model::graded_quadrature::Rule;
+use signorini::results::Solution;
+use signorini::solve::{ContactQuadrature, Gamma0, Method, SolveError, discretize};
+
+use crate::a_priori;
 
 /// The two sides and their ingredients.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +35,7 @@ impl Theorem {
     /// Evaluates both sides for `solution`, the solution of `problem`, whose exact solution is `exact`.
     ///
     /// # Errors
-    /// As [`solve`](crate::solve::solve).
+    /// As [`solve`](signorini::solve::solve).
     pub fn new(
         problem: &Problem,
         solution: &Solution,
@@ -99,7 +101,7 @@ fn projection(d: &Discretization, exact: &dyn ExactSolution) -> Result<Vec<[f64;
     }
     let rule = Rule::new(exact.features(), errors::POINTS);
     for edge in &d.contact {
-        let ends = d.space.mesh().ends(edge.edge()).map(|vertex| d.space.mesh().vertices()[vertex]);
+        let ends = d.space.mesh().places_of_ends(edge.edge());
         let (nodes, normal) = (d.space.edge_nodes(edge.edge()), edge.normal());
         rule.on_edge(ends, [], |point| {
             let sigma_n = exact.stress(point.x).normal(normal);

@@ -13,13 +13,13 @@
 use std::f64::consts::PI;
 
 use super::a_priori;
-use super::errors::{Errors, POINTS};
-use super::exact::ExactSolution;
-use crate::contact::Piece;
-use crate::kernel::{Material, Scalar, Triangle};
-use crate::model::graded_quadrature::{EdgePoint, Rule};
-use crate::model::material::largest_eigenvalue;
-use crate::model::space::Space;
+use signorini::contact::Piece;
+use signorini::exact::ExactSolution;
+use signorini::exact::errors::{Errors, POINTS};
+use signorini::kernel::{Material, Scalar, Triangle};
+use signorini::model::graded_quadrature::{EdgePoint, Rule};
+use signorini::model::material::largest_eigenvalue;
+use signorini::model::space::Space;
 
 /// c_T^2 of (22).
 pub fn gradient_constant_squared<S: Scalar>(triangle: &Triangle<S>) -> S {

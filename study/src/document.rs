@@ -2,7 +2,7 @@
 //! Theorem 3.4, and two cases from the literature. From the root of the repository:
 //!
 //! ```text
-//! cargo bench --bench study
+//! cargo run --release -p study -- document
 //! ```
 
 use std::collections::BTreeMap;
@@ -14,8 +14,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use signorini::certificates::{Target, adapt, certify};
+use signorini::exact::{Corner, Errors, Exact, Kind, Singular, Smooth};
 use signorini::io::Case;
-use signorini::io::convergence::{self, NORMS, Study};
 use signorini::io::picture::plot::{self, Figure, Panel, Style};
 use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
@@ -25,10 +25,10 @@ use signorini::model::{
 };
 use signorini::results::Solution;
 use signorini::solve::{ContactQuadrature, Gamma0, Method, Settings, SolveError, solve};
-use signorini::study::exact::{Corner, Kind, Singular, Smooth};
-use signorini::study::ladder::fitted_slope;
-use signorini::study::{Errors, Exact};
-use signorini::study::{Ladder, Theorem};
+
+use crate::convergence::{self, NORMS, Study};
+use crate::ladder::fitted_slope;
+use crate::{Ladder, Theorem};
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
@@ -184,7 +184,7 @@ fn rates(text: &mut String, figures: &Path, samples: &[Sample]) -> Result<()> {
             for perturbed in [false, true] {
                 eprintln!("{}, P{}, perturbed: {perturbed}", sample.name, degree.number());
                 let ladder = sample.ladder(degree, perturbed, COARSEST);
-                studies.push(convergence::climb(ladder, LEVELS, || {})?);
+                studies.push(convergence::climb(ladder, LEVELS)?);
             }
         }
         for study in &studies {
@@ -336,7 +336,7 @@ fn locking(text: &mut String, figures: &Path) -> Result<()> {
                 omega: None,
             };
             let ladder = sample.ladder(sweep.degree, false, 8);
-            let study = convergence::climb(ladder, 4, || {})?;
+            let study = convergence::climb(ladder, 4)?;
             let level = &study.levels[2];
             cells.push(format!(
                 "{:.3e} | {:.2}",
@@ -691,7 +691,11 @@ fn adaptivity(text: &mut String, figures: &Path, samples: &[Sample]) -> Result<(
     Ok(())
 }
 
-fn main() -> Result<()> {
+/// Writes the page and its figures into docs/ of the working directory.
+///
+/// # Errors
+/// A solution that is not found, or a file that can't be written.
+pub fn write() -> Result<()> {
     let figures = Path::new("docs/figures");
     fs::create_dir_all(figures)?;
     let samples = samples()?;
@@ -699,9 +703,9 @@ fn main() -> Result<()> {
         "# Convergence\n\n\
          The paper proves rates without numerical experiments. Here are experiments on the exact solutions of \
          [theory.md](theory.md#10-exact-solutions), lambda = mu = 1 unless it says otherwise. This page and its figures are written by\n\n\
-         ```\ncargo bench --bench study\n```\n\n\
+         ```\ncargo run --release -p study -- document\n```\n\n\
          and one case is studied by, for example,\n\n\
-         ```\nsignorini convergence cases/smooth.toml --levels 5 --degree 1,2 --mesh structured,perturbed\n```\n\n\
+         ```\ncargo run --release -p study -- convergence cases/smooth.toml --levels 5 --degree 1,2 --mesh structured,perturbed\n```\n\n\
          For P1 with exact contact integrals, u in H^2 and kappa < 1 the command prints a column *proved*: a bound of \
          (energy^2 + contact_residual^2 / (1 - kappa))^(1/2) by Theorem 3.5 with its number ([theory.md](theory.md), 9.6), and \
          how many times the error that is. It rests on Kobayashi's constant as quoted, takes the load as exact, and is a double \

@@ -9,8 +9,8 @@
 //! integrals and loads. The bounds are written once, generic over the number type, for numbers H, S, Q and, where a root of
 //! kappa occurs, for that root: what the solver prints is their square root in doubles.
 
-use super::Errors;
-use crate::kernel::Scalar;
+use signorini::exact::Errors;
+use signorini::kernel::Scalar;
 
 /// (E^2 + Z^2/delta)^(1/2) from the errors of u^h.
 pub fn left(kappa: f64, e: &Errors) -> f64 {

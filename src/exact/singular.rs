@@ -77,7 +77,7 @@ impl<S: Enclosing> Singular<S> {
     }
 
     /// du_i/dx_j. Without a value at the singular point itself when y > 0 is lost: there y r^(-1/2) counts as 0.
-    pub fn gradient_at(&self, place: &Place<S>) -> Matrix2<S> {
+    pub(crate) fn gradient_at(&self, place: &Place<S>) -> Matrix2<S> {
         let &Place { over_r, cos, sin, .. } = place;
         let (one, two) = (S::from(1), S::from(2));
         let am = self.amplitude;

@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
-use crate::model::{Degree, MeshError, Perturbation, Problem, Space, Structured};
-use crate::results::Solution;
-use crate::solve::{
+use signorini::exact::{self, Errors, Exact, Kind};
+use signorini::model::{Degree, MeshError, Perturbation, Problem, Space, Structured};
+use signorini::results::Solution;
+use signorini::solve::{
     ContactQuadrature, Gamma0, Method, Outline, Settings, SolveError, check, solve,
 };
-use crate::study::exact::{self, Kind};
-use crate::study::{Errors, Exact, interpolation};
+
+use crate::interpolation;
 
 /// A family of meshes with all that is solved on them: level l has 2^l times as many cells along each axis as `body`.
 #[derive(Clone, Debug)]
@@ -56,7 +57,7 @@ pub struct Level {
     pub gamma0: f64,
     /// kappa = gamma0 C_h.
     pub kappa: f64,
-    /// The bound of [`a_priori::left`](crate::study::a_priori::left) by Theorem 3.5 with its number; for P1 with exact
+    /// The bound of [`a_priori::left`](crate::a_priori::left) by Theorem 3.5 with its number; for P1 with exact
     /// contact integrals, u in H^2 and kappa < 1.
     pub proved: Option<f64>,
 }

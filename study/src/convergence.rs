@@ -1,18 +1,17 @@
-//! The command `signorini convergence`: a case with an exact solution on finer and finer meshes, as a table for people, as
+//! A case with an exact solution on finer and finer meshes, as a table for people, as
 //! CSV and as a figure.
 
 use std::path::{Path, PathBuf};
 
-use super::case::Case;
-use super::csv;
-use super::files::Output;
-use super::input::Failure;
-use super::picture::plot::{COLOURS, Figure, Panel, Style, figure};
-use crate::model::{Degree, Perturbation};
-use crate::solve::Method;
-use crate::study::ladder::{fitted_slope, rates};
-use crate::study::{Errors, a_priori};
-use crate::study::{Ladder, LadderError, Level};
+use signorini::exact::Errors;
+use signorini::io::files::Output;
+use signorini::io::picture::plot::{COLOURS, Figure, Panel, Style, figure};
+use signorini::io::{Case, Failure};
+use signorini::model::{Degree, Perturbation};
+use signorini::solve::Method;
+
+use crate::ladder::{fitted_slope, rates};
+use crate::{Ladder, LadderError, Level, a_priori};
 
 /// The distance by which vertices are moved where the case doesn't say.
 const PERTURBATION: Perturbation = Perturbation { amount: 0.2, seed: 1 };
@@ -20,6 +19,7 @@ const PERTURBATION: Perturbation = Perturbation { amount: 0.2, seed: 1 };
 /// The results on the meshes of one ladder.
 #[derive(Clone, Debug)]
 pub struct Study {
+    /// The degree of the elements.
     pub degree: Degree,
     /// The vertices of the meshes are moved, as the case says or by up to 0.2 cells.
     pub perturbed: bool,
@@ -51,8 +51,8 @@ pub fn ladder(
     })
 }
 
-/// Solves the first `levels` levels of a ladder at one gamma0, and calls `done` after each.
-pub fn climb(ladder: Ladder, levels: usize, mut done: impl FnMut()) -> Result<Study, Failure> {
+/// Solves the first `levels` levels of a ladder at one gamma0.
+pub fn climb(ladder: Ladder, levels: usize) -> Result<Study, Failure> {
     let (degree, perturbed) = (ladder.method.degree, ladder.perturbation.is_some());
     let failed = |level: usize| {
         move |error: LadderError| {
@@ -67,7 +67,6 @@ pub fn climb(ladder: Ladder, levels: usize, mut done: impl FnMut()) -> Result<St
     let mut climbed = Vec::with_capacity(levels);
     for level in 0..levels {
         climbed.push(ladder.solve(level).map_err(failed(level))?.0);
-        done();
     }
     Ok(Study { degree, perturbed, promised: ladder.promised_rate(), levels: climbed })
 }
@@ -89,7 +88,7 @@ const PROVED: &str = "proved: (energy^2 + contact_residual^2 / (1 - kappa))^(1/2
                       constant), and how many times that is\n";
 
 /// The number of finest levels to which the slope is fitted.
-pub(crate) const FITTED: usize = 4;
+const FITTED: usize = 4;
 
 impl Study {
     /// The name, such as "P2, structured".
@@ -101,6 +100,7 @@ impl Study {
         if self.perturbed { "perturbed" } else { "structured" }
     }
 
+    /// The largest h_T of each level.
     pub fn sizes(&self) -> Vec<f64> {
         self.levels.iter().map(|level| level.h).collect()
     }
@@ -161,20 +161,27 @@ fn shown(rate: Option<f64>) -> String {
     }
 }
 
+/// The shortest decimal that reads back to the same double.
+fn number(x: f64) -> String {
+    format!("{x:?}")
+}
+
+/// What [`write`] writes.
 pub const FILES: [&str; 2] = ["convergence.csv", "convergence.svg"];
 
+/// The table of all levels as CSV.
 pub fn csv(studies: &[Study]) -> String {
     let names = NORMS.map(|(name, _, _)| name).join(",");
     let mut text = format!("degree,mesh,h,unknowns,{names},newton_steps,gamma0,kappa,proved\n");
     for study in studies {
         for level in &study.levels {
             let mut cells = vec![study.degree.number().to_string(), study.meshes().to_owned()];
-            cells.extend([csv::number(level.h), level.unknowns.to_string()]);
-            cells.extend(NORMS.map(|(_, of, _)| csv::number(of(&level.errors))));
+            cells.extend([number(level.h), level.unknowns.to_string()]);
+            cells.extend(NORMS.map(|(_, of, _)| number(of(&level.errors))));
             cells.push(level.newton_steps.to_string());
-            cells.extend([level.gamma0, level.kappa].map(csv::number));
-            cells.push(level.proved.map_or_else(String::new, csv::number));
-            text += &csv::line(cells);
+            cells.extend([level.gamma0, level.kappa].map(number));
+            cells.push(level.proved.map_or_else(String::new, number));
+            text += &(cells.join(",") + "\n");
         }
     }
     text

@@ -14,6 +14,7 @@
 //! lambda is the coefficient that acts in the plane, so plane stress needs no second set of formulas.
 
 mod corner;
+pub mod errors;
 mod patch;
 mod singular;
 mod slip_tip;
@@ -25,6 +26,7 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 pub use corner::Corner;
+pub use errors::Errors;
 pub use patch::Patch;
 pub use singular::{Place, Singular};
 pub use slip_tip::SlipTip;
