@@ -133,37 +133,55 @@ pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Fi
 }
 
 /// Puts v on the obstacle where it is pressed on both sides, and to rest across where it sticks: the method gives way there a little, on
-/// curved boundaries by as much as an edge is off its arc, and the bound counts the pressure times that.
+/// curved boundaries by as much as an edge is off its arc, and the bound counts the tractions times that. Where they would save less than the
+/// move costs, v stays; so does a v of degree 1 without friction, which follows no arc.
 fn settle(parts: &ProblemParts, v: &mut Field) {
-    let is_off = |edge: &&Contact| edge.has_friction() || edge.gap_bulge != 0.0;
-    let obstacles = || parts.contact.iter().filter(|edge| !edge.is_pair()).filter(is_off);
-    // At each vertex the direction and the gap, and whether it is pressed and sticks on all edges.
-    let mut at_vertices: BTreeMap<usize, (Vector2<f64>, f64, [bool; 2])> = BTreeMap::new();
+    let quadratic = v.bulges.is_some();
+    let is_settled = |edge: &&Contact| !edge.is_pair() && (quadratic || edge.has_friction());
+    let obstacles = || parts.contact.iter().filter(is_settled);
+    // What a move of 1 saves: the tractions along and across, over the modulus.
+    let saved = |edge: &Contact| {
+        let scale = edge.length / (WORTH * parts.material(edge.edge.triangle).mu());
+        edge.least_tractions().map(|traction| traction * scale)
+    };
+    // At each vertex the direction and the gap, and how far v may be moved along and across.
+    let mut at_vertices: BTreeMap<usize, (Vector2<f64>, f64, [f64; 2])> = BTreeMap::new();
     for edge in obstacles() {
+        let own = saved(edge);
         for (k, vertex) in parts.mesh.ends(edge.edge).into_iter().enumerate() {
-            let here = (edge.directions[k], edge.gap[k], [true; 2]);
-            let (_, _, rests) = at_vertices.entry(vertex).or_insert(here);
-            *rests = [rests[0] && edge.is_pressed(), rests[1] && edge.sticks()];
+            let here = (edge.directions[k], edge.gap[k], own);
+            let (_, _, most) = at_vertices.entry(vertex).or_insert(here);
+            *most = [0, 1].map(|c| most[c].min(own[c]));
         }
     }
-    let rest = |v: &mut [f64; 2], d: Vector2<f64>, gap: f64, [is_pressed, sticks]: [bool; 2]| {
-        let (at, e) = (Vector2::from(*v), turned(d));
-        let along = if is_pressed { at.dot(&d) - gap } else { 0.0 };
-        let across = if sticks { at.dot(&e) } else { 0.0 };
-        *v = (at - (d * along + e * across) / d.dot(&d)).into();
+    // The move that puts a point on the obstacle and to rest.
+    let rest = |at: Vector2<f64>, d: Vector2<f64>, gap: f64, most: [f64; 2]| {
+        let e = turned(d);
+        let moves = [gap - at.dot(&d), -at.dot(&e)];
+        let [along, across] =
+            [0, 1].map(|c| if moves[c].abs() <= most[c] { moves[c] } else { 0.0 });
+        (d * along + e * across) / d.dot(&d)
     };
-    for (vertex, (d, gap, rests)) in at_vertices {
+    let vertices = &mut v.vertices;
+    for (vertex, (d, gap, most)) in at_vertices {
         if matches!(parts.free_at(vertex), Free::All) {
-            rest(&mut v.vertices[vertex], d, gap, rests);
+            let at = Vector2::from(vertices[vertex]);
+            vertices[vertex] = (at + rest(at, d, gap, most)).into();
         }
     }
     let Some(bulges) = &mut v.bulges else { return };
     for edge in obstacles() {
+        let bulge = &mut bulges[parts.mesh.triangle_edges()[edge.edge.triangle][edge.edge.local]];
+        let [a, b] = parts.mesh.ends(edge.edge).map(|vertex| Vector2::from(vertices[vertex]));
+        let middle = (a + b) / 2.0 + Vector2::from(*bulge);
         let d = (edge.directions[0] + edge.directions[1]) / 2.0;
-        let number = parts.mesh.triangle_edges()[edge.edge.triangle][edge.edge.local];
-        rest(&mut bulges[number], d, edge.gap_bulge, [edge.is_pressed(), edge.sticks()]);
+        let gap = (edge.gap[0] + edge.gap[1]) / 2.0 + edge.gap_bulge;
+        *bulge = (Vector2::from(*bulge) + rest(middle, d, gap, saved(edge))).into();
     }
 }
+
+/// The energy of a move, over modulus and square of the move.
+const WORTH: f64 = 2.0;
 
 /// The number of times that two bodies are moved apart: what is moved at one contact moves its neighbours.
 const SWEEPS: usize = 16;

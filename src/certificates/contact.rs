@@ -376,10 +376,12 @@ impl Contact {
         self.parts.iter().all(|part| part.pressure.iter().all(|&p| p < 0.0))
     }
 
-    /// Friction keeps it from sliding: the tractions across are nowhere at their bound.
-    pub fn sticks(&self) -> bool {
-        let below = |part: &Part| (0..2).all(|k| part.shear[k].abs() < self.bound_at(part.ends[k]));
-        self.has_friction() && self.parts.iter().all(below)
+    /// The least pressure, and by how much friction could bear more where it is least.
+    pub fn least_tractions(&self) -> [f64; 2] {
+        let ends = || self.parts.iter().flat_map(|part| [0, 1].map(|k| (part, k)));
+        let pressure = ends().map(|(part, k)| -part.pressure[k]).fold(f64::INFINITY, f64::min);
+        let margin = ends().map(|(part, k)| self.bound_at(part.ends[k]) - part.shear[k].abs());
+        [pressure, margin.fold(f64::INFINITY, f64::min)]
     }
 
     /// Tractions act across the direction of contact up to a bound.

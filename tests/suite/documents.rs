@@ -71,7 +71,7 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
             ],
         ),
         ("cases/singular.toml", &["method.degree=1", "adapt.target=\"20 %\""]),
-        ("cases/singular.toml", &["adapt.target=\"1 %\"", "adapt.max_unknowns=10"]),
+        ("cases/singular.toml", &["adapt.target=\"0.1 %\"", "adapt.max_unknowns=10"]),
         (
             "cases/block.toml",
             &[
