@@ -231,8 +231,9 @@ fn nodes_that_nearly_face_each_other_cost_little() {
         for move_by in [0.3, 0.1, 1e-2, 1e-3, 1e-4, 1e-7, 1e-12] {
             let found = bound(move_by, degree);
             println!("{degree:?} {move_by}: {found} {matching}");
-            // Of degree 2 the middles of edges do not match, either.
-            let most = if degree == Degree::One { 1.05 } else { 1.2 };
+            // Of degree 2 the middles of edges do not match, either, and the triangle in which contact ends is cut at three places: it
+            // alone has most of what there is more.
+            let most = if degree == Degree::One { 1.05 } else { 1.25 };
             assert!(found <= most * matching, "{degree:?} {move_by}: {found} for {matching}");
         }
     }
