@@ -8,11 +8,11 @@
 //! [`newest-vertex bisection`](crate::model::mesh::bisection). Newton's method starts from the coarser solution.
 //!
 //! Every level has a certificate of its own, for the problem on its own mesh: nothing that is proved rests on the levels
-//! before. The body is the polygon of the first mesh: the middle of a straight edge lies on it, but for rounding. Where contact with an
-//! obstacle is taken for round, the middle of an edge is placed on the curve on which gaps are measured: chords of half the length in
-//! place of one chord, which would have a gap of its own.
+//! before. The body is the polygon of the first mesh: the middle of a straight edge lies on it, but for rounding. Where contact, with an
+//! obstacle or of a pair, is taken for round, the middle of an edge is placed on the curve on which gaps are measured: chords of half the
+//! length in place of one chord, which would have a gap of its own.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
@@ -114,11 +114,6 @@ pub enum AdaptError {
         quoted(boundary, '\'')
     )]
     Curved { boundary: String },
-    #[error(
-        "no mesh can be adapted: {} or what it faces is curved, the gap between them is that of their smooth shapes, and bisection keeps the straight edges of the mesh; expected straight boundaries, or a finer mesh",
-        quoted(boundary, '\'')
-    )]
-    CurvedPair { boundary: String },
 }
 
 impl AdaptError {
@@ -129,7 +124,7 @@ impl AdaptError {
             AdaptError::Certify(error) => {
                 matches!(error, CertifyError::Data(_) | CertifyError::Unsupported(_))
             }
-            AdaptError::Curved { .. } | AdaptError::CurvedPair { .. } => true,
+            AdaptError::Curved { .. } => true,
         }
     }
 }
@@ -313,7 +308,7 @@ fn unknowns(mesh: &Mesh, degree: Degree) -> usize {
     2 * (mesh.vertices().len() + middles)
 }
 
-/// Where contact acts along normals, or between two bodies, these are those of straight edges.
+/// Where contact acts along normals with a gap of its own, these are those of straight edges.
 fn check_straight(problem: &Problem) -> Result<(), AdaptError> {
     let space = Space::new(&problem.mesh, Degree::One);
     let line = ContactLine::new(problem, &space).map_err(CertifyError::Data)?;
@@ -322,28 +317,21 @@ fn check_straight(problem: &Problem) -> Result<(), AdaptError> {
         matches!(condition, Some(Condition::Contact { .. }))
     };
     let boundary = |piece: &PieceGeometry| piece.first().boundary.to_string();
-    let curved = line.pieces().find(|p| !p.along_normal && along_its_normal(&boundary(p)));
-    if let Some(piece) = curved {
-        return Err(AdaptError::Curved { boundary: boundary(piece) });
-    }
-    // Normals of straight sides differ by rounding.
-    let turns =
-        |piece: &PieceGeometry| (piece.nodes[1].direction - piece.nodes[0].direction).amax() > 1e-9;
-    let is_curved =
-        |piece: &&PieceGeometry| piece.stretches.len() > 1 && (piece.curved || turns(piece));
-    match line.pieces().find(is_curved) {
-        Some(piece) => Err(AdaptError::CurvedPair { boundary: boundary(piece) }),
+    match line.pieces().find(|p| !p.along_normal && along_its_normal(&boundary(p))) {
+        Some(piece) => Err(AdaptError::Curved { boundary: boundary(piece) }),
         None => Ok(()),
     }
 }
 
-/// The edges of contact with obstacles that are taken for round, each with the middle of the curve on which gaps are measured: there its
+/// The edges of contact, with obstacles and of pairs, that are taken for round, each with the middle of the curve on which gaps are measured: there its
 /// middle is placed when it is halved. The body of each level is the polygon of its mesh.
 pub(super) fn round_contact(problem: &Problem) -> Vec<(BoundaryEdge, [f64; 2])> {
     let mesh = &problem.mesh;
     let smooth = SmoothBoundary::new(mesh);
-    let names = problem.conditions.iter().filter(|(_, condition)| condition.is_contact());
-    let edges = names.flat_map(|(name, _)| mesh.edges_of(name).unwrap_or_default());
+    let obstacles = problem.conditions.iter().filter(|(_, condition)| condition.is_contact());
+    let of_pairs = problem.pairs.iter().flat_map(|pair| &pair.boundaries);
+    let names: BTreeSet<&String> = obstacles.map(|(name, _)| name).chain(of_pairs).collect();
+    let edges = names.into_iter().flat_map(|name| mesh.edges_of(name).unwrap_or_default());
     let middle = |&edge: &BoundaryEdge| {
         let [.., middle] = smooth.along(mesh, edge)?;
         Some((edge, middle.place))

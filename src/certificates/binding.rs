@@ -15,6 +15,7 @@ use super::oscillation::{self, Oscillation};
 use super::parts::{Boundary, ProblemParts};
 use super::{adapt, build};
 use crate::contact::contact_line;
+use crate::held::rigid::Parts;
 use crate::kernel::{Material, Triangle};
 use crate::model::mesh::bisection::Refinement;
 use crate::model::mesh::length;
@@ -156,38 +157,44 @@ fn refinement(
     let mesh = &problem.mesh;
     let at = |k: usize| Vector2::from(certificate.vertices[k]);
     let mut numbers = BTreeMap::new();
-    let mut found: Vec<([usize; 3], usize)> = Vec::new();
+    let mut wholes: Vec<[usize; 3]> = Vec::new();
     let mut origins = Vec::with_capacity(certificate.pieces.len());
-    let mut areas = vec![0.0; mesh.triangles().len()];
-    let round = Round::of(problem);
+    let mut first = Vec::new();
     for (i, piece) in certificate.pieces.iter().enumerate() {
         let Ok([a, b, c]) = <[usize; 3]>::try_from(corners(certificate, &piece.vertices)) else {
             return Err(outside("triangle", i, "is no part of one between three vertices"));
         };
-        let number = match numbers.get(&[a, b, c]) {
-            Some(&number) => number,
-            None => {
-                let [x, y, z] = [a, b, c].map(at);
-                let whole = if (y - x).perp(&(z - x)) > 0.0 { [a, b, c] } else { [a, c, b] };
-                let beyond = || outside("triangle", i, "lies in no triangle of the case's mesh");
-                let middle = (x + y + z) / 3.0;
-                let within = |t: usize| {
-                    let room = room(mesh, t) + round.whole(t);
-                    let inside = |x| coordinates(mesh, t, x).iter().all(|&l| l >= -room);
-                    [x, y, z].into_iter().all(inside)
-                };
-                let located = mesh.locate(middle.into()).map(|(origin, _)| origin);
-                // The middle of a triangle between chord and curve may lie in no triangle, or in the next one.
-                let mut candidates = located.into_iter().chain(round.0.keys().copied());
-                let origin = candidates.find(|&t| within(t)).ok_or_else(beyond)?;
-                numbers.insert([a, b, c], found.len());
-                found.push((whole, origin));
-                found.len() - 1
-            }
+        let number = *numbers.entry([a, b, c]).or_insert_with(|| {
+            let [x, y, z] = [a, b, c].map(at);
+            wholes.push(if (y - x).perp(&(z - x)) > 0.0 { [a, b, c] } else { [a, c, b] });
+            first.push(i);
+            wholes.len() - 1
+        });
+        origins.push(number);
+    }
+    let (parts, bodies) = bodies(mesh, certificate, &wholes)?;
+    let round = Round::of(problem);
+    let mut found: Vec<([usize; 3], usize)> = Vec::with_capacity(wholes.len());
+    for ((whole, i), body) in wholes.into_iter().zip(first).zip(bodies) {
+        let places = whole.map(at);
+        let middle = places.iter().sum::<Vector2<f64>>() / 3.0;
+        let is_of_body = |t: usize| parts.of_triangle()[t] == body;
+        let within = |t: usize| {
+            let room = room(mesh, t) + round.whole(t);
+            let inside = |&x: &Vector2<f64>| coordinates(mesh, t, x).iter().all(|&l| l >= -room);
+            places.iter().all(inside)
         };
+        let located = mesh.locate_among(middle.into(), is_of_body).map(|(origin, _)| origin);
+        // The middle of a triangle between chord and curve may lie in no triangle, or in the next one.
+        let beside = round.0.keys().copied().filter(|&t| is_of_body(t));
+        let origin = located.into_iter().chain(beside).find(|&t| within(t));
+        let beyond = || outside("triangle", i, "lies in no triangle of the case's mesh");
+        found.push((whole, origin.ok_or_else(beyond)?));
+    }
+    let mut areas = vec![0.0; mesh.triangles().len()];
+    for (piece, &number) in certificate.pieces.iter().zip(&origins) {
         let triangle = Triangle { vertices: piece.vertices.map(|p| place(certificate, p)) };
         areas[found[number].1] += triangle.double_area();
-        origins.push(number);
     }
     for (t, area) in areas.iter().enumerate() {
         let whole = mesh.triangle(t).double_area();
@@ -205,6 +212,35 @@ fn refinement(
     let vertices = certificate.vertices.clone();
     let fine = Mesh::with_pairs(vertices, triangles, named, &problem.pairs)?;
     Ok((Refinement { mesh: fine, parents: Vec::new(), origin }, origins))
+}
+
+/// The bodies of `mesh`, and the one that each of the triangles belongs to that are parts of its own: the one in which most of the
+/// triangles lie that hang together with it. Places alone do not tell where bodies of a pair overlap.
+fn bodies(
+    mesh: &Mesh,
+    certificate: &Certificate,
+    triangles: &[[usize; 3]],
+) -> Result<(Parts, Vec<usize>), Difference> {
+    let parts = Parts::new(mesh);
+    if parts.count() == 1 {
+        return Ok((parts, vec![0; triangles.len()]));
+    }
+    let (vertices, fine) = (certificate.vertices.clone(), triangles.to_vec());
+    let fine = Mesh::of_edges(vertices, fine, [], |_, _| true)?;
+    let of_fine = Parts::new(&fine);
+    let mut areas = vec![vec![0.0; parts.count()]; of_fine.count()];
+    for (t, &part) in of_fine.of_triangle().iter().enumerate() {
+        let triangle = fine.triangle(t);
+        if let Some((origin, _)) = mesh.locate(triangle.point([1.0 / 3.0; 3]).into()) {
+            areas[part][parts.of_triangle()[origin]] += triangle.double_area();
+        }
+    }
+    let largest = |areas: &Vec<f64>| {
+        (0..areas.len()).max_by(|&i, &j| areas[i].total_cmp(&areas[j])).unwrap_or_default()
+    };
+    let body: Vec<usize> = areas.iter().map(largest).collect();
+    let bodies = of_fine.of_triangle().iter().map(|&part| body[part]).collect();
+    Ok((parts, bodies))
 }
 
 /// The barycentric coordinates of `x` in triangle `t`.

@@ -338,6 +338,15 @@ impl Mesh {
 
     /// The first triangle that contains the point `x`, with its barycentric coordinates there; `None` outside the body.
     pub fn locate(&self, x: [f64; 2]) -> Option<(usize, [f64; 3])> {
+        self.locate_among(x, |_| true)
+    }
+
+    /// As [`Mesh::locate`], of the triangles that are `among` those asked for: bodies of a pair may overlap.
+    pub(crate) fn locate_among(
+        &self,
+        x: [f64; 2],
+        among: impl Fn(usize) -> bool,
+    ) -> Option<(usize, [f64; 3])> {
         let boxes = self.boxes.get_or_init(|| {
             let corners = |t: &[usize; 3]| t.map(|v| self.vertices[v]);
             let boxed = |t: [[f64; 2]; 3]| {
@@ -347,6 +356,7 @@ impl Mesh {
         });
         let mut near = Vec::new();
         boxes.meeting(Bounds::around([x]), |t| near.push(t));
+        near.retain(|&t| among(t));
         near.sort_unstable();
         let x = Vector2::from(x);
         near.into_iter().find_map(|t| {

@@ -279,6 +279,26 @@ fn separate_bodies_are_remarked_and_the_one_that_carries_nothing_is_named() {
 }
 
 #[test]
+fn a_separate_body_without_a_pair_and_a_support_is_refused_with_its_place() {
+    let push = Condition::traction(|_| 0.0, |_| -1.0);
+    // Also if nothing pushes: then the body may be anywhere.
+    for top in [Some(push), None] {
+        let mut problem = blocks(2).with("low top", Condition::contact(|_| 1.0));
+        problem.conditions.retain(|name, _| name.starts_with("low"));
+        problem.conditions.extend(top.map(|push| ("high top".to_owned(), push)));
+        let error = solve(&problem, &Method::default(), &Settings::default()).unwrap_err();
+        let text = error.to_string();
+        assert!(error.is_wrong_case(), "{text}");
+        for word in ["the body is not held", "of the part of the body at (0.", "expected a support"]
+        {
+            assert!(text.contains(word), "{word}: {text}");
+        }
+    }
+    // Control: on the lower one it is held, and not refused.
+    assert!(solve(&blocks(2), &Method::default(), &Settings::default()).is_ok());
+}
+
+#[test]
 fn peaks_without_a_bound_are_remarked_where_the_angle_or_the_fibres_make_them() {
     for (name, settings, given) in [
         ("corner.toml", &[][..], true),

@@ -231,8 +231,9 @@ fn nodes_that_nearly_face_each_other_cost_little() {
         for move_by in [0.3, 0.1, 1e-2, 1e-3, 1e-4, 1e-7, 1e-12] {
             let found = bound(move_by, degree);
             println!("{degree:?} {move_by}: {found} {matching}");
-            // Of degree 2 the middles of edges do not match, either.
-            let most = if degree == Degree::One { 1.05 } else { 1.2 };
+            // Of degree 2 the middles of edges do not match, either, and the triangle in which contact ends is cut at three places: it
+            // alone has most of what there is more.
+            let most = if degree == Degree::One { 1.05 } else { 1.25 };
             assert!(found <= most * matching, "{degree:?} {move_by}: {found} for {matching}");
         }
     }
@@ -437,15 +438,99 @@ fn a_mesh_of_two_bodies_is_adapted_to_the_force_between_them() {
     assert!(low <= FORCES[0] && FORCES[0] <= high && high - low <= 0.04 * high, "{low} {high}");
 }
 
+/// The middles of edges lie on the curves of both boundaries: on chords of half the length the gap would be another one.
 #[test]
-fn round_bodies_are_not_adapted_because_their_middles_would_lie_on_chords() {
-    for (name, boundary) in [("cylinders.toml", "lower"), ("press_fit.toml", "shaft")] {
+fn round_bodies_are_adapted_on_their_curves() {
+    let long = |v: &Vector2<f64>| v.x.hypot(v.y);
+    for (name, relative) in
+        [("cylinders.toml", 0.012), ("pin_lug.toml", 0.01), ("press_fit.toml", 0.008)]
+    {
         let case = case(name, &[]);
-        let target = Target { relative: 0.01, max_unknowns: 10_000 };
-        let adapted = adapt(case.problem, &case.method, &Settings::default(), target, &|_| {});
-        let error = adapted.err().unwrap();
-        assert!(error.is_wrong_case() && error.to_string().contains(boundary), "{error}");
+        let (coarse, how) = (case.problem.clone(), (&case.method, &case.settings));
+        let target = Target { relative, max_unknowns: 40_000 };
+        let (problem, adapted) = adapt(case.problem, how.0, how.1, target, &|_| {}).unwrap();
+        let c = adapted.certified.unwrap();
+        let bounds: Vec<f64> = adapted.levels.iter().map(|level| level.relative).collect();
+        println!("{name}: {bounds:?}, {:?}", adapted.levels.last());
+        assert!(adapted.unmet.is_none() && bounds.len() > 1, "{name}: {:?}", adapted.unmet);
+        let of_case = |certificate: &Certificate| {
+            compare(coarse.clone(), certificate, &c.quantities.evidence)
+        };
+        assert_eq!(of_case(&c.certificate), Ok(c.reason.clone()));
+        // Control: a vertex of either boundary that is as far off its chord again.
+        for boundary in &coarse.pairs[0].boundaries {
+            let chords = coarse.mesh.edges_of(boundary).unwrap();
+            let beside = |k: usize| {
+                let x = Vector2::from(problem.mesh.vertices()[k]);
+                let of = chords.iter().filter_map(|&edge| {
+                    let [a, b] = coarse.mesh.places_of_ends(edge).map(Vector2::from);
+                    let share = (x - a).dot(&(b - a)) / (b - a).dot(&(b - a));
+                    let off = x - a - (b - a) * share;
+                    let is_near = (0.0..=1.0).contains(&share) && long(&off) < 0.1 * long(&(b - a));
+                    is_near.then_some(off)
+                });
+                of.max_by(|a, b| long(b).total_cmp(&long(a)))
+            };
+            let edges = problem.mesh.edges_of(boundary).unwrap();
+            let ends = edges.iter().flat_map(|&edge| problem.mesh.ends(edge));
+            let all = ends.filter_map(|k| Some((k, beside(k)?)));
+            let (k, off) = all.max_by(|(_, a), (_, b)| long(a).total_cmp(&long(b))).unwrap();
+            let mut moved = c.certificate.clone();
+            moved.vertices[k] = (Vector2::from(moved.vertices[k]) + off).into();
+            let refused = of_case(&moved).unwrap_err().to_string();
+            println!("{name} {boundary}: {off:?}: {refused}");
+            let because = ["lies in no triangle", "is on no boundary"];
+            assert!(because.iter().any(|why| refused.contains(why)), "{name}: {refused}");
+        }
+        let newest = coarse.mesh.opposite_longest();
+        let on = |name: &String| coarse.mesh.edges_of(name).unwrap().iter().map(|e| e.triangle);
+        let marked: Vec<usize> = coarse.pairs[0].boundaries.iter().flat_map(on).collect();
+        let chords = coarse.clone().refined(coarse.mesh.bisected(&newest, &marked).unwrap());
+        let (solution, _) = solve(&chords, how.0, how.1).unwrap();
+        let control = certify(&chords, &solution).unwrap().relative;
+        println!("{name}: control {control}");
+        assert!(control > bounds[0], "{name}: {control} {bounds:?}");
     }
+}
+
+/// The lower bodies are named first: the upper one's boundary, which is in both pairs, has no force of its own.
+#[test]
+fn a_body_on_two_others_presses_on_each_with_a_force_between_two_numbers() {
+    let (left, right) = (rectangle([0.0, -1.0], [0.9, 0.0]), rectangle([1.1, -1.0], [2.0, 0.0]));
+    let upper = rectangle([0.0, 0.0], [2.0, 1.0]);
+    let material = Material::lame(1.0, 1.0, Plane::Strain);
+    let block = |name, cells, map| Block { name, cells, material, map };
+    let pairs = ["left.top", "right.top"].map(|lower| Pair::new(lower, "upper.bottom"));
+    let all = [
+        block("left", [9, 9], &left as Map),
+        block("right", [7, 7], &right),
+        block("upper", [20, 10], &upper),
+    ];
+    let [top, still] =
+        [["0", "-0.1 + 0.03*x"], ["0", "0"]].map(|of| of.map(|u| Some(expression(u))));
+    let problem = bodies(&all, &pairs);
+    let problem = Problem { body_force: [expression("0"), expression("0")], ..problem }
+        .with("upper.top", Condition::Displacement(top))
+        .with("left.bottom", Condition::Displacement(still.clone()))
+        .with("right.bottom", Condition::Displacement(still));
+    let c = certified(&problem, Degree::Two);
+    let of = |name: Name, boundary: &str| {
+        let mut list = c.quantities.list.iter();
+        let found = list.find(|q| q.name == name && q.boundary == boundary);
+        found.map(|q| (q.value, q.interval.clone().unwrap()))
+    };
+    let forces = ["left", "right"].map(|body| {
+        let (value, [low, high]) = of(Name::ContactForce, &format!("{body}.top")).unwrap();
+        println!("{body}: {value} in {low} to {high}");
+        assert!(low <= value && value <= high && high - low <= 0.4 * value);
+        // The floor bears as much.
+        let (_, floor) = of(Name::Reaction(1), &format!("{body}.bottom")).unwrap();
+        assert!(floor[0] <= high && low <= floor[1], "{floor:?}");
+        [low, high]
+    });
+    // Control: the two are told apart.
+    assert!(forces[0][0] > forces[1][1], "{forces:?}");
+    assert_eq!(of(Name::ContactForce, "upper.bottom"), None);
 }
 
 /// The upper body is dragged on the lower one; the bound is affine.

@@ -2,7 +2,10 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use signorini::certificates::{Target, adapt, certify};
 use signorini::contact::piece::Stretch;
+use signorini::contact::residual::add_internal_forces;
+use signorini::model::Space;
 
 use super::*;
 use crate::common::case;
@@ -312,6 +315,42 @@ fn cylinders_of_unlike_size_and_stiffness_press_as_hertz_says() {
         assert!((middle - 1.0).abs() <= most, "{degree:?}: pressure {middle}");
         assert!((top - 1.0).abs() <= most, "{degree:?}: peak {top}");
         assert!((second - 1.0).abs() <= most, "{degree:?}: half width {second}");
+    }
+}
+
+/// On one mesh the solution of degree 2 stands for the true one: by how much that is off, at most, its own bound says.
+#[test]
+fn the_bound_of_cylinders_is_above_the_error_by_less_than_two_fifths() {
+    let case = case("cylinders.toml", &[]);
+    let mut last = f64::INFINITY;
+    for relative in [1.0, 0.07] {
+        let target = Target { relative, max_unknowns: 40_000 };
+        let how = (&method(Degree::One), &Settings::default());
+        let (problem, adapted) =
+            adapt(case.problem.clone(), how.0, how.1, target, &|_| {}).unwrap();
+        let one = adapted.certified.unwrap();
+        let two = certify(&problem, &proved(&problem, &method(Degree::Two))).unwrap();
+        let space = Space::new(&problem.mesh, Degree::Two);
+        let (fine, ends) = (&two.displacement, &one.displacement);
+        let mut apart: Vec<[f64; 2]> = fine.clone();
+        for nodes in space.elements() {
+            for i in 0..3 {
+                let [j, k] = [nodes[(i + 1) % 3], nodes[(i + 2) % 3]];
+                let less = |of: usize, v: [f64; 2]| [0, 1].map(|c| fine[of][c] - v[c]);
+                apart[nodes[i]] = less(nodes[i], ends[nodes[i]]);
+                let middle = [0, 1].map(|c| (ends[j][c] + ends[k][c]) / 2.0);
+                apart[nodes[i + 3]] = less(nodes[i + 3], middle);
+            }
+        }
+        let mut forces = vec![[0.0; 2]; apart.len()];
+        add_internal_forces(&space, &problem.material, &apart, &mut forces);
+        let square: f64 = apart.iter().zip(&forces).map(|(e, f)| e[0] * f[0] + e[1] * f[1]).sum();
+        let (error, bound) = (square.sqrt(), one.bound);
+        println!("{} {} {} {}", apart.len(), one.relative, two.relative, bound / error);
+        assert!(error <= bound + two.bound, "{error} {bound} {}", two.bound);
+        assert!(bound <= 1.4 * error && two.bound < bound / 2.0, "{bound} {error} {}", two.bound);
+        assert!(one.relative < last, "{} {last}", one.relative);
+        last = one.relative;
     }
 }
 
