@@ -371,6 +371,7 @@ pub fn outcome(body: &Body, steps: &mut Vec<usize>) -> Result<&'static str, Stri
         return Ok(if is_ill_conditioned { "not proved, ill-conditioned" } else { why });
     }
     forces_balance(body, &solution)?;
+    numbers_lie_in_their_intervals(&solution)?;
     a_moved_displacement_is_as_far_off_as_it_says(body, &solution)?;
     Ok(PROVED)
 }
@@ -388,6 +389,35 @@ fn forces_balance(body: &Body, solution: &Solution) -> Result<(), String> {
         let (sum, size) = forces.fold((0.0, 0.0), |(s, m): (f64, f64), f| (s + f, m + f.abs()));
         if !(sum.abs() <= share * size.max(load[0].hypot(load[1]))) {
             return Err(format!("forces along {} add up to {sum:e} of {size:e}", ["x", "y"][c]));
+        }
+    }
+    Ok(())
+}
+
+/// Each number lies in the interval that stands beside it in result.json; moved by twice the width of the interval, it does not: the control.
+fn numbers_lie_in_their_intervals(solution: &Solution) -> Result<(), String> {
+    let Ok(enclosure) = &solution.enclosure else { return Ok(()) };
+    let (of, q) = (&enclosure.intervals, &solution.quantities);
+    let mut all = vec![
+        ("a(u, u)".to_owned(), q.energy, of.energy),
+        ("displacement".to_owned(), q.max_displacement, of.max_displacement),
+    ];
+    for (name, reaction) in &q.reactions {
+        let intervals = of.reactions.get(name).ok_or(format!("no interval of '{name}'"))?;
+        all.extend(
+            (0..2).map(|c| (format!("reaction {c} of '{name}'"), reaction[c], intervals[c])),
+        );
+    }
+    for (found, proved) in solution.boundaries.iter().zip(&of.contact) {
+        let name = &found.boundary;
+        all.push((format!("force of '{name}'"), found.force, proved.force));
+        let parts = (0..2).map(|c| (c, found.resultant[c], proved.resultant[c]));
+        all.extend(parts.map(|(c, r, range)| (format!("force {c} of '{name}'"), r, range)));
+    }
+    for (what, value, [low, high]) in all {
+        let is_inside = |x: f64| low <= x && x <= high;
+        if !is_inside(value) || is_inside((value + 2.0 * (high - low)).next_up()) {
+            return Err(format!("{what}: {value:e} is not in [{low:e}, {high:e}]"));
         }
     }
     Ok(())
