@@ -93,6 +93,9 @@ fn picture(scene: &Scene, scale: &Scale) -> Result<String, NotFinite> {
         Some(_) => (Some(pressed()), "contact pressure"),
         None => (None, "no contact pressure"),
     });
+    if panel::has_shear(scene) {
+        entries.push((Some(sample(panel::OPEN, 1.6)), "size of the friction"));
+    }
     entries.push((None, &magnified));
     let legend_at = [MARGIN, HEADER + frame.height + 30.0];
     let (legend, bottom) = legend(entries, legend_at, MARGIN + width);
@@ -358,7 +361,7 @@ mod tests {
             "arc length along the boundary (mm)",
             "border of two materials",
         ];
-        let changes: [(Edit, &[&str], &[&str]); 12] = [
+        let changes: [(Edit, &[&str], &[&str]); 15] = [
             (|_| {}, whole, &["border of two materials", "axis", "held"]),
             (
                 |s| s.supports = vec![(vec![20, 21], true)],
@@ -404,6 +407,17 @@ mod tests {
                 &["peak 0"],
             ),
             (|s| s.contact.clear(), &["no contact pressure"], &["no contact"]),
+            (
+                |s| samples(s).for_each(|s| s.shear = Some(0.5 * s.pressure)),
+                &["size of the friction", "floor: contact pressure, friction (blue)"],
+                &["floor: contact pressure"],
+            ),
+            (
+                |s| samples(s).for_each(|s| (s.pressure, s.shear) = (0.0, Some(0.1))),
+                &["no contact pressure"],
+                &["size of the friction"],
+            ),
+            (|_| (), &["contact pressure"], &["size of the friction"]),
             (
                 |s| {
                     *s = block(32);

@@ -341,14 +341,16 @@ pub struct DiscreteCertificate {
     pub probes: Vec<f64>,
 }
 
-/// With Coulomb's friction: within which distance there is no other solution, relative and in the energy norm, and below which coefficient
-/// there is none anywhere, for all loads.
+/// With Coulomb's friction: within which distance there is no other solution, relative and in the energy norm, below which coefficient
+/// there is none anywhere, for all loads, and the two limits of which that one is the larger.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct IsolatedSolution {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub within: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unique_below: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limits: Option<[f64; 2]>,
 }
 
 impl From<Isolation> for IsolatedSolution {
@@ -357,6 +359,7 @@ impl From<Isolation> for IsolatedSolution {
         IsolatedSolution {
             within: isolation.relative,
             unique_below: (below > 0.0).then_some(below),
+            limits: (below > 0.0).then_some(isolation.limits),
         }
     }
 }

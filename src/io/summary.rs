@@ -508,7 +508,7 @@ fn enclosed(certificate: &DiscreteCertificate) -> String {
     let at_rest = certificate.relative.is_none() && radius > 0.0 && certificate.hardly_strains;
     let size = if at_rest { format!("{size}; the body hardly strains") } else { size };
     let of = certificate.problem.as_deref().map_or(String::new(), |what| format!(", with {what}"));
-    if let Some(IsolatedSolution { within, unique_below }) = certificate.isolated {
+    if let Some(IsolatedSolution { within, unique_below, limits }) = certificate.isolated {
         let near = match within {
             Some(within) => format!(
                 "within 1e{} of this one (relative, in the energy norm)",
@@ -518,7 +518,13 @@ fn enclosed(certificate: &DiscreteCertificate) -> String {
         };
         let elsewhere = if certificate.unique { ", and no other anywhere" } else { "" };
         let below = unique_below.map_or(String::new(), |most| {
-            format!("; with a coefficient below {most:.3} there is one for all loads")
+            let each = limits
+                .map(|limits| limits.map(short_below))
+                .map_or(String::new(), |[by_energy, by_coupling]| {
+                    format!(" (mu_1 = {by_energy}, mu_2 = {by_coupling})")
+                });
+            let most = short_below(most);
+            format!("; with a coefficient below {most}{each} there is one for all loads")
         });
         return format!(
             "with Coulomb's friction, exactly one solution of the discrete equations {near}{elsewhere}{below}; this is within {size}, rounding included{of}"
@@ -661,6 +667,12 @@ fn free(play: &Play, shown: &QuantityFormat) -> String {
     )
 }
 
+/// A positive number to three digits, rounded down.
+fn short_below(x: f64) -> String {
+    let unit = 10.0_f64.powf(x.log10().floor() - 2.0);
+    if x > 0.0 { short((x / unit).floor() * unit) } else { short(0.0) }
+}
+
 fn short(x: f64) -> String {
     numbers::short(x, 4)
 }
@@ -719,6 +731,27 @@ mod tests {
         "proved: the discrete equations have exactly one solution; this is within 1e-10 of it (relative, in the energy norm), rounding included",
         "solved: exactly for this mesh, to 10 digits, rounding included",
     ];
+
+    #[test]
+    fn both_limits_of_the_coefficient_are_printed_rounded_down_and_none_where_none_is_known() {
+        let with = |limits: Option<[f64; 2]>| {
+            let unique_below = limits.map(|limits| limits[0].max(limits[1]));
+            let isolated = IsolatedSolution { within: Some(2e-6), unique_below, limits };
+            enclosed(&DiscreteCertificate {
+                radius: Some(1e-12),
+                relative: Some(1e-12),
+                isolated: Some(isolated),
+                rigorous: true,
+                ..Default::default()
+            })
+        };
+        let both = with(Some([0.13999, 0.02999]));
+        let expected = "; with a coefficient below 0.139 (mu_1 = 0.139, mu_2 = 0.0299) there is one for all loads";
+        assert!(both.contains(expected), "{both}");
+        assert!(with(Some([0.1, 0.0])).contains("mu_1 = 0.1, mu_2 = 0)"));
+        let none = with(None);
+        assert!(none.contains("exactly one solution") && !none.contains("coefficient below"));
+    }
 
     #[test]
     fn an_interval_is_printed_around_itself_with_two_digits_of_its_width() {

@@ -167,6 +167,8 @@ pub struct Verifier<'s, 'd, 'p> {
     known: Option<isolated::Known>,
     /// The sum of the magnitudes of the residual where it was last evaluated.
     pub unbalanced: f64,
+    /// The residual where it was last evaluated, rounded to doubles at last; empty if that was in other unknowns.
+    pub(crate) residual: Vec<f64>,
     /// The time that it has taken.
     pub time: Duration,
 }
@@ -205,6 +207,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             held: None,
             known: None,
             unbalanced: f64::INFINITY,
+            residual: Vec::new(),
             time,
         }
     }
@@ -233,6 +236,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         arithmetic: Arithmetic,
     ) -> Result<Enclosure, Unproved> {
         let mut watch = Stopwatch::start();
+        self.residual.clear();
         let enclosure = self.enclosed(u, near, arithmetic);
         self.time += watch.lap();
         enclosure
@@ -290,6 +294,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         let at = at.ok_or(Unproved::OutOfRange)?;
         let r = free(system, &at.residual);
         self.unbalanced = r.iter().map(|r| r.magnitude()).sum();
+        self.residual = r.iter().map(|r| r.head()).collect();
         let fields = (u, reported);
         let nowhere = Pressed::nowhere(self.lines.len());
         if d.has_coulomb() {

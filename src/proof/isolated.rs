@@ -730,7 +730,8 @@ pub(super) fn isolate(
 ) -> Result<Isolated, Unproved> {
     let d = system.d;
     let Known { compliance, root, springs, .. } = known;
-    let start = (8.0 * rho).max(f64::EPSILON * size);
+    // A displacement in double-doubles may be as near as that.
+    let start = (8.0 * rho).max(f64::EPSILON * f64::EPSILON * size);
     let on_piece = |piece| OnPiece::new(d, (piece, compliance), u, start);
     let all: Vec<OnPiece> = pieces.iter().map(on_piece).collect();
     let spring = |e: usize| springs.as_ref().map_or(0.0, |all| norm(all[e].as_slice()));
@@ -759,7 +760,7 @@ pub(super) fn isolate(
         (up(step + up(q * r)) <= r && q < 1.0).then_some(q)
     };
     let radii =
-        (0..80).map(|k| start * 2.0_f64.powi(k)).take_while(|&r| r <= 1e3 * size.max(start));
+        (0..160).map(|k| start * 2.0_f64.powi(k)).take_while(|&r| r <= 1e3 * size.max(start));
     let mut found: Option<(f64, f64)> = None;
     for r in radii {
         match (holds(r), &mut found) {

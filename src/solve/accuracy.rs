@@ -1,6 +1,7 @@
 //! From a first answer to one that is proved: passes of a route, each from the true residual of the one before, until a pass has
 //! nothing left to correct; then the enclosure of the exact solution says how far that is from it. Where it is not near enough,
-//! residuals are evaluated in double-doubles, and the passes go on. docs/theory.md, 5.6.
+//! residuals are evaluated in double-doubles, and the passes go on; at last the residual of the proof corrects, in which the forces of
+//! stiff springs cancel beyond the digits of a double. docs/theory.md, 5.6.
 //!
 //! The correction of a pass estimates the error before it, up to an error smaller by the same factor again. So passes end when
 //! nothing is left to correct; the verdict is the proof's.
@@ -40,6 +41,15 @@ pub trait Route {
         residuals: &mut Vec<f64>,
         until: Until,
     ) -> Result<Pass, SolveError>;
+
+    /// Returns Newton's step from `at` for a residual that is known to more digits than forces in doubles have; `None` if the route has
+    /// no tangent of all of (8).
+    ///
+    /// # Errors
+    /// As [`super::newton::minimise`].
+    fn step_for(&mut self, _: &Evaluation, _: &[f64]) -> Result<Option<Vec<f64>>, SolveError> {
+        Ok(None)
+    }
 }
 
 /// The size of what a pass has changed.
@@ -163,6 +173,9 @@ pub fn refine(
         }
         verifier.use_factor(route.factor_of_a());
         let is_near = refinement.verify(verifier);
+        if refinement.at.precisely && !is_near {
+            refinement.correct(route, verifier);
+        }
         if refinement.at.precisely || (is_done && is_near) {
             break;
         }
@@ -254,6 +267,33 @@ impl<'a, 'd, 'p> IterativeRefinement<'a, 'd, 'p> {
             }
         }
         false
+    }
+
+    /// Corrects by the residual of the proof: forces of stiff springs cancel in it to more digits than doubles have. Goes on as long as
+    /// the residual falls; a correction that does not lead on is taken back.
+    fn correct(&mut self, route: &mut dyn Route, verifier: &mut Verifier) {
+        for _ in 0..MOST_PASSES {
+            let residual = std::mem::take(&mut verifier.residual);
+            if residual.is_empty() {
+                return;
+            }
+            let Ok(Some(step)) = route.step_for(&self.at, &residual) else { return };
+            let before = Iterate { u: self.iterate.u.clone() };
+            let enclosure = self.enclosure.clone();
+            self.iterate.add(self.system, 1.0, &step);
+            self.at = self.iterate.evaluate(self.system, true);
+            let is_near = self.verify(verifier);
+            let falls = norm(&verifier.residual) <= norm(&residual) / 2.0;
+            if !(is_near || (falls && !verifier.residual.is_empty())) {
+                self.at = before.evaluate(self.system, true);
+                (self.iterate, self.enclosure) = (before, enclosure);
+                return;
+            }
+            self.residual = TrueResidual::new(self.system, &self.at, self.reference);
+            if is_near {
+                return;
+            }
+        }
     }
 
     fn outcome(mut self, verifier: &mut Verifier, factorizations: usize) -> Outcome {

@@ -125,6 +125,17 @@ impl Route for Assembled<'_, '_, '_> {
         let left = newton::minimise(d, &mut body, soft, residuals, until)?;
         Ok(Pass { energy: body.energy, left, softness: body.softness })
     }
+
+    fn step_for(
+        &mut self,
+        at: &Evaluation,
+        residual: &[f64],
+    ) -> Result<Option<Vec<f64>>, SolveError> {
+        let terms = derivatives(self.system.d, 1.0, &at.p);
+        let mut d: Vec<f64> = residual.iter().map(|r| -r).collect();
+        self.factor(&terms)?.0.solve(&mut d);
+        Ok(Some(d))
+    }
 }
 
 /// Newton's unknown u.

@@ -406,6 +406,15 @@ impl Route for Coulomb<'_, '_, '_> {
             softness: way.softness,
         })
     }
+
+    fn step_for(
+        &mut self,
+        at: &Evaluation,
+        residual: &[f64],
+    ) -> Result<Option<Vec<f64>>, SolveError> {
+        let (_, terms) = self.residual(at);
+        self.step(residual, &terms).map(Some)
+    }
 }
 
 /// The progress of Newton's method.

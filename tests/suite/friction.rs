@@ -329,14 +329,17 @@ fn forty_nine_of_fifty_bodies_with_friction_are_proved_or_ill_conditioned() {
                     println!("seed {seed}: {}: {what} [{}]", body.kind, body.said);
                 }
             }
-            Err(why) => failures.push(format!("seed {seed}: {}: {why} [{}]", body.kind, body.said)),
+            Err(why) => {
+                println!("seed {seed}: {}: {why} [{}]", body.kind, body.said);
+                failures.push(format!("seed {seed}: {}: {why} [{}]", body.kind, body.said));
+            }
         }
     }
     for ((kind, what), bodies) in &table {
         println!("{kind:9} {bodies:5} {what}");
     }
     steps.sort_unstable();
-    let at = |share: usize| steps[(steps.len() - 1) * share / 10];
+    let at = |share: usize| steps.get((steps.len().max(1) - 1) * share / 10).copied().unwrap_or(0);
     println!("median {} steps, nine of ten at most {}, most {}", at(5), at(9), at(10));
     assert!(failures.is_empty(), "{}", failures.join("\n"));
     let of = |all: &[&str]| {
@@ -345,6 +348,15 @@ fn forty_nine_of_fifty_bodies_with_friction_are_proved_or_ill_conditioned() {
     };
     assert!(50 * of(&FAILURES) <= count, "{} of {count} bodies, shown above", of(&FAILURES));
     assert!(4 * of(&[PROVED]) >= 3 * count, "{} of {count} are proved", of(&[PROVED]));
+}
+
+#[test]
+fn where_forces_of_stiff_springs_have_too_few_digits_the_residual_of_the_proof_corrects() {
+    // gamma0 is 6e-8 and 6e-7 of its limit: what presses is small beside the displacement.
+    for seed in [125, 173] {
+        let body = with_random_friction(seed);
+        assert_eq!(bodies::outcome(&body, &mut Vec::new()), Ok(PROVED), "{}", body.said);
+    }
 }
 
 fn with_coefficient(problem: Problem, mu: f64) -> Problem {

@@ -29,7 +29,7 @@ const PLOT: f64 = 120.0;
 
 /// The height of the strip below the axis, and its colour where there is hardly a force.
 const STRIP: f64 = 5.0;
-const OPEN: &str = "#1f77b4";
+pub(super) const OPEN: &str = "#1f77b4";
 
 /// The room above the peak, for its number.
 const ABOVE: f64 = 24.0;
@@ -70,6 +70,16 @@ fn shown(surface: &ContactSurface) -> [f64; 2] {
     }
 }
 
+/// Returns whether samples of the boundary have friction.
+fn is_rough(surface: &ContactSurface) -> bool {
+    surface.parts.iter().flatten().any(|sample| sample.shear.is_some())
+}
+
+/// Returns whether a panel has the line of the shear stress.
+pub(super) fn has_shear(scene: &Scene) -> bool {
+    scene.contact.iter().any(|surface| is_rough(surface) && surface.peak().is_some())
+}
+
 /// The panel of a boundary, whose plot ends at the pressure `top`.
 fn panel(
     (surface, top): (&ContactSurface, f64),
@@ -87,7 +97,7 @@ fn panel(
     let pressures = if top > 0.0 { ticks(0.0, top) } else { Vec::new() };
     let grid = axes.grid([ticks(first, last), pressures]);
     let in_brackets = |i: usize| units.as_ref().map_or(String::new(), |u| format!(" ({})", u[i]));
-    let is_rough = surface.parts.iter().flatten().any(|sample| sample.shear.is_some());
+    let is_rough = is_rough(surface);
     let what = if is_rough { "contact pressure, friction (blue)" } else { "contact pressure" };
     let title = clean(&format!("{}: {what}{}", surface.name, in_brackets(0)));
     let title = text(&title, [left, y + 16.0])
