@@ -362,6 +362,17 @@ fn on_a_round_obstacle_bounds_on_two_meshes_are_above_the_distance_of_their_solu
     }
 }
 
+/// Half of the bound, or a third of it, would else be the pressure times what v is off the obstacle.
+#[test]
+fn a_quadratic_displacement_is_put_on_the_curved_obstacle_that_it_presses() {
+    for (name, most) in [("disk.toml", 0.025), ("pin.toml", 0.012)] {
+        let case = case(name, &["method.degree=2"]);
+        let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
+        let certified = certify(&case.problem, &solution).unwrap();
+        assert!(certified.relative <= most, "{name}: {}", certified.relative);
+    }
+}
+
 #[test]
 fn balls_intervals_and_doubles_agree_to_rounding() {
     let (problem, solution) = block(8);
