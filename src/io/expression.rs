@@ -18,8 +18,8 @@
 //! Any other power is [`f64::powf`]: 2^0.5 is the square root of 2, and (-8)^(1/3) is NaN. A NaN stays a NaN, in min and max too.
 //!
 //! An [`Expression`] is a list of instructions in postfix order, evaluated in one loop over any [`Number`]: other than in a
-//! recursive walk over a tree, a sum of [`MOST_OPERATIONS`] terms needs no deeper call stack than a sum of two.
-//! [`MOST_LEVELS`] bounds the nesting.
+//! recursive walk over a tree, a sum of `MOST_OPERATIONS` terms needs no deeper call stack than a sum of two.
+//! `MOST_LEVELS` bounds the nesting.
 
 mod algebra;
 mod condition;

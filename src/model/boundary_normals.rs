@@ -7,7 +7,7 @@
 //! | at a vertex where | the normals of its two edges there are |
 //! | --- | --- |
 //! | the boundary is straight | those of the facets |
-//! | it bends by less than [`SMOOTH`] | one: the mean of the facets' normals weighted by the inverse lengths, exact on circles |
+//! | it bends by less than 40 degrees | one: the mean of the facets' normals weighted by the inverse lengths, exact on circles |
 //! | likewise, one of the two edges goes on straight | one: that of the straight edge, exact where an arc starts |
 //! | two straight sides meet, or it bends by more: a corner | one for each side: the other end's, mirrored on the facet (exact on circles), or the facet's where that side is straight |
 //!

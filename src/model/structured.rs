@@ -46,7 +46,7 @@ impl Rectangle {
     /// The mesh of this rectangle.
     ///
     /// # Errors
-    /// Sizes that are not positive and finite, no cells, or more than [`MOST_CELLS`] of them.
+    /// Sizes that are not positive and finite, no cells, or more than 4 million of them.
     pub fn mesh(&self) -> Result<Mesh, MeshError> {
         self.perturbed(0.0, 0)
     }
