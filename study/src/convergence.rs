@@ -110,7 +110,7 @@ impl Study {
         self.levels.iter().map(|level| of(&level.errors)).collect()
     }
 
-    /// The slope over the last [`FITTED`] levels; `None` if there is only one, or an error of 0.
+    /// The slope over the last 4 levels; `None` if there is only one, or an error of 0.
     pub fn slope(&self, of: fn(&Errors) -> f64) -> Option<f64> {
         let first = self.levels.len().saturating_sub(FITTED);
         let slope = fitted_slope(&self.sizes()[first..], &self.error(of)[first..]);
@@ -166,7 +166,7 @@ fn number(x: f64) -> String {
     format!("{x:?}")
 }
 
-/// What [`write`] writes.
+/// What [`write()`] writes.
 pub const FILES: [&str; 2] = ["convergence.csv", "convergence.svg"];
 
 /// The table of all levels as CSV.
