@@ -213,7 +213,7 @@ impl Certificate {
         self.edges.iter().enumerate().filter_map(inside).collect()
     }
 
-    /// What a pressure on edge `e` of Gamma_C does, and v there.
+    /// Returns what a pressure on edge `e` of Gamma_C does, and v there.
     fn on_contact<S: Enclosing>(
         &self,
         e: usize,

@@ -157,7 +157,7 @@ pub enum Role {
         gap: [f64; 2],
         /// The direction d of contact at both ends, affine between them; `None` is the edge's normal.
         along: Option<[[f64; 2]; 2]>,
-        /// What else holds there.
+        /// The law of contact on the edge.
         law: Law,
     },
     /// The second body of a pair: the force is minus that on the edge of [`Role::Contact`] that faces this one.

@@ -366,12 +366,12 @@ impl Contact {
         }
     }
 
-    /// Of two edges only a small part faces each other.
+    /// Returns whether only a small part of one of the two edges faces the other.
     pub fn is_sliver(&self) -> bool {
         self.sides.iter().any(|side| (side.places[1] - side.places[0]).abs() < SLIVER)
     }
 
-    /// It is pressed from end to end.
+    /// Returns whether the contact is pressed from end to end.
     pub fn is_pressed(&self) -> bool {
         self.parts.iter().all(|part| part.pressure.iter().all(|&p| p < 0.0))
     }

@@ -51,7 +51,7 @@ pub struct Pair {
     /// The largest distance at which points may face each other; `None`: a quarter of the smaller body, and at most the least
     /// radius of curvature.
     pub reach: Option<f64>,
-    /// What holds between them.
+    /// The law between the two boundaries.
     pub law: Law,
     /// Friction between them, beside contact; where there is none they are smooth.
     pub friction: Option<Friction>,

@@ -161,7 +161,7 @@ impl<S: Scalar> Chords<S> {
         })
     }
 
-    /// What the constant of side `i` in kappa is multiplied by: the square of its ratio times the length of the piece over its own, in a
+    /// The factor of the constant of side `i` in kappa: the square of its ratio times the length of the piece over its own, in a
     /// body of revolution times the largest quotient of the weight of the piece and its own r, which are affine.
     pub(crate) fn share(
         &self,
@@ -444,7 +444,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
         names(&self.geometry) == names(&other.geometry)
     }
 
-    /// What its law answers, component by component, each with the numbers of the component's values among those of the piece.
+    /// The responses of the law, component by component, each with the numbers of the component's values among those of the piece.
     pub(crate) fn responses(&self) -> impl Iterator<Item = (Response, Range<usize>)> + use<S> {
         let (count, law) = (self.degree.nodes_per_edge(), self.geometry.law);
         law.responses().iter().enumerate().map(move |(k, &r)| (r, k * count..(k + 1) * count))
@@ -719,7 +719,7 @@ impl Piece {
         self.geometry.stretches.iter().enumerate().map(of).collect()
     }
 
-    /// What the piece adds to (8) and J_h where P has these values at its nodes.
+    /// Returns what the piece adds to (8) and J_h where P has these values at its nodes.
     pub fn contribution<T: Copy + Into<DoubleDouble>>(
         &self,
         rule: &EdgeRule,

@@ -139,7 +139,7 @@ impl Series {
         }
         let drawn = self.scenes.into_iter().filter(|(folder, _)| folder.join(PICTURE).exists());
         let (folders, scenes): (Vec<PathBuf>, Vec<Scene>) = drawn.unzip();
-        // Each by itself could be drawn: what the largest one asks for keeps the others within the range of doubles, too.
+        // Where one scale takes a picture beyond the range of doubles, all keep their own.
         for (folder, picture) in folders.iter().zip(draw(&scenes).unwrap_or_default()) {
             let mut output = Output::new(folder)?;
             output.stage(PICTURE, picture.as_bytes())?;
