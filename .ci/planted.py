@@ -79,6 +79,12 @@ def test_of(entry):
     return (("--test", "suite"), entry["test"]) if "test" in entry else (None, None)
 
 
+def is_an_expression(text):
+    """Whether a text may be one: no statement, and its brackets are closed."""
+    closed = all(text.count(left) == text.count(right) for left, right in ("()", "[]", "{}"))
+    return closed and not re.search(r"^let |[;=]$", text)
+
+
 def package(entry):
     """The folder of the crate with the file of a mistake."""
     return next(crate for crate in reversed(CRATES) if entry["file"].startswith(f"{crate}/"))
@@ -102,7 +108,7 @@ def mistakes(path):
             wrong.append(f"{what}: no test {entry['unit']} beside the code")
         if "check" in entry and not re.search(rf"\b{entry['check']}\b", claims):
             wrong.append(f"{what}: no check {entry['check']}")
-        if any(re.search(r"^let |[;=]$", entry[key]) for key in ("old", "new")):
+        if not all(is_an_expression(entry[key]) for key in ("old", "new")):
             wrong.append(f"{what}: expected expressions")
         if entry["name"] in names:
             wrong.append(f"{what}: the name is there twice")

@@ -38,44 +38,13 @@ pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Fi
             walls.entry(vertex).or_default().push(Wall { n, gap, further, most, margin });
         }
     }
-    // On an edge along which the direction turns, both ends may have to give way.
-    for _ in 0..8 {
-        for (&vertex, walls) in &walls {
-            let free = parts.free_at(vertex);
-            let out = out_of(walls, v[vertex].into(), free);
-            v[vertex] = match (parts.frames.get(&vertex), parts.held_alone(vertex)) {
-                (Some(_), Some((d, w))) => held_along(d, w, out.into()),
-                _ => out.into(),
-            };
-        }
-        let mut moved = false;
-        for (edge, further) in obstacles() {
-            if !edge.turns() || u.bulges.is_some() {
-                continue;
-            }
-            // Between the ends it is at most the mean of the products of each with the other's direction.
-            let (ends, [d, e]) = (parts.mesh.ends(edge.edge), edge.directions);
-            let free = [0, 1].map(|k| match parts.free_at(ends[k]) {
-                Free::All => edge.directions[k],
-                Free::Along(t) => t * t.dot(&edge.directions[k]),
-                Free::Nothing => Vector2::zeros(),
-            });
-            let along = free[0].dot(&e) + free[1].dot(&d);
-            let at = ends.map(|vertex| Vector2::from(v[vertex]));
-            let beyond = at[0].dot(&e) + at[1].dot(&d) - edge.gap[0] - edge.gap[1];
-            let scale = edge.gap[0].abs() + edge.gap[1].abs() + 2.0 * size;
-            let margin = 64.0 * f64::EPSILON * scale + 2.0 * further;
-            if beyond > -margin && along > 0.0 {
-                let step = (beyond + 2.0 * margin) / along;
-                for k in 0..2 {
-                    v[ends[k]] = (at[k] - free[k] * step).into();
-                }
-                moved = true;
-            }
-        }
-        if !moved {
-            break;
-        }
+    for (&vertex, walls) in &walls {
+        let free = parts.free_at(vertex);
+        let out = out_of(walls, v[vertex].into(), free);
+        v[vertex] = match (parts.frames.get(&vertex), parts.held_alone(vertex)) {
+            (Some(_), Some((d, w))) => held_along(d, w, out.into()),
+            _ => out.into(),
+        };
     }
     for (&vertex, walls) in &mut walls {
         let all = walls.iter().all(|wall| wall.further == 0.0 && !is_tilted(wall.n));
@@ -134,7 +103,7 @@ pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Fi
 
 /// Puts v on the obstacle where it is pressed on both sides, and to rest across where it sticks: the method gives way there a little, on
 /// curved boundaries by as much as an edge is off its arc, and the bound counts the tractions times that. Where they would save less than the
-/// move costs, v stays; so does a v of degree 1 without friction, which follows no arc.
+/// move costs, v stays; so does a v of degree 1 without friction, on straight boundaries.
 fn settle(parts: &ProblemParts, v: &mut Field) {
     let quadratic = v.bulges.is_some();
     let is_settled = |edge: &&Contact| !edge.is_pair() && (quadratic || edge.has_friction());

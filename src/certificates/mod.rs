@@ -44,7 +44,6 @@ use nalgebra::Vector2;
 
 use self::build::Built;
 use self::certificate::Shape;
-use self::contact::Contact;
 pub use self::errors::CertifyError;
 use self::field::Field;
 use self::parts::ProblemParts;
@@ -201,8 +200,9 @@ fn certify_near(
     let [y, start, w] = [&y, start, field].map(|nodal| Field::new(mesh, nodal));
     let missed = parts.missed(&w?);
     let (y, mut start) = (y?, start?);
-    // Between tied bodies v has values of its own where nodes face edges, as only a quadratic one has.
-    if parts.contact.iter().any(Contact::is_tied) {
+    // Between tied bodies v has values of its own where nodes face edges, and along an arc it follows the obstacle, as only a
+    // quadratic one does.
+    if parts.contact.iter().any(|contact| contact.is_tied() || contact.turns()) {
         start.bulges.get_or_insert_with(|| vec![[0.0; 2]; mesh.edge_count()]);
     }
     let mut further = vec![0.0; parts.contact.len()];
