@@ -14,6 +14,7 @@ use super::{Case, numbers};
 use crate::certificates::Continuous;
 use crate::certificates::adapt::AdaptedLevel;
 use crate::held::solvability::Play;
+use crate::proof::enclosure::LEAST_NORM;
 use crate::quote;
 use crate::results::answers::BoundaryFriction;
 use crate::results::{ContactBoundary, MethodReport, RouteName, Status};
@@ -473,6 +474,7 @@ fn solved_exactly(certificate: &DiscreteCertificate) -> String {
             return format!("for this mesh, how exactly is not proved: {reason}");
         }
         (Some(_), Some(relative)) if relative > 0.0 => (-relative.log10()).floor().min(MOST_DIGITS),
+        (Some(radius), None) if radius >= LEAST_NORM && !certificate.hardly_strains => 0.0,
         _ => return format!("exactly for this mesh{sliding}, rounding included{beside}"),
     };
     match digits {
@@ -731,6 +733,23 @@ mod tests {
         "proved: the discrete equations have exactly one solution; this is within 1e-10 of it (relative, in the energy norm), rounding included",
         "solved: exactly for this mesh, to 10 digits, rounding included",
     ];
+
+    #[test]
+    fn a_radius_that_is_not_small_beside_the_body_s_own_energy_is_no_exact_solution() {
+        let of = |radius: f64, hardly_strains: bool| {
+            let certificate = DiscreteCertificate {
+                radius: Some(radius),
+                hardly_strains,
+                unique: true,
+                ..Default::default()
+            };
+            solved_exactly(&certificate)
+        };
+        assert!(of(4e-7, false).contains("to less than a digit"));
+        for exact in [of(4e-7, true), of(0.0, false)] {
+            assert!(exact.starts_with("exactly for this mesh, rounding"), "{exact}");
+        }
+    }
 
     #[test]
     fn both_limits_of_the_coefficient_are_printed_rounded_down_and_none_where_none_is_known() {

@@ -135,7 +135,7 @@ impl Unproved {
 
 /// The energy norm below which a body is at rest. [`solve`](crate::solve::solve) refuses energies below 1e-270, and a slender
 /// body may have as little as this.
-const LEAST_NORM: f64 = 1e-150;
+pub(crate) const LEAST_NORM: f64 = 1e-150;
 
 /// Encloses the solution of (8) around the displacement `u`, in balls throughout: as [`Verifier::enclose`]. A given factor of A
 /// saves a factorisation, and need not be right.

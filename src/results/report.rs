@@ -23,7 +23,10 @@ impl Verdict {
             Ok(e) => {
                 let known = match e.relative {
                     Some(relative) => format!("{relative:.0e} of the energy norm"),
-                    None => format!("{:.0e} (energy norm)", e.radius),
+                    None => format!(
+                        "{:.0e} in the energy norm, and its own is not known to be more",
+                        e.radius
+                    ),
                 };
                 Verdict::NotProved(format!(
                     "the solution of (8) is proved to be within {known}; expected within {proof:e}"
