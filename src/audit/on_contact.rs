@@ -85,3 +85,19 @@ pub(super) fn along_directions<S: Enclosing>(
     };
     OnContact { beyond, term: two * length * integral }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On an edge along (4, 3), of length 5, whose outward vector of this length is (3, -4): v . n - 5 g is 5/4 and 11/8 at its ends.
+    #[test]
+    fn the_gap_is_taken_from_the_motion_along_an_oblique_normal() {
+        let v = [[0.5, -0.25], [0.0, -0.5]].map(Vector2::from);
+        let shape = OnEdge { v, gap: [0.25, 0.125], bulges: None };
+        let found = along_the_normal(&shape, Vector2::new(3.0, -4.0), [-1.0, -2.0], || 5.0);
+        assert_eq!(found.beyond, [1.25, 1.25, 1.25, 1.375]);
+        // 2 int p (v . n - 5 g), with p from -1 to -2: exact but for the third.
+        assert!((found.term + 11.875 / 3.0).abs() < 1e-15 * 10.0, "{}", found.term);
+    }
+}

@@ -434,3 +434,33 @@ impl<const N: usize> RoundedStrain<N> {
         material.stress(self.gradient::<E, M>(l))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Condition, Degree, Diagonal, Problem, Rectangle};
+    use crate::solve::{Method, discretize};
+
+    #[test]
+    fn the_energy_of_one_moved_node_is_at_most_what_its_magnitude_says_and_no_tenth_of_that() {
+        let square = Rectangle { width: 1.0, height: 1.0, nx: 2, ny: 2, diagonal: Diagonal::Right };
+        let material = Material::lame(1.0, 1.0, crate::kernel::Plane::Strain);
+        let problem = Problem::of(square.mesh().unwrap(), material)
+            .with("top", Condition::clamped())
+            .with("bottom", Condition::contact(|_| 0.0));
+        for (degree, times) in [(Degree::One, 10.0), (Degree::Two, 20.0)] {
+            let d = discretize(&problem, &Method { degree, ..Method::default() }).unwrap();
+            for node in 0..d.space.nodes().len() {
+                let mut u = vec![[0.0; 2]; d.space.nodes().len()];
+                u[node] = [1e-20, 0.0];
+                let norm = d.strain_energy(&u).sqrt();
+                let u: Vec<[PreciseBall; 2]> = u.iter().map(|u| u.map(PreciseBall::from)).collect();
+                let most = energy_norm_at_most(&d, &u);
+                assert!(
+                    norm <= most && most < times * norm,
+                    "{degree:?} {node}: {norm:e} {most:e}"
+                );
+            }
+        }
+    }
+}
