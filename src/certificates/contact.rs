@@ -92,6 +92,12 @@ impl Side {
         if s == 1.0 { to } else { near_place(from + s * (to - from)) }
     }
 
+    /// The middle on the edge of the part of the contact between these places: inside of it, however short it is.
+    pub fn middle(&self, ends: [f64; 2]) -> f64 {
+        let [s, t] = ends.map(|s| self.place(s));
+        (s + t) / 2.0
+    }
+
     /// The place in the contact of place `x` on the edge.
     pub fn within(&self, x: f64) -> f64 {
         let [from, to] = self.places;
@@ -292,6 +298,9 @@ impl Contact {
                 parts.map(|ends| tied(ends, value)).collect()
             }
         };
+        if contact.is_pair() {
+            contact.join_slivers();
+        }
         if geometry.law == Law::Bonded {
             contact.glue(piece);
         }
@@ -409,9 +418,42 @@ impl Contact {
         }
     }
 
-    /// It is longer than nothing on each side.
+    /// On each side it is longer than what is taken for one place.
     pub fn has_length(&self) -> bool {
-        self.sides.iter().all(|side| side.places[0] != side.places[1])
+        self.sides.iter().all(|side| (side.places[1] - side.places[0]).abs() > SAME_PLACE)
+    }
+
+    /// Takes over what another contact, which is left out, has of the same edges: one that is behind this one (`end` is 1) or before it
+    /// (0).
+    pub fn take_over(&mut self, other: &mut Contact, end: usize) {
+        for (own, side) in self.sides.iter_mut().zip(&mut other.sides) {
+            let by = (side.places[end] - own.places[end]).abs();
+            // Both ends of what is left out are as near as that.
+            if own.edge == side.edge && by <= 2.0 * SAME_PLACE {
+                own.moved |= by > ROUNDING;
+                own.places[end] = side.places[end];
+                side.places[1 - end] = side.places[end];
+            }
+        }
+    }
+
+    /// Gives what parts have that are no longer than one place on one of the edges to their neighbours.
+    fn join_slivers(&mut self) {
+        let sides = &self.sides;
+        let is_sliver = |[s, t]: [f64; 2]| {
+            sides.iter().any(|side| (side.place(t) - side.place(s)).abs() <= SAME_PLACE)
+        };
+        let mut joined: Vec<Part> = Vec::with_capacity(self.parts.len());
+        for part in &self.parts {
+            match joined.last_mut() {
+                Some(last) if is_sliver(part.ends) => last.ends[1] = part.ends[1],
+                Some(last) if is_sliver(last.ends) => {
+                    *last = Part { ends: [last.ends[0], part.ends[1]], ..*part };
+                }
+                _ => joined.push(*part),
+            }
+        }
+        self.parts = joined;
     }
 
     /// It is one of two bodies.
@@ -466,7 +508,7 @@ impl Contact {
         let [d, e] = self.directions;
         for part in &self.parts {
             let ([s, t], [pressure, shear]) = (part.ends, tractions(part));
-            let middle = side.place((s + t) / 2.0);
+            let middle = side.middle(part.ends);
             if !(from < middle && middle < to) {
                 continue;
             }
