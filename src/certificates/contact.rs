@@ -594,6 +594,58 @@ impl Contact {
     }
 }
 
+/// Makes the tractions of pairs continuous where contacts meet inside of an edge: with a jump there, the narrow triangles beside the cut
+/// have many times as much stress. The shorter of the two parts keeps more of what it has, since it can bear less of a slope; on slivers
+/// between them tractions are constant.
+pub(super) fn even_out(contacts: &mut [Contact]) {
+    let parts = |(k, contact): (usize, &Contact)| (0..contact.parts.len()).map(move |j| (k, j));
+    let order: Vec<(usize, usize)> = contacts.iter().enumerate().flat_map(parts).collect();
+    let mut first = 0;
+    while first + 1 < order.len() {
+        let mut last = first + 1;
+        while last + 1 < order.len() && contacts[order[last].0].is_sliver() {
+            last += 1;
+        }
+        let run = &order[first..=last];
+        first = last;
+        if !run.windows(2).all(|two| meet(&contacts[two[0].0], &contacts[two[1].0])) {
+            continue;
+        }
+        let at = |(k, j): (usize, usize), end: usize| {
+            let (contact, part) = (&contacts[k], &contacts[k].parts[j]);
+            let length = contact.length * (part.ends[1] - part.ends[0]);
+            (length, [part.pressure[end], part.shear[end]])
+        };
+        let ((before, p), (after, q)) = (at(run[0], 1), at(run[run.len() - 1], 0));
+        if (p[0] == 0.0 || q[0] == 0.0) && !contacts[run[0].0].is_tied() {
+            continue;
+        }
+        let [pressure, shear] = [0, 1].map(|c| (p[c] * after + q[c] * before) / (before + after));
+        for (n, &(k, j)) in run.iter().enumerate() {
+            for end in 0..2 {
+                if (n == 0 && end == 0) || (n == run.len() - 1 && end == 1) {
+                    continue;
+                }
+                let bound = match contacts[k].is_tied() {
+                    true => f64::INFINITY,
+                    false => contacts[k].bound_at(contacts[k].parts[j].ends[end]),
+                };
+                let part = &mut contacts[k].parts[j];
+                (part.pressure[end], part.shear[end]) = (pressure, shear.clamp(-bound, bound));
+            }
+        }
+    }
+}
+
+/// One contact ends inside of an edge where the other one begins, and tractions may be affine on both.
+fn meet(one: &Contact, other: &Contact) -> bool {
+    let inside = |(a, b): (&Side, &Side)| {
+        a.edge == b.edge && (a.places[1] - b.places[0]).abs() <= SAME_PLACE
+    };
+    let same = std::ptr::eq(one, other) || one.sides.iter().zip(&other.sides).any(inside);
+    one.is_pair() && other.is_pair() && same && !one.turns() && !other.turns()
+}
+
 /// int \[P\]+ phi for the hat functions of the ends of an edge, in units of its length.
 fn with_hats(degree: Degree, p: &[f64]) -> [f64; 2] {
     let nodal = EdgeRule::Exact.integrals(degree, None, p).gradient;

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector2;
 
 use super::certificate::{Role, is_oblique};
-use super::contact::{Contact, SAME_PLACE};
+use super::contact::{Contact, SAME_PLACE, even_out};
 use super::data::{Traction, bulge_of, is_within};
 use super::errors::CertifyError;
 use super::field::Field;
@@ -82,6 +82,7 @@ impl<'a> ProblemParts<'a> {
             last.into_iter().for_each(|last| next.join(&problem.mesh, last));
             contact.push(next);
         }
+        even_out(&mut contact);
         let unsupported = |why: String| Err(CertifyError::Unsupported(why));
         if let Some(point) = problem.points.first() {
             return unsupported(format!(
