@@ -37,6 +37,15 @@ def vector_space(domain, degree):
     return fem.VectorFunctionSpace(domain, ("Lagrange", degree))
 
 
+def space_of_two(domain, degree):
+    """Two displacements."""
+    if basix_ufl:
+        element = basix_ufl.element("Lagrange", "triangle", degree, shape=(2,))
+        return fem.functionspace(domain, basix_ufl.mixed_element([element, element]))
+    element = ufl.VectorElement("Lagrange", domain.ufl_cell(), degree)
+    return fem.FunctionSpace(domain, ufl.MixedElement(element, element))
+
+
 def scalar_space(domain, family, degree):
     if hasattr(fem, "functionspace"):
         return fem.functionspace(domain, (family, degree))

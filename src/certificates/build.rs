@@ -212,9 +212,8 @@ impl Built {
         }
         for contact in parts.contact.iter().filter(|contact| contact.is_pair()) {
             for part in &contact.parts {
-                let middle = (part.ends[0] + part.ends[1]) / 2.0;
                 let there = contact.sides.iter().filter_map(|side| {
-                    let x = side.place(middle);
+                    let x = side.middle(part.ends);
                     let whole = parts.mesh.triangle_edges()[side.edge.triangle][side.edge.local];
                     let inside = |(_, [s, t]): &&(usize, [f64; 2])| *s < x && x < *t;
                     along.of(whole).iter().find(inside).map(|&(e, _)| e)

@@ -92,6 +92,12 @@ impl Side {
         if s == 1.0 { to } else { near_place(from + s * (to - from)) }
     }
 
+    /// The middle on the edge of the part of the contact between these places: inside of it, however short it is.
+    pub fn middle(&self, ends: [f64; 2]) -> f64 {
+        let [s, t] = ends.map(|s| self.place(s));
+        (s + t) / 2.0
+    }
+
     /// The place in the contact of place `x` on the edge.
     pub fn within(&self, x: f64) -> f64 {
         let [from, to] = self.places;
@@ -292,6 +298,9 @@ impl Contact {
                 parts.map(|ends| tied(ends, value)).collect()
             }
         };
+        if contact.is_pair() {
+            contact.join_slivers();
+        }
         if geometry.law == Law::Bonded {
             contact.glue(piece);
         }
@@ -409,9 +418,42 @@ impl Contact {
         }
     }
 
-    /// It is longer than nothing on each side.
+    /// On each side it is longer than what is taken for one place.
     pub fn has_length(&self) -> bool {
-        self.sides.iter().all(|side| side.places[0] != side.places[1])
+        self.sides.iter().all(|side| (side.places[1] - side.places[0]).abs() > SAME_PLACE)
+    }
+
+    /// Takes over what another contact, which is left out, has of the same edges: one that is behind this one (`end` is 1) or before it
+    /// (0).
+    pub fn take_over(&mut self, other: &mut Contact, end: usize) {
+        for (own, side) in self.sides.iter_mut().zip(&mut other.sides) {
+            let by = (side.places[end] - own.places[end]).abs();
+            // Both ends of what is left out are as near as that.
+            if own.edge == side.edge && by <= 2.0 * SAME_PLACE {
+                own.moved |= by > ROUNDING;
+                own.places[end] = side.places[end];
+                side.places[1 - end] = side.places[end];
+            }
+        }
+    }
+
+    /// Gives what parts have that are no longer than one place on one of the edges to their neighbours.
+    fn join_slivers(&mut self) {
+        let sides = &self.sides;
+        let is_sliver = |[s, t]: [f64; 2]| {
+            sides.iter().any(|side| (side.place(t) - side.place(s)).abs() <= SAME_PLACE)
+        };
+        let mut joined: Vec<Part> = Vec::with_capacity(self.parts.len());
+        for part in &self.parts {
+            match joined.last_mut() {
+                Some(last) if is_sliver(part.ends) => last.ends[1] = part.ends[1],
+                Some(last) if is_sliver(last.ends) => {
+                    *last = Part { ends: [last.ends[0], part.ends[1]], ..*part };
+                }
+                _ => joined.push(*part),
+            }
+        }
+        self.parts = joined;
     }
 
     /// It is one of two bodies.
@@ -466,7 +508,7 @@ impl Contact {
         let [d, e] = self.directions;
         for part in &self.parts {
             let ([s, t], [pressure, shear]) = (part.ends, tractions(part));
-            let middle = side.place((s + t) / 2.0);
+            let middle = side.middle(part.ends);
             if !(from < middle && middle < to) {
                 continue;
             }
@@ -550,6 +592,58 @@ impl Contact {
     pub fn turns(&self) -> bool {
         self.directions[0] != self.directions[1]
     }
+}
+
+/// Makes the tractions of pairs continuous where contacts meet inside of an edge: with a jump there, the narrow triangles beside the cut
+/// have many times as much stress. The shorter of the two parts keeps more of what it has, since it can bear less of a slope; on slivers
+/// between them tractions are constant.
+pub(super) fn even_out(contacts: &mut [Contact]) {
+    let parts = |(k, contact): (usize, &Contact)| (0..contact.parts.len()).map(move |j| (k, j));
+    let order: Vec<(usize, usize)> = contacts.iter().enumerate().flat_map(parts).collect();
+    let mut first = 0;
+    while first + 1 < order.len() {
+        let mut last = first + 1;
+        while last + 1 < order.len() && contacts[order[last].0].is_sliver() {
+            last += 1;
+        }
+        let run = &order[first..=last];
+        first = last;
+        if !run.windows(2).all(|two| meet(&contacts[two[0].0], &contacts[two[1].0])) {
+            continue;
+        }
+        let at = |(k, j): (usize, usize), end: usize| {
+            let (contact, part) = (&contacts[k], &contacts[k].parts[j]);
+            let length = contact.length * (part.ends[1] - part.ends[0]);
+            (length, [part.pressure[end], part.shear[end]])
+        };
+        let ((before, p), (after, q)) = (at(run[0], 1), at(run[run.len() - 1], 0));
+        if (p[0] == 0.0 || q[0] == 0.0) && !contacts[run[0].0].is_tied() {
+            continue;
+        }
+        let [pressure, shear] = [0, 1].map(|c| (p[c] * after + q[c] * before) / (before + after));
+        for (n, &(k, j)) in run.iter().enumerate() {
+            for end in 0..2 {
+                if (n == 0 && end == 0) || (n == run.len() - 1 && end == 1) {
+                    continue;
+                }
+                let bound = match contacts[k].is_tied() {
+                    true => f64::INFINITY,
+                    false => contacts[k].bound_at(contacts[k].parts[j].ends[end]),
+                };
+                let part = &mut contacts[k].parts[j];
+                (part.pressure[end], part.shear[end]) = (pressure, shear.clamp(-bound, bound));
+            }
+        }
+    }
+}
+
+/// One contact ends inside of an edge where the other one begins, and tractions may be affine on both.
+fn meet(one: &Contact, other: &Contact) -> bool {
+    let inside = |(a, b): (&Side, &Side)| {
+        a.edge == b.edge && (a.places[1] - b.places[0]).abs() <= SAME_PLACE
+    };
+    let same = std::ptr::eq(one, other) || one.sides.iter().zip(&other.sides).any(inside);
+    one.is_pair() && other.is_pair() && same && !one.turns() && !other.turns()
 }
 
 /// int \[P\]+ phi for the hat functions of the ends of an edge, in units of its length.

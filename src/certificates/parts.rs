@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector2;
 
 use super::certificate::{Role, is_oblique};
-use super::contact::{Contact, SAME_PLACE};
+use super::contact::{Contact, SAME_PLACE, even_out};
 use super::data::{Traction, bulge_of, is_within};
 use super::errors::CertifyError;
 use super::field::Field;
@@ -68,15 +68,21 @@ impl<'a> ProblemParts<'a> {
     ) -> Result<Self, CertifyError> {
         let space = Space::new(&problem.mesh, degree);
         let constraints = Constraints::new(problem, &space)?;
-        let mut contact: Vec<Contact> = pieces
-            .iter()
-            .map(|piece| Contact::new(problem, piece, displacement, halved))
-            .filter(Contact::has_length)
-            .collect();
-        for k in 1..contact.len() {
-            let (before, after) = contact.split_at_mut(k);
-            after[0].join(&problem.mesh, &before[k - 1]);
+        let mut contact: Vec<Contact> = Vec::with_capacity(pieces.len());
+        let mut left_out = None;
+        for piece in pieces {
+            let mut next = Contact::new(problem, piece, displacement, halved);
+            let last = contact.last_mut();
+            if !next.has_length() {
+                last.into_iter().for_each(|last| last.take_over(&mut next, 1));
+                left_out = Some(next);
+                continue;
+            }
+            left_out.take().iter_mut().for_each(|before| next.take_over(before, 0));
+            last.into_iter().for_each(|last| next.join(&problem.mesh, last));
+            contact.push(next);
         }
+        even_out(&mut contact);
         let unsupported = |why: String| Err(CertifyError::Unsupported(why));
         if let Some(point) = problem.points.first() {
             return unsupported(format!(

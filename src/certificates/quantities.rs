@@ -522,9 +522,9 @@ fn list(
         });
         let contacts = lines.flatten().filter(|&&(_, side)| side == 0);
         let mut along = contacts.map(|&(k, _)| parts.contact[k].directions);
-        let pairs = parts.problem.pairs.iter().filter(|pair| pair.boundaries.contains(name));
-        if pairs.count() > 1 {
-            // The forces of several bodies, of which each is one.
+        let mut pairs = parts.problem.pairs.iter().filter(|pair| pair.boundaries.contains(name));
+        if pairs.clone().count() > 1 && pairs.any(|pair| pair.boundaries[0] != *name) {
+            // The jump of w is that of the first bodies, and this one is a first and a second body.
             continue;
         }
         if let Some([d, _]) = along.next() {

@@ -70,16 +70,16 @@ fn step_by_step(
         ));
     }
     spare(folder, &steps::FILES, &case.sources)?;
-    let count = case.steps.len();
+    let (count, file) = (case.steps.len(), case.file.clone());
     let extra = Extra { certificate: options.certificate, report: options.report };
     let watcher = |step, stage| match stage {
         Stage::Solve(phase) => phases.enter_solve(phase),
         _ => phases.enter(format!("step {step} of {count}")),
     };
-    let table = steps::run(case.steps, folder, extra, &watcher)?;
+    let table = steps::run(case, folder, extra, &watcher)?;
     drop(phases);
     if let [Err(failure)] = &table.results[..] {
-        return Err(failure.clone().of(&case.file));
+        return Err(failure.clone().of(&file));
     }
     sweep::ended(&table, folder, quiet)
 }

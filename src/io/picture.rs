@@ -488,6 +488,25 @@ mod tests {
     }
 
     #[test]
+    fn a_panel_runs_the_way_its_boundary_does() {
+        let dot = |arc: f64, to_the_left: bool| -> f64 {
+            let mut scene = block(50);
+            for sample in samples(&mut scene) {
+                sample.pressure = (0.3 - (sample.arc - arc).abs()).max(0.0);
+                if to_the_left {
+                    sample.position[0] = 1.0 - sample.position[0];
+                }
+            }
+            let svg = drawn(&scene);
+            let dot = svg.split("<circle").nth(1).unwrap().split(" cx=\"").nth(1).unwrap();
+            dot.split('"').next().unwrap().parse().unwrap()
+        };
+        // Rounded to hundredths.
+        let same = |a: f64, b: f64| (a - b).abs() < 0.02;
+        assert!(same(dot(0.4, true), dot(0.6, false)) && !same(dot(0.4, true), dot(0.4, false)));
+    }
+
+    #[test]
     fn markup_in_a_title_is_text() {
         let mut scene = block(1);
         scene.title = "a < b & \"c\" > 'd'\u{1}\n</svg>".to_owned();

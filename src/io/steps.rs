@@ -16,20 +16,20 @@ pub const FILES: [&str; 2] = ["steps.csv", "steps.svg"];
 
 const NAMES: &Names = &[FILES[0], FILES[1], "steps.pvd"];
 
-/// Solves the `steps` of a case and writes the files of step i (from 1) into the folder i of `folder`; those that earlier steps left
+/// Solves the steps of a `case` and writes the files of step i (from 1) into the folder i of `folder`; those that earlier steps left
 /// there go before. `watcher` is told of each step and of each stage of it. After a step without a solution there is none to go on from:
 /// the rest is not solved.
 ///
 /// # Errors
 /// Files that can't be written. A step that has no solution is none: its entry in [`Sweep::results`] says why.
 pub fn run(
-    steps: Vec<Case>,
+    case: Case,
     folder: &Path,
     extra: Extra,
     watcher: &dyn Fn(usize, Stage),
 ) -> Result<Sweep, Failure> {
     clear(folder);
-    let title = steps.first().map_or(String::new(), |case| case.title.clone());
+    let Case { title, steps, .. } = case;
     let values = (1..=steps.len()).map(|i| vec![i.to_string()]).collect();
     let keys = vec!["step".to_owned()];
     let mut table =

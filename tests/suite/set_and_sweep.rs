@@ -414,6 +414,12 @@ fn load_steps_are_solved_one_after_the_other_and_have_a_table() {
     assert!(!said.contains("one step") && said.contains("step  verdict"), "{said}");
     let written = folder.join("out/case");
     assert_eq!(names(&written), ["1", "2", "3", "steps.csv", "steps.pvd", "steps.svg"]);
+    // The plot has the title of the case, each picture that of its step.
+    let has =
+        |file: &str, title: &str| fs::read_to_string(written.join(file)).unwrap().contains(title);
+    let [whole, last] = ["Block", "Back"].map(|title| format!("<title>{title}</title>"));
+    assert!(has("steps.svg", &whole) && !has("steps.svg", &last));
+    assert!(has("3/picture.svg", &last) && !has("3/picture.svg", &whole));
     let csv = fs::read_to_string(written.join("steps.csv")).unwrap();
     let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
     let column = lines[0].iter().position(|name| *name == "bottom.force_x").unwrap();

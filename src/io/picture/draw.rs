@@ -141,7 +141,7 @@ pub(super) fn range(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
     numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
 }
 
-/// An axis: the range of its values, and the ends of that on the page.
+/// An axis: the range of its values, which may fall, and the ends of that on the page.
 pub(super) struct PageAxis {
     pub(super) range: [f64; 2],
     pub(super) page: [f64; 2],
@@ -151,7 +151,8 @@ impl PageAxis {
     /// The place of a value on the page; the middle where the range is a single value.
     pub(super) fn at(&self, value: f64) -> f64 {
         let ([low, high], [start, end]) = (self.range, self.page);
-        let part = if high > low { (value - low) / (high - low) } else { 0.5 };
+        let width = high - low;
+        let part = if width.is_normal() { (value - low) / width } else { 0.5 };
         start + part * (end - start)
     }
 }

@@ -70,6 +70,16 @@ fn shown(surface: &ContactSurface) -> [f64; 2] {
     }
 }
 
+/// Returns whether the boundary runs to the left: then its panel does, too, so that both are seen the same way round.
+fn runs_left(surface: &ContactSurface) -> bool {
+    let [first, last] = shown(surface);
+    let mut samples = surface.parts.iter().flatten().filter(|s| (first..=last).contains(&s.arc));
+    let start = samples.next().map(|s| s.position);
+    let end = samples.next_back().map(|s| s.position);
+    let (Some([x, y]), Some([to_x, to_y])) = (start, end) else { return false };
+    x - to_x > (y - to_y).abs()
+}
+
 /// Returns whether samples of the boundary have friction.
 fn is_rough(surface: &ContactSurface) -> bool {
     surface.parts.iter().flatten().any(|sample| sample.shear.is_some())
@@ -89,11 +99,14 @@ fn panel(
 ) -> Group {
     let peak = surface.peak();
     let (left, bottom, width) = (x + LEFT, y + TOP + PLOT, width - LEFT - RIGHT);
+    let [first, last] = shown(surface);
     let axes = Axes {
-        x: PageAxis { range: shown(surface), page: [left, left + width] },
+        x: PageAxis {
+            range: if runs_left(surface) { [last, first] } else { [first, last] },
+            page: [left, left + width],
+        },
         y: PageAxis { range: [0.0, top * (PLOT / (PLOT - ABOVE))], page: [bottom, bottom - PLOT] },
     };
-    let [first, last] = axes.x.range;
     let pressures = if top > 0.0 { ticks(0.0, top) } else { Vec::new() };
     let grid = axes.grid([ticks(first, last), pressures]);
     let in_brackets = |i: usize| units.as_ref().map_or(String::new(), |u| format!(" ({})", u[i]));
@@ -131,12 +144,12 @@ fn panel(
 /// Draws the zones as a strip, with the bounds that its colours stand for: of each kind the largest of those that are seen.
 fn strip((zones, reserved): (&[Zone], bool), [stress, length]: [&str; 2], axes: &Axes) -> Group {
     let ([left, right], [bottom, _]) = (axes.x.page, axes.y.page);
-    let [low, high] = axes.x.range;
-    let bar = |[from, to]: [f64; 2], fill: &str| {
-        let [from, to] = [from, to].map(|arc| axes.x.at(arc.clamp(low, high)));
+    let [low, high] = range(axes.x.range.into_iter());
+    let bar = |ends: [f64; 2], fill: &str| {
+        let [from, to] = range(ends.into_iter().map(|arc| axes.x.at(arc.clamp(low, high))));
         rectangle([from, bottom + 1.0], [to - from, STRIP]).set("fill", fill)
     };
-    let mut group = Group::new().add(bar(axes.x.range, LIGHT));
+    let mut group = Group::new().add(bar([low, high], LIGHT));
     let mut most = [None::<f64>; 2];
     for zone in zones.iter().filter(|zone| zone.from < high && zone.to > low) {
         let (kind, integral) = match zone.limit {
@@ -171,7 +184,7 @@ fn strip((zones, reserved): (&[Zone], bool), [stress, length]: [&str; 2], axes: 
 }
 
 fn curve(surface: &ContactSurface, axes: &Axes) -> Group {
-    let [first, last] = axes.x.range;
+    let [first, last] = range(axes.x.range.into_iter());
     let (mut area, mut line) = (PathData::default(), PathData::default());
     for part in &surface.parts {
         let shown = part.iter().filter(|s| (first..=last).contains(&s.arc));
@@ -189,7 +202,7 @@ fn curve(surface: &ContactSurface, axes: &Axes) -> Group {
 
 /// Draws the sizes of the shear stress as a line.
 fn shear(surface: &ContactSurface, axes: &Axes) -> Group {
-    let ([first, last], highest) = (axes.x.range, axes.y.range[1]);
+    let ([first, last], highest) = (range(axes.x.range.into_iter()), axes.y.range[1]);
     let mut line = PathData::default();
     for part in &surface.parts {
         let shown = part.iter().filter(|s| (first..=last).contains(&s.arc));

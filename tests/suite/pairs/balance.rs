@@ -90,8 +90,8 @@ fn loads_reactions_and_the_force_of_the_other_body_balance_on_each_body() {
             let force = Vector2::from(pair.resultant);
             let reaction = |name: &str| Vector2::from(s.quantities.reactions[name]);
             let moment = |name: &str| s.quantities.reaction_moments[name];
-            // The residual of the solve and the rounding of some hundred forces.
-            let most = 1e-11 * (size(force) + 1e-3);
+            // The rounding of some hundred forces.
+            let most = 1e-13 * size(force);
             let lower = size(reaction("lower.bottom") + force);
             let upper = size(reaction("upper.top") - force);
             let turning = [moment("lower.bottom") + pair.moment, moment("upper.top") - pair.moment];

@@ -161,7 +161,8 @@ fn on_curved_boundaries_the_order_of_the_bodies_does_not_matter() {
     assert!(off > 1e-12, "{off:e}");
 }
 
-/// Hertz: the right halves of cylinders of steel and cast iron, of the case `cylinders`.
+/// Hertz: the right halves of cylinders of steel and cast iron, of the case `cylinders`. Of its mesh, which is one to begin with, the peak of P2
+/// is off by 0.21 %; with 8 and 5 edges on half the width it is within 0.2 %, in the test below.
 #[test]
 fn cylinders_press_on_each_other_as_hertz_says() {
     for (degree, most, width) in [("1", 1e-2, 1e-2), ("2", 2.5e-3, 1e-3)] {

@@ -153,12 +153,15 @@ fn ninety_nine_of_a_hundred_pairs_are_proved() {
     assert!(100 * missed <= count, "{missed} of {count} are not proved");
 }
 
+/// What once had no certificate: contact, or a part of it, that is hardly longer than what is taken for one place.
+const CERTIFIED: [u64; 2] = [255, 431];
+
 #[test]
 fn pairs_at_random_have_certificates_and_these_are_of_their_problems() {
     let (from, count) =
         (number_from("SIGNORINI_PAIRS_FROM", 1), number_from("SIGNORINI_PAIRS", 60));
     let (mut certified, mut missed, mut bounds) = (0, 0, Vec::new());
-    for seed in from..from + count {
+    for seed in (from..from + count).chain(CERTIFIED) {
         let Drawn { kind, said, problem, method, .. } = drawn(seed);
         let Ok((solution, _)) = solve(&problem, &method, &Settings::default()) else { continue };
         let turns = solution.pieces.iter().any(|piece| piece.geometry.turns());
@@ -177,6 +180,7 @@ fn pairs_at_random_have_certificates_and_these_are_of_their_problems() {
         certified += 1;
         if let Err(error) = outcome {
             println!("seed {seed}: {kind}: {error} [{said}]");
+            assert!(!CERTIFIED.contains(&seed), "seed {seed}: {error}");
             missed += 1;
         }
     }
