@@ -34,6 +34,9 @@ use crate::solve::coulomb::coefficient;
 const MOST_FUNCTIONALS: usize = 2_000;
 const MOST_ENTRIES: usize = 40_000_000;
 
+/// The number of solves for a column of the compliance: each takes off as many digits as the factor has.
+const MOST_CORRECTIONS: usize = 8;
+
 /// The shares of a stretch that are left out at a root, where nothing is certain: the first with which the rest is.
 const INSETS: [f64; 4] = [1e-14, 1e-12, 1e-10, 1e-7];
 
@@ -78,6 +81,16 @@ struct Compliance {
     off: f64,
 }
 
+impl Compliance {
+    /// The dual norm of a functional B^T f, at most, for forces f of these sizes at most.
+    fn norm_of(&self, sizes: &[f64]) -> f64 {
+        let of =
+            |(i, size): (usize, &f64)| size * up(self.g[(i, i)].max(0.0) + self.by[(i, i)]).sqrt();
+        let sum: f64 = sizes.iter().enumerate().map(of).sum();
+        up(sum * (1.0 + f64::EPSILON * (sizes.len() + 16) as f64))
+    }
+}
+
 impl Body<'_, '_, '_> {
     /// G = B A^-1 B^T: with z_j near A^-1 b_j and e_j = b_j - A z_j, the entry b_i . z_j is off by |b_i|_A* |e_j|_A* at most.
     fn compliance(&self, pieces: &[Piece<PreciseBall>]) -> Result<Compliance, Unproved> {
@@ -106,19 +119,29 @@ impl Body<'_, '_, '_> {
             let mut left = vec![zero; system.numbering.count];
             row.iter().for_each(|&(k, b)| left[k] = b);
             let mut rest = f64::INFINITY;
-            // Solves, and corrects once by the residual.
-            for _ in 0..2 {
+            // Solves, and corrects by the residual as long as that leads on, up to the rounding of an entry.
+            for _ in 0..MOST_CORRECTIONS {
                 let mut correction: Vec<f64> = left.iter().map(|t| t.head()).collect();
                 self.factor.solve(&mut correction);
-                for (z, c) in z.iter_mut().zip(&correction) {
+                let mut next = z.clone();
+                for (z, c) in next.iter_mut().zip(&correction) {
                     *z = PreciseBall::point((*z + PreciseBall::from(*c)).centre());
                 }
-                let (az, off) = (self.times)(&z);
-                left = az.into_iter().map(|az| zero - az).collect();
-                row.iter().for_each(|&(k, b)| left[k] += b);
-                let sum: f64 = left.iter().zip(self.crude).map(|(t, c)| t.magnitude() * c).sum();
+                let (az, off) = (self.times)(&next);
+                let mut next_left: Vec<PreciseBall> = az.into_iter().map(|az| zero - az).collect();
+                row.iter().for_each(|&(k, b)| next_left[k] += b);
+                let sum: f64 =
+                    next_left.iter().zip(self.crude).map(|(t, c)| t.magnitude() * c).sum();
                 let rounding = 1.0 + f64::EPSILON * (left.len() + 16) as f64;
-                rest = up(sum * rounding + off / self.coercivity.sqrt());
+                let next_rest = up(sum * rounding + off / self.coercivity.sqrt());
+                if !(next_rest < rest) {
+                    break;
+                }
+                let is_better = next_rest < rest / 2.0;
+                (z, left, rest) = (next, next_left, next_rest);
+                if !is_better || rest <= f64::EPSILON * root(sparse(row, &z)) {
+                    break;
+                }
             }
             if !rest.is_finite() {
                 return Err(Unproved::OutOfRange);
@@ -629,6 +652,17 @@ impl Inverse {
         Reach::with(piece, [rounding, slack], product)
     }
 
+    /// The size of (1 - Z K Z^T) Z f, at most, for forces f of these sizes at most.
+    fn answer_to(&self, sizes: &[f64]) -> f64 {
+        let n = self.answers.nrows();
+        let length = |j: usize| {
+            (0..n).map(|i| self.answers[(i, j)] * self.answers[(i, j)]).sum::<f64>().sqrt()
+        };
+        let of = |(j, size): (usize, &f64)| size * (length(j) + self.slack[j]);
+        let sum: f64 = sizes.iter().enumerate().map(of).sum();
+        up(sum * (1.0 + f64::EPSILON * (2 * n + 16) as f64))
+    }
+
     /// The size of (1 + Z H Z^T)^-1 t, at most, where Z^T t = w: |t| <= `rho`, and of w it is known to `rest` in the length of t.
     fn times(&self, w: &[PreciseBall], [rho, rest]: [f64; 2]) -> f64 {
         let n = self.forces.nrows();
@@ -705,13 +739,15 @@ impl Known {
     }
 }
 
-/// The residual at a displacement.
+/// The residual at a displacement, of which the forces of contact are known up to some numbers.
 pub(super) struct Rest<'a> {
-    /// Its dual norm, at most.
+    /// Its dual norm for certain forces, at most.
     pub rho: f64,
-    /// A z with this z is the residual, up to a functional of at most this dual norm.
+    /// A z with this z is that residual, up to a functional of at most this dual norm.
     pub z: &'a [PreciseBall],
     pub left: f64,
+    /// What the force of each functional is off, at most.
+    pub spread: &'a [f64],
     /// The norm of the displacement.
     pub size: f64,
 }
@@ -726,12 +762,13 @@ pub(super) fn isolate(
     pieces: &[Piece<PreciseBall>],
     u: &[[PreciseBall; 2]],
     system: &System,
-    &Rest { rho, z, left, size }: &Rest,
+    &Rest { rho, z, left, spread, size }: &Rest,
 ) -> Result<Isolated, Unproved> {
     let d = system.d;
     let Known { compliance, root, springs, .. } = known;
     // A displacement in double-doubles may be as near as that.
-    let start = (8.0 * rho).max(f64::EPSILON * f64::EPSILON * size);
+    let by_forces = compliance.norm_of(spread);
+    let start = (8.0 * (rho + by_forces)).max(f64::EPSILON * f64::EPSILON * size);
     let on_piece = |piece| OnPiece::new(d, (piece, compliance), u, start);
     let all: Vec<OnPiece> = pieces.iter().map(on_piece).collect();
     let spring = |e: usize| springs.as_ref().map_or(0.0, |all| norm(all[e].as_slice()));
@@ -754,7 +791,8 @@ pub(super) fn isolate(
     };
     let v = field(system, |number, _, _| z[number], |_, _| 0.0);
     let w: Vec<PreciseBall> = pieces.iter().flat_map(|piece| piece.p0(&v)).collect();
-    let step = inverse.times(&w, [rho, left]);
+    let by_forces = inverse.answer_to(spread) + inverse.bound() * (inverse.left * by_forces);
+    let step = up(inverse.times(&w, [rho, left]) + by_forces);
     let holds = |r: f64| {
         let q = nearer(r);
         (up(step + up(q * r)) <= r && q < 1.0).then_some(q)
