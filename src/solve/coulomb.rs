@@ -629,13 +629,13 @@ mod tests {
     use crate::kernel::{Material, Plane};
     use crate::model::{Condition, Degree, Diagonal, Problem, Rectangle};
 
-    /// A block on a rough floor, pressed and dragged by its top.
+    /// A block on a rough floor, pressed and dragged by its top, that sticks in parts and slides in parts.
     fn block() -> Problem {
         let mesh = Rectangle { width: 1.0, height: 1.0, nx: 6, ny: 6, diagonal: Diagonal::Crossed };
         Problem::of(mesh.mesh().unwrap(), Material::lame(1.0, 1.0, Plane::Strain))
             .with("top", Condition::displacement(|[x, _]| 0.02 + 0.01 * x, |_| -0.05))
             .with("bottom", Condition::contact(|_| 0.0))
-            .with_friction("bottom", Friction::Coulomb(0.6))
+            .with_friction("bottom", Friction::Coulomb(0.2))
     }
 
     #[test]
@@ -672,6 +672,58 @@ mod tests {
             let last = size(&mut route, &iterate);
             assert!(last <= 1e-5 * first, "{degree:?}: {last:e} {first:e}");
         }
+    }
+
+    #[test]
+    fn a_step_takes_off_the_residual_and_without_the_share_of_the_pressure_it_does_not() {
+        let problem = block();
+        for degree in [Degree::One, Degree::Two] {
+            let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, EdgeRule::Exact);
+            let d = d.unwrap();
+            let system = System::new(&d).unwrap();
+            let mut route = Coulomb::new(&system, 1.0);
+            let mut iterate = Iterate::lift(&d);
+            let until = Until { steps: 200, residual: 0.0 };
+            let bounds = vec![[0.05; 3]; d.contact.len()];
+            route.tresca(&mut iterate, &mut Vec::new(), until, (&bounds, false)).unwrap();
+            let (r, terms) = route.residual(&iterate.evaluate(&system, false));
+            let nodes = degree.nodes_per_edge();
+            let mut hessian = terms.hessian.clone();
+            for block in &mut hessian {
+                block.view_mut((nodes, 0), (nodes, nodes)).fill(0.0);
+            }
+            assert!(hessian != terms.hessian, "nothing slides");
+            let uncoupled = Derivatives { stiffness: 1.0, gradient: Vec::new(), hessian };
+            // Of a piecewise smooth function, r(u + t d) is (1 - t) r up to the square of t.
+            let t = 1e-5;
+            let mut off = |terms: &Derivatives| {
+                let step = route.step(&r, terms).unwrap();
+                let mut moved = Iterate { u: iterate.u.clone() };
+                moved.add(&system, t, &step);
+                let (next, _) = route.residual(&moved.evaluate(&system, false));
+                let rest = next.iter().zip(&r).map(|(next, r)| next - (1.0 - t) * r);
+                norm(&rest.collect::<Vec<f64>>()) / (t * norm(&r))
+            };
+            let [coupled, uncoupled] = [off(&terms), off(&uncoupled)];
+            assert!(coupled < 1e-3 && uncoupled > 1e-2, "{degree:?}: {coupled:e} {uncoupled:e}");
+        }
+    }
+
+    #[test]
+    fn mixing_finds_the_fixed_point_of_an_affine_map() {
+        let map = |[a, b, _]: [f64; 3]| [1.0 + 0.5 * a - 0.4 * b, 2.0 + 0.3 * a + 0.2 * b, 0.0];
+        // a = 1 + a / 2 - 2 b / 5, b = 2 + 3 a / 10 + b / 5
+        let fixed = [0.0, 2.5, 0.0];
+        let mut mixing = Mixing::default();
+        for before in [[1.0, 1.0, 0.0], [2.0, 1.0, 0.0], [1.0, 3.0, 0.0]] {
+            mixing.remember(vec![before], vec![map(before)]);
+        }
+        // The diagonal is larger by 1e-10.
+        let found = mixing.next()[0];
+        assert!((0..3).all(|a| (found[a] - fixed[a]).abs() < 1e-8), "{found:?}");
+        // The control: the last one alone is not near.
+        let last = map([1.0, 3.0, 0.0]);
+        assert!((0..3).any(|a| (last[a] - fixed[a]).abs() > 0.1));
     }
 
     #[test]
