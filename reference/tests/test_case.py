@@ -54,6 +54,8 @@ REFUSED = [
      "obstacle.o.points: found arcs that are longer than the side between them, expected another line"),
     ("[load]", '[[pair]]\nboundaries = ["left", "right"]\n[load]',
      "pair: found a pair of boundaries, expected contact with rigid obstacles only: this engine has no contact between bodies"),
+    ("[load]", '[[step]]\nboundary.top.displacement = ["0", "-0.1"]\n[load]',
+     "step: found load steps, expected a case without: this engine has no friction"),
     ('[load]\nbody = ["0", "-4 + 10*x"]', '[obstacle.o]\ndistance = "2*y"\n[boundary.right]\ncontact = { obstacle = "o" }',
      "boundary.right.contact.obstacle: found 0.0 with a gradient of length 2.0 at (1.0, 0.0), expected a distance"),
     ("[load]", "[point.peg]\ndisplacement = [0, 0]\n[load]", "mesh: no point named 'peg'; this mesh has: none"),

@@ -297,7 +297,8 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         self.residual = r.iter().map(|r| r.head()).collect();
         let fields = (u, reported);
         let nowhere = Pressed::nowhere(self.lines.len());
-        if d.has_coulomb() {
+        if let Some(for_middles) = &at.for_middles {
+            let r = free(system, for_middles);
             let by_a = match d.slides {
                 None => self.held_by(&nowhere, &at, fields, (&r, arithmetic)),
                 Some(_) => Err(Unproved::HeldByContact),
@@ -412,7 +413,8 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             let product = Product { system, lines: &self.lines, pressed, arithmetic };
             let times = |z: &[PreciseBall]| product.times(z);
             let body = isolated::Body { system, factor, times: &times, crude: &crude, coercivity };
-            let rest = isolated::Rest { rho, z: &dual.z, left: up(dual.left + up_to), size };
+            let (left, spread) = (up(dual.left + up_to), at.spread());
+            let rest = isolated::Rest { rho, z: &dual.z, left, spread: &spread, size };
             let (now, without) = match &mut self.known {
                 without if !pressed.is_nowhere() => {
                     (&isolated::Known::new(&body, &self.lines, Some(springs))?, without.as_ref())

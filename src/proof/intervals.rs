@@ -109,6 +109,8 @@ impl Arithmetic {
 pub(super) struct EnclosedResidual {
     /// The residual at every basis function.
     pub residual: Vec<[PreciseBall; 2]>,
+    /// With Coulomb's friction: the residual for the middles of the contact forces, which are off by [`EnclosedResidual::spread`].
+    pub for_middles: Option<Vec<[PreciseBall; 2]>>,
     /// u~, or the field near it, with its prescribed components where they should be.
     pub u: Vec<[PreciseBall; 2]>,
     /// The energy norm of what that is off the displacement that is reported, at most.
@@ -158,21 +160,41 @@ impl EnclosedResidual {
         let energy = product(&exact, &residual);
         let energy = energy.widened(up(off * (off + root(energy))));
         let mut pressures = Vec::with_capacity(lines.len());
-        for line in lines {
-            line.add_stresses(&exact, &mut residual);
-            let pressure = line.force(&d.rule, &line.p(&exact));
-            line.add_contact(&pressure, &mut residual);
-            pressures.push(pressure);
-        }
+        lines.iter().for_each(|line| line.add_stresses(&exact, &mut residual));
         for (r, &l) in residual.iter_mut().zip(load) {
             *r = [r[0] - l[0], r[1] - l[1]];
+        }
+        let mut for_middles = d.has_coulomb().then(|| residual.clone());
+        for line in lines {
+            let pressure = line.force(&d.rule, &line.p(&exact));
+            line.add_contact(&pressure, &mut residual);
+            if let Some(residual) = &mut for_middles {
+                let middle = |p: &PreciseBall| PreciseBall::point(p.centre());
+                line.add_contact(&pressure.iter().map(middle).collect::<Vec<_>>(), residual);
+            }
+            pressures.push(pressure);
         }
         let all = residual.iter().chain(&exact).flatten();
         let lengths_are_finite = exact.iter().all(|&u| length(u).is_finite());
         if !(lengths_are_finite && all.chain([&energy]).all(|b| b.is_finite())) {
             return None;
         }
-        Some(EnclosedResidual { residual, u: exact, moved, energy, off, pressures, arithmetic })
+        let u = exact;
+        Some(EnclosedResidual {
+            residual,
+            for_middles,
+            u,
+            moved,
+            energy,
+            off,
+            pressures,
+            arithmetic,
+        })
+    }
+
+    /// What the force of each functional is off the middle of its ball, at most.
+    pub fn spread(&self) -> Vec<f64> {
+        self.pressures.iter().flatten().map(|force| force.radius()).collect()
     }
 
     /// Encloses the reported quantities, with |u~ - u^h|_A <= `rho`, |u~ - u^h|_a <= `radius`, the norm of gamma^{1/2}

@@ -34,8 +34,8 @@ use crate::solve::coulomb::coefficient;
 const MOST_FUNCTIONALS: usize = 2_000;
 const MOST_ENTRIES: usize = 40_000_000;
 
-/// The shares of a stretch that are left out at a root, where nothing is certain: the first with which the rest is.
-const INSETS: [f64; 4] = [1e-14, 1e-12, 1e-10, 1e-7];
+/// The number of solves for a column of the compliance: each takes off as many digits as the factor has.
+const MOST_CORRECTIONS: usize = 8;
 
 /// The proved facts about the solution near a displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,6 +78,20 @@ struct Compliance {
     off: f64,
 }
 
+impl Compliance {
+    /// The dual norms of the functionals, at most.
+    fn norms(&self) -> Vec<f64> {
+        let of = |i: usize| up(up(self.g[(i, i)].max(0.0) + self.by[(i, i)]).sqrt());
+        (0..self.g.nrows()).map(of).collect()
+    }
+}
+
+/// The sum of products of numbers that are not negative, rounded up.
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    let sum: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
+    up(sum * (1.0 + f64::EPSILON * (a.len() + 16) as f64))
+}
+
 impl Body<'_, '_, '_> {
     /// G = B A^-1 B^T: with z_j near A^-1 b_j and e_j = b_j - A z_j, the entry b_i . z_j is off by |b_i|_A* |e_j|_A* at most.
     fn compliance(&self, pieces: &[Piece<PreciseBall>]) -> Result<Compliance, Unproved> {
@@ -106,19 +120,29 @@ impl Body<'_, '_, '_> {
             let mut left = vec![zero; system.numbering.count];
             row.iter().for_each(|&(k, b)| left[k] = b);
             let mut rest = f64::INFINITY;
-            // Solves, and corrects once by the residual.
-            for _ in 0..2 {
+            // Solves, and corrects by the residual as long as that leads on, up to the rounding of an entry.
+            for _ in 0..MOST_CORRECTIONS {
                 let mut correction: Vec<f64> = left.iter().map(|t| t.head()).collect();
                 self.factor.solve(&mut correction);
-                for (z, c) in z.iter_mut().zip(&correction) {
+                let mut next = z.clone();
+                for (z, c) in next.iter_mut().zip(&correction) {
                     *z = PreciseBall::point((*z + PreciseBall::from(*c)).centre());
                 }
-                let (az, off) = (self.times)(&z);
-                left = az.into_iter().map(|az| zero - az).collect();
-                row.iter().for_each(|&(k, b)| left[k] += b);
-                let sum: f64 = left.iter().zip(self.crude).map(|(t, c)| t.magnitude() * c).sum();
+                let (az, off) = (self.times)(&next);
+                let mut next_left: Vec<PreciseBall> = az.into_iter().map(|az| zero - az).collect();
+                row.iter().for_each(|&(k, b)| next_left[k] += b);
+                let sum: f64 =
+                    next_left.iter().zip(self.crude).map(|(t, c)| t.magnitude() * c).sum();
                 let rounding = 1.0 + f64::EPSILON * (left.len() + 16) as f64;
-                rest = up(sum * rounding + off / self.coercivity.sqrt());
+                let next_rest = up(sum * rounding + off / self.coercivity.sqrt());
+                if !(next_rest < rest) {
+                    break;
+                }
+                let is_better = next_rest < rest / 2.0;
+                (z, left, rest) = (next, next_left, next_rest);
+                if !is_better || rest <= f64::EPSILON * root(sparse(row, &z)) {
+                    break;
+                }
             }
             if !rest.is_finite() {
                 return Err(Unproved::OutOfRange);
@@ -289,26 +313,6 @@ fn possible(law: Law, has: impl Fn(Region) -> bool) -> Vec<Terms> {
     }
 }
 
-/// Where a quadratic polynomial with these values at the nodes has its extremum within the edge: on either side of the extremum
-/// a positive polynomial has positive Bernstein coefficients, across it the coefficients may be negative.
-fn turning_point(values: &Row) -> Option<f64> {
-    let [start, end, middle] = values[..] else { return None };
-    let [start, end, middle] = [start, end, middle].map(PreciseBall::head);
-    let (slope, bend) = (4.0 * middle - 3.0 * start - end, start + end - 2.0 * middle);
-    let at = -slope / (4.0 * bend);
-    (at > 0.0 && at < 1.0).then_some(at)
-}
-
-/// Where all of these polynomials are positive on a piece.
-fn where_positive(
-    d: &Discretization,
-    piece: &Piece<PreciseBall>,
-    positive: &[Row],
-) -> Vec<EdgePiece> {
-    let cuts: Vec<f64> = positive.iter().filter_map(turning_point).collect();
-    EdgePiece::positive((d.space.degree(), &d.rule), piece.radii, positive, (&INSETS, &cuts))
-}
-
 /// The contributions of a piece to eta and H0.
 struct OnPiece<'a> {
     piece: &'a Piece<PreciseBall>,
@@ -318,26 +322,28 @@ struct OnPiece<'a> {
     weight: f64,
     /// The stretches on which H0 has these terms, which add up where they overlap.
     meant: Vec<([f64; 2], Terms)>,
-    /// The block of H0.
+    /// The block of H0, and the magnitudes that are added up in its entries.
     block: DMatrix<f64>,
+    magnitudes: DMatrix<f64>,
 }
 
 impl<'a> OnPiece<'a> {
-    /// With the terms that are certain to stay within `r`: the normal ones, and the others where it is pressed.
+    /// With the terms at `u`: the normal ones, and the others where it is pressed.
     fn new(
         d: &Discretization,
         (piece, of): (&'a Piece<PreciseBall>, &Compliance),
         u: &[[PreciseBall; 2]],
-        r: f64,
     ) -> Self {
         let (reach, p) = (Reach::new(piece, of), piece.p(u));
         let law = piece.geometry.law;
-        let all = regions(piece, (&p, &reach), r);
+        let all = regions(piece, (&p, &reach), 0.0);
         let pressed = all.iter().find(|(region, _)| *region == Region::Pressed);
         let pressed = pressed.map_or_else(Vec::new, |(_, rows)| rows.clone());
         let mut found: Vec<(EdgePiece, Terms)> = Vec::new();
         let mut add = |positive: &[Row], terms: Terms| {
-            found.extend(where_positive(d, piece, positive).into_iter().map(|part| (part, terms)));
+            found.extend(
+                EdgePiece::all_positive(d, piece, positive).into_iter().map(|part| (part, terms)),
+            );
         };
         match law {
             Law::Friction(bound) => {
@@ -361,18 +367,23 @@ impl<'a> OnPiece<'a> {
         }
         let (count, nodes) = (piece.p0.len(), piece.degree.nodes_per_edge());
         let mut block = DMatrix::zeros(count, count);
+        let mut magnitudes = block.clone();
         for (part, [normal, by_normal, across]) in &found {
             for (a, b) in (0..nodes * nodes).map(|k| (k / nodes, k % nodes)) {
                 let mass = piece.weight().head() * part.mass[a][b].head();
-                block[(a, b)] += normal * mass;
+                let mut add = |at: (usize, usize), entry: f64| {
+                    block[at] += entry;
+                    magnitudes[at] += entry.abs();
+                };
+                add((a, b), normal * mass);
                 if count > nodes {
-                    block[(nodes + a, b)] += by_normal * mass;
-                    block[(nodes + a, nodes + b)] += across * mass;
+                    add((nodes + a, b), by_normal * mass);
+                    add((nodes + a, nodes + b), across * mass);
                 }
             }
         }
         let meant = found.into_iter().map(|(part, terms)| (part.ends, terms)).collect();
-        OnPiece { piece, p, reach, weight: piece.weight().upper(), meant, block }
+        OnPiece { piece, p, reach, weight: piece.weight().upper(), meant, block, magnitudes }
     }
 
     /// What the body does, at most, under the forces by which the terms differ from those of H0, for P of any two fields within `r`: once
@@ -385,7 +396,7 @@ impl<'a> OnPiece<'a> {
         let all = regions(self.piece, (&self.p, &self.reach), r);
         let mut sure: Vec<([f64; 2], Region)> = Vec::new();
         for (region, positive) in &all {
-            let parts = where_positive(d, self.piece, positive);
+            let parts = EdgePiece::all_positive(d, self.piece, positive);
             sure.extend(parts.into_iter().map(|part| (part.ends, *region)));
         }
         let most = |[a, b]: [f64; 2]| {
@@ -430,12 +441,16 @@ impl<'a> OnPiece<'a> {
         sum.map(|sum| up(self.weight * sum * (1.0 + 1e-12)))
     }
 
-    /// The norm of what the block of H0, and springs of this size, are rounded by, at most: entries are rounded from balls, by some
-    /// units in the last place.
-    fn rounding(&self, springs: f64) -> f64 {
-        let trace: f64 = self.reach.nodes.iter().map(|[n, t, _]| n + t).sum();
-        let entries = 2.0 * self.reach.entry * self.reach.nodes.len() as f64;
-        1e-14 * (norm(self.block.as_slice()) + springs) * (trace + entries)
+    /// What the body does, at most, under the forces by which the block of H0, and these `springs`, are rounded: entries are rounded
+    /// from balls, by some units in the last place. The functionals have the `norms`, and J0^-1 of them the norms `answers`.
+    fn rounding(&self, springs: Option<&DMatrix<f64>>, [norms, answers]: [&[f64]; 2]) -> f64 {
+        let [norms, answers] = [norms, answers].map(|of| &of[self.piece.functionals()]);
+        let rounded = |i: usize, j: usize| {
+            1e-14 * (self.magnitudes[(i, j)] + springs.map_or(0.0, |springs| springs[(i, j)].abs()))
+        };
+        let row = |i: usize| (0..norms.len()).map(|j| rounded(i, j) * norms[j]).sum::<f64>();
+        up(answers.iter().enumerate().map(|(i, answer)| answer * row(i)).sum::<f64>()
+            * (1.0 + 1e-12))
     }
 
     /// What gamma^{1/2} times the change of pressure and shear is at most beside |v|, its square.
@@ -471,6 +486,11 @@ fn is_positive_definite(matrix: &Mat<f64>, off: f64) -> bool {
     shift.is_finite() && shifted.llt(Side::Lower).is_ok()
 }
 
+/// The length of a column, to a rounding error.
+fn length_of(matrix: &Mat<f64>, j: usize) -> f64 {
+    (0..matrix.nrows()).map(|i| matrix[(i, j)] * matrix[(i, j)]).sum::<f64>().sqrt()
+}
+
 /// The largest row sum of magnitudes, which bounds the norm of a symmetric matrix.
 fn row_sum(matrix: &Mat<f64>) -> f64 {
     let row = |i: usize| (0..matrix.ncols()).map(|j| matrix[(i, j)].abs()).sum::<f64>();
@@ -495,7 +515,7 @@ struct Root {
     scale: Vec<f64>,
     /// G, scaled, and what it is off.
     g: Mat<f64>,
-    off: f64,
+    by: Mat<f64>,
     c: Mat<f64>,
 }
 
@@ -508,7 +528,8 @@ impl Root {
         };
         let scale: Vec<f64> = (0..n).map(power).collect();
         let scaled = |m: &Mat<f64>| Mat::from_fn(n, n, |i, j| scale[i] * m[(i, j)] * scale[j]);
-        let (g, off) = (scaled(&of.g), row_sum(&scaled(&of.by)));
+        let (g, by) = (scaled(&of.g), scaled(&of.by));
+        let off = row_sum(&by);
         let trace: f64 = (0..n).map(|i| g[(i, i)].abs()).sum();
         let mut shift = 4.0 * (off + (n + 8) as f64 * f64::EPSILON * trace);
         for _ in 0..6 {
@@ -520,7 +541,7 @@ impl Root {
                 let size = frobenius(&c);
                 let rounding = 2.0 * (n + 8) as f64 * f64::EPSILON * size * size;
                 if row_sum(&rest) + rounding + off <= shift * (1.0 - 1e-9) {
-                    return Some(Root { scale, g, off, c });
+                    return Some(Root { scale, g, by, c });
                 }
             }
             shift *= 16.0;
@@ -571,8 +592,18 @@ impl Root {
             let rest = h[(i, j)] - k[(i, j)] - hgk[(i, j)];
             rest.abs() + rounding * (size_h[(i, j)] + size_k[(i, j)] + products[(i, j)])
         });
-        // C^T H E K C, E being what G is off.
-        let by_g = self.off * frobenius(&(h.transpose() * &self.c)) * frobenius(&(&k * &self.c));
+        // C^T H E K C, E being what G is off, entry by entry.
+        let lengths = |m: &Mat<f64>| -> Vec<f64> { (0..n).map(|j| length_of(m, j)).collect() };
+        let of_c = lengths(&c.transpose().to_owned());
+        // The lengths of the columns of C^T M.
+        let columns = |m: &Mat<f64>| -> Vec<f64> {
+            let rounded = |j: usize| (0..n).map(|i| m[(i, j)].abs() * of_c[i]).sum::<f64>();
+            let found = lengths(&(self.c.transpose() * m));
+            found.iter().enumerate().map(|(j, length)| up(length + rounding * rounded(j))).collect()
+        };
+        let of_e = |j: usize, of: &[f64]| (0..n).map(|i| of[i] * self.by[(i, j)]).sum::<f64>();
+        let (by_h, by_k) = (columns(&h), columns(&k.transpose().to_owned()));
+        let by_g = (0..n).map(|j| of_e(j, &by_h) * by_k[j]).sum::<f64>() * (1.0 + 1e-9);
         let left = up(frobenius(&(c.transpose() * (&most * &c))) * (1.0 + rounding) + by_g);
         let (y, off) = self.around(&k);
         let norm = up(longest(&with_one(&y, -1.0))? + off).max(1.0);
@@ -582,11 +613,11 @@ impl Root {
         // C^T (1 - K G)
         let answers = self.c.transpose() * with_one(&(&k * &self.g), -1.0);
         let sizes = c.transpose() * with_one(&(&size_k * &size_g), 1.0);
-        let by_g = self.off * frobenius(&(k.transpose() * &self.c));
+        let by_k = columns(&k);
         let slack = (0..n)
             .map(|j| {
-                let square: f64 = (0..n).map(|i| sizes[(i, j)] * sizes[(i, j)]).sum();
-                up((rounding * square.sqrt() + by_g) / self.scale[j])
+                up((rounding * length_of(&sizes, j) + of_e(j, &by_k)) * (1.0 + 1e-9)
+                    / self.scale[j])
             })
             .collect();
         let answers = Mat::from_fn(n, n, |i, j| answers[(i, j)] / self.scale[j]);
@@ -627,6 +658,15 @@ impl Inverse {
         let most = piece.functionals().map(|j| product(j, j)).fold(0.0, larger);
         let rounding = up(most * (n + 16) as f64 * f64::EPSILON);
         Reach::with(piece, [rounding, slack], product)
+    }
+
+    /// The norms of J0^-1 b for the functionals b, at most, which have these `norms` themselves.
+    fn answers_of(&self, norms: &[f64]) -> Vec<f64> {
+        let of = |(j, norm): (usize, &f64)| {
+            let own = length_of(&self.answers, j) + self.slack[j];
+            up(own * (1.0 + 1e-9) + self.bound() * (self.left * norm))
+        };
+        norms.iter().enumerate().map(of).collect()
     }
 
     /// The size of (1 + Z H Z^T)^-1 t, at most, where Z^T t = w: |t| <= `rho`, and of w it is known to `rest` in the length of t.
@@ -705,13 +745,15 @@ impl Known {
     }
 }
 
-/// The residual at a displacement.
+/// The residual at a displacement, of which the forces of contact are known up to some numbers.
 pub(super) struct Rest<'a> {
-    /// Its dual norm, at most.
+    /// Its dual norm for certain forces, at most.
     pub rho: f64,
-    /// A z with this z is the residual, up to a functional of at most this dual norm.
+    /// A z with this z is that residual, up to a functional of at most this dual norm.
     pub z: &'a [PreciseBall],
     pub left: f64,
+    /// What the force of each functional is off, at most.
+    pub spread: &'a [f64],
     /// The norm of the displacement.
     pub size: f64,
 }
@@ -726,21 +768,24 @@ pub(super) fn isolate(
     pieces: &[Piece<PreciseBall>],
     u: &[[PreciseBall; 2]],
     system: &System,
-    &Rest { rho, z, left, size }: &Rest,
+    &Rest { rho, z, left, spread, size }: &Rest,
 ) -> Result<Isolated, Unproved> {
     let d = system.d;
     let Known { compliance, root, springs, .. } = known;
     // A displacement in double-doubles may be as near as that.
-    let start = (8.0 * rho).max(f64::EPSILON * f64::EPSILON * size);
-    let on_piece = |piece| OnPiece::new(d, (piece, compliance), u, start);
-    let all: Vec<OnPiece> = pieces.iter().map(on_piece).collect();
-    let spring = |e: usize| springs.as_ref().map_or(0.0, |all| norm(all[e].as_slice()));
-    let rounding: f64 = all.iter().enumerate().map(|(e, on)| on.rounding(spring(e))).sum();
+    let norms = compliance.norms();
+    let start = (rho + product(spread, &norms)).max(f64::EPSILON * f64::EPSILON * size);
+    let all: Vec<OnPiece> =
+        pieces.iter().map(|piece| OnPiece::new(d, (piece, compliance), u)).collect();
     let blocks: Vec<DMatrix<f64>> = match springs {
         Some(springs) => all.iter().zip(springs).map(|(on, s)| &on.block - s).collect(),
         None => all.iter().map(|on| on.block.clone()).collect(),
     };
     let inverse = root.inverse(&blocks).ok_or(Unproved::NotIsolated)?;
+    let sizes = inverse.answers_of(&norms);
+    let spring = |e: usize| springs.as_ref().map(|all| &all[e]);
+    let rounding = all.iter().enumerate().map(|(e, on)| on.rounding(spring(e), [&norms, &sizes]));
+    let rounding: f64 = rounding.sum();
     let answers: Vec<Reach> = pieces.iter().map(|piece| inverse.reach(piece)).collect();
     // Bounds of the contraction of two fields within r by a step, and of the first step.
     let nearer = |r: f64| {
@@ -749,12 +794,12 @@ pub(super) fn isolate(
             let [by_answer, by_norm] = on.uncertain(d, r, answer);
             [sum + by_answer, crude + by_norm]
         });
-        let rest = inverse.bound() * (inverse.left * crude + rounding);
+        let rest = inverse.bound() * (inverse.left * crude) + rounding;
         up((sum + rest) * (1.0 + f64::EPSILON * (all.len() + 16) as f64))
     };
     let v = field(system, |number, _, _| z[number], |_, _| 0.0);
     let w: Vec<PreciseBall> = pieces.iter().flat_map(|piece| piece.p0(&v)).collect();
-    let step = inverse.times(&w, [rho, left]);
+    let step = up(inverse.times(&w, [rho, left]) + product(spread, &sizes));
     let holds = |r: f64| {
         let q = nearer(r);
         (up(step + up(q * r)) <= r && q < 1.0).then_some(q)
@@ -793,7 +838,7 @@ pub(super) fn isolate(
 fn mass(d: &Discretization, piece: &Piece<PreciseBall>) -> DMatrix<f64> {
     let nodes = piece.degree.nodes_per_edge();
     let mut mass = DMatrix::zeros(nodes, nodes);
-    let whole = where_positive(d, piece, &[]);
+    let whole = EdgePiece::all_positive(d, piece, &[]);
     for (part, a, b) in
         whole.iter().flat_map(|part| (0..nodes * nodes).map(move |k| (part, k / nodes, k % nodes)))
     {
@@ -1029,7 +1074,7 @@ mod tests {
         let more = &root.c * root.c.transpose();
         let above = |share: f64| {
             let less = Mat::from_fn(8, 8, |i, j| more[(i, j)] - root.g[(i, j)] * share);
-            is_positive_definite(&less, root.off)
+            is_positive_definite(&less, row_sum(&root.by))
         };
         assert!(above(1.0) && !above(1.0 + 1e-9));
     }

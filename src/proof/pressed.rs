@@ -67,6 +67,19 @@ pub(super) struct EdgePiece {
     pub(super) mass: Vec<Row>,
 }
 
+/// Where a quadratic polynomial with these values at the nodes has its extremum within the edge: on either side of the extremum
+/// a positive polynomial has positive Bernstein coefficients, across it the coefficients may be negative.
+fn turning_point(values: &Row) -> Option<f64> {
+    let [start, end, middle] = values[..] else { return None };
+    let [start, end, middle] = [start, end, middle].map(PreciseBall::head);
+    let (slope, bend) = (4.0 * middle - 3.0 * start - end, start + end - 2.0 * middle);
+    let at = -slope / (4.0 * bend);
+    (at > 0.0 && at < 1.0).then_some(at)
+}
+
+/// The shares of a stretch that are left out at a root, where nothing is certain: the first with which the rest is.
+const INSETS: [f64; 8] = [1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7];
+
 /// The pressed (or stuck) stretches of one component on a piece of Gamma_C, on which q(P) = P is certain.
 struct PressedPart {
     /// The piece.
@@ -126,6 +139,16 @@ impl EdgePiece {
         points.iter().map(at).filter(|piece| piece.least(all) > 0.0).collect()
     }
 
+    /// Those on which all of these polynomials are positive, as much of the piece as they are.
+    pub(super) fn all_positive(
+        d: &Discretization,
+        piece: &Piece<PreciseBall>,
+        all: &[Row],
+    ) -> Vec<Self> {
+        let cuts: Vec<f64> = all.iter().filter_map(turning_point).collect();
+        Self::positive((d.space.degree(), &d.rule), piece.radii, all, (&INSETS, &cuts))
+    }
+
     /// Those in the stretches between their roots and the further `cuts`.
     fn between_roots(
         degree: Degree,
@@ -142,8 +165,9 @@ impl EdgePiece {
                 let inset = inset * (cut[1] - cut[0]);
                 let start = if cut[0] > 0.0 { cut[0] + inset } else { 0.0 };
                 let end = if cut[1] < 1.0 { cut[1] - inset } else { 1.0 };
-                let piece = (start < end).then(|| Self::between(degree, radii, [start, end]))?;
-                (piece.least(all) > 0.0).then_some(piece)
+                let is_positive =
+                    || least(&coefficients(degree, [start.into(), end.into()]), all) > 0.0;
+                (start < end && is_positive()).then(|| Self::between(degree, radii, [start, end]))
             })
         };
         cuts.windows(2).filter(|cut| cut[0] < cut[1]).filter_map(stretch).collect()
@@ -156,15 +180,7 @@ impl EdgePiece {
         let length = PreciseBall::from(ends[1]) - start;
         let place = |i: i32| start + PreciseBall::from(i) / PreciseBall::from(4) * length;
         let at = |i: i32| degree.edge_values(place(i));
-        let coefficients = match degree {
-            Degree::One => vec![at(0), at(4)],
-            Degree::Two => {
-                let [two, half] = [2.0, 0.5].map(PreciseBall::from);
-                let ends = at(0).into_iter().zip(at(4));
-                let bend = at(2).into_iter().zip(ends).map(|(m, (a, b))| two * m - half * (a + b));
-                vec![at(0), at(4), bend.collect()]
-            }
-        };
+        let coefficients = coefficients(degree, [start, ends[1].into()]);
         let count = degree.nodes_per_edge();
         let square = match radii {
             None => PreciseBall::from((count * count) as i32) / length,
@@ -183,11 +199,28 @@ impl EdgePiece {
 
     /// The least coefficient of these polynomials, or less.
     fn least(&self, all: &[Row]) -> f64 {
-        let of = |p: &Row| {
-            self.coefficients.iter().map(|c| dot(c, p).lower()).fold(f64::INFINITY, f64::min)
-        };
-        all.iter().map(of).fold(f64::INFINITY, f64::min)
+        least(&self.coefficients, all)
     }
+}
+
+/// The coefficients between two places of a polynomial with given values at the nodes: see [`EdgePiece`].
+fn coefficients(degree: Degree, [start, end]: [PreciseBall; 2]) -> Vec<Row> {
+    let ends = [start, end].map(|place| degree.edge_values(place));
+    if degree == Degree::One {
+        return ends.into();
+    }
+    let [two, half] = [2.0, 0.5].map(PreciseBall::from);
+    let middle = degree.edge_values(half * (start + end));
+    let pairs = middle.iter().zip(ends[0].iter().zip(&ends[1]));
+    let bend = pairs.map(|(&m, (&a, &b))| two * m - half * (a + b)).collect();
+    let [first, last] = ends;
+    vec![first, last, bend]
+}
+
+/// The least of these coefficients of some polynomials, or less.
+fn least(coefficients: &[Row], all: &[Row]) -> f64 {
+    let of = |p: &Row| coefficients.iter().map(|c| dot(c, p).lower()).fold(f64::INFINITY, f64::min);
+    all.iter().map(of).fold(f64::INFINITY, f64::min)
 }
 
 /// The distances of P_t from the bound on both sides, which must be positive where a piece sticks; `None` for pieces that never
@@ -241,7 +274,11 @@ impl Pressed {
     ) -> Self {
         let degree = d.space.degree();
         let positive = |line: &Piece<PreciseBall>, all: &[Row]| -> Vec<Measured> {
-            let pieces = EdgePiece::positive((degree, &d.rule), line.radii, all, (&[INSET], &[]));
+            let pieces = if d.has_coulomb() {
+                EdgePiece::all_positive(d, line, all)
+            } else {
+                EdgePiece::positive((degree, &d.rule), line.radii, all, (&[INSET], &[]))
+            };
             pieces.into_iter().map(|piece| (piece.least(all), piece)).collect()
         };
         let [mut pressed, mut sticking]: [Vec<Found>; 2] = Default::default();

@@ -7,7 +7,7 @@
 //! 3. where it does not, the problem with the bound of the step that was not taken, then 2. again;
 //! 4. where that leads nowhere, problems with the pressure of the one before for a bound, whose fixed point is the solution, mixed
 //!    (`Mixing`), with 2. from what they come to;
-//! 5. where that leads nowhere, Newton's method from one coefficient to a larger one.
+//! 5. where that leads nowhere, Newton's method from one coefficient to a larger one, and at last from soft springs to stiffer ones.
 //!
 //! The tangent of F is S + B^T D B: S is symmetric positive definite, with the springs of what is pressed and of what sticks, and is
 //! factored; D couples the friction of what slides to its pressure. With z = D B d the step is
@@ -64,6 +64,9 @@ const LEAST_SHARE: f64 = 1.0 / 512.0;
 const STEPS_OF_A_SHARE: usize = 12;
 const NEARLY_THERE: f64 = 1e-8;
 
+/// The stiffness of springs that continuation begins with: a soft body in contact is hardly harder to solve than an elastic one.
+const SOFTEST: f64 = 1e-10;
+
 /// Newton's method is tried again where the pressures change by this share of what they did when it was tried last.
 const NEARER: f64 = 0.2;
 
@@ -90,6 +93,8 @@ pub struct Coulomb<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
     /// The size that residuals are relative to.
     reference: f64,
+    /// The stiffness of the springs, 1 for those of (8).
+    stiffness: f64,
     /// L of A, or, where it has none, with springs of all pieces: residuals are measured by it.
     metric: Option<Arc<Factor>>,
     of_a: Option<Arc<Factor>>,
@@ -105,6 +110,7 @@ impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
         Coulomb {
             system,
             reference,
+            stiffness: 1.0,
             metric: None,
             of_a: None,
             factorizations: 0,
@@ -135,7 +141,7 @@ impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
 
     /// F where the linear part of the equations is `at`, and the derivatives of the friction and contact terms there.
     fn residual(&self, at: &Evaluation) -> (Vec<f64>, Derivatives) {
-        let terms = derivatives(self.system.d, 1.0, &at.p);
+        let terms = derivatives(self.system.d, self.stiffness, &at.p);
         let mut r = at.linear.clone();
         self.system.add_forces(&terms.gradient, &mut r);
         (r, terms)
@@ -358,7 +364,7 @@ impl Route for Coulomb<'_, '_, '_> {
             self.begin(iterate, at, residuals, until)?;
         }
         let mut way = Way { is_first, precisely, ..Way::default() };
-        let mut is_continued = false;
+        let mut ways = [Along::Coefficient, Along::Stiffness].into_iter();
         let mut mixing = Mixing::default();
         let mut tried = f64::INFINITY;
         let mut rejected = self.newton(iterate, at, residuals, until, &mut way)?;
@@ -380,8 +386,8 @@ impl Route for Coulomb<'_, '_, '_> {
                     continue;
                 }
                 tried = change;
-            } else if !std::mem::replace(&mut is_continued, true) {
-                self.continued(iterate, until)?;
+            } else if let Some(along) = ways.next() {
+                self.continued(iterate, until, along)?;
             } else {
                 return Err(SolveError::NoFrictionSolution {
                     residual: way.least / self.reference,
@@ -415,6 +421,15 @@ impl Route for Coulomb<'_, '_, '_> {
         let (_, terms) = self.residual(at);
         self.step(residual, &terms).map(Some)
     }
+}
+
+/// What continuation goes along.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Along {
+    /// From the coefficient 0, or from glue where friction alone holds the body, to the one that is meant.
+    Coefficient,
+    /// From soft springs to those of (8): what friction bears at most is the same.
+    Stiffness,
 }
 
 /// The progress of Newton's method.
@@ -536,9 +551,13 @@ impl<'d, 'p> Coulomb<'_, 'd, 'p> {
         }
     }
 
-    /// Moves the iterate to a solution by continuation: from the coefficient 0, or from glue where friction alone holds the body, to the
-    /// one that is meant.
-    fn continued(&mut self, iterate: &mut Iterate, until: Until) -> Result<(), SolveError> {
+    /// Moves the iterate to a solution by continuation, or as near as that leads.
+    fn continued(
+        &mut self,
+        iterate: &mut Iterate,
+        until: Until,
+        along: Along,
+    ) -> Result<(), SolveError> {
         let glued = self.system.d.slides.is_some();
         let pieces = self.system.d.contact.len();
         let start = if glued { f64::INFINITY } else { 0.0 };
@@ -546,10 +565,14 @@ impl<'d, 'p> Coulomb<'_, 'd, 'p> {
         let (mut done, mut by) = (0.0, FIRST_SHARE);
         while done < 1.0 && by >= LEAST_SHARE {
             let next = f64::min(done + by, 1.0);
-            let d = self.system.d.with_coefficients(if glued { 1.0 / next } else { next });
+            let (times, stiffness) = match along {
+                Along::Coefficient => (if glued { 1.0 / next } else { next }, 1.0),
+                Along::Stiffness => (1.0, SOFTEST.powf(1.0 - next)),
+            };
+            let d = self.system.d.with_coefficients(times);
             let system = self.system.with_other_laws(&d, Course::default());
-            let mut other =
-                Coulomb { metric: self.metric.clone(), ..Coulomb::new(&system, self.reference) };
+            let metric = self.metric.clone();
+            let mut other = Coulomb { stiffness, metric, ..Coulomb::new(&system, self.reference) };
             let mut trial = Iterate { u: iterate.u.clone() };
             let mut at = trial.evaluate(&system, false);
             let mut way = Way { is_first: true, ..Way::default() };
@@ -629,13 +652,13 @@ mod tests {
     use crate::kernel::{Material, Plane};
     use crate::model::{Condition, Degree, Diagonal, Problem, Rectangle};
 
-    /// A block on a rough floor, pressed and dragged by its top.
+    /// A block on a rough floor, pressed and dragged by its top, that sticks in parts and slides in parts.
     fn block() -> Problem {
         let mesh = Rectangle { width: 1.0, height: 1.0, nx: 6, ny: 6, diagonal: Diagonal::Crossed };
         Problem::of(mesh.mesh().unwrap(), Material::lame(1.0, 1.0, Plane::Strain))
             .with("top", Condition::displacement(|[x, _]| 0.02 + 0.01 * x, |_| -0.05))
             .with("bottom", Condition::contact(|_| 0.0))
-            .with_friction("bottom", Friction::Coulomb(0.6))
+            .with_friction("bottom", Friction::Coulomb(0.2))
     }
 
     #[test]
@@ -650,12 +673,15 @@ mod tests {
                 let (r, _) = route.residual(&iterate.evaluate(&system, false));
                 route.dual(&r).unwrap()
             };
-            let mut iterate = Iterate::lift(&d);
-            let first = size(&mut route, &iterate);
+            let first = size(&mut route, &Iterate::lift(&d));
             let until = Until { steps: 200, residual: 0.0 };
-            route.continued(&mut iterate, until).unwrap();
-            let last = size(&mut route, &iterate);
-            assert!(last <= 10.0 * NEARLY_THERE * first, "{degree:?}: {last:e} {first:e}");
+            for along in [Along::Coefficient, Along::Stiffness] {
+                let mut iterate = Iterate::lift(&d);
+                route.continued(&mut iterate, until, along).unwrap();
+                let last = size(&mut route, &iterate);
+                assert!(last <= 10.0 * NEARLY_THERE * first, "{along:?}: {last:e} {first:e}");
+            }
+            let mut iterate = Iterate::lift(&d);
             // The fixed point of problems with given bounds, from afar.
             let mut mixing = Mixing::default();
             let mut before = vec![[0.0; 3]; d.contact.len()];
@@ -672,6 +698,58 @@ mod tests {
             let last = size(&mut route, &iterate);
             assert!(last <= 1e-5 * first, "{degree:?}: {last:e} {first:e}");
         }
+    }
+
+    #[test]
+    fn a_step_takes_off_the_residual_and_without_the_share_of_the_pressure_it_does_not() {
+        let problem = block();
+        for degree in [Degree::One, Degree::Two] {
+            let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, EdgeRule::Exact);
+            let d = d.unwrap();
+            let system = System::new(&d).unwrap();
+            let mut route = Coulomb::new(&system, 1.0);
+            let mut iterate = Iterate::lift(&d);
+            let until = Until { steps: 200, residual: 0.0 };
+            let bounds = vec![[0.05; 3]; d.contact.len()];
+            route.tresca(&mut iterate, &mut Vec::new(), until, (&bounds, false)).unwrap();
+            let (r, terms) = route.residual(&iterate.evaluate(&system, false));
+            let nodes = degree.nodes_per_edge();
+            let mut hessian = terms.hessian.clone();
+            for block in &mut hessian {
+                block.view_mut((nodes, 0), (nodes, nodes)).fill(0.0);
+            }
+            assert!(hessian != terms.hessian, "nothing slides");
+            let uncoupled = Derivatives { stiffness: 1.0, gradient: Vec::new(), hessian };
+            // Of a piecewise smooth function, r(u + t d) is (1 - t) r up to the square of t.
+            let t = 1e-5;
+            let mut off = |terms: &Derivatives| {
+                let step = route.step(&r, terms).unwrap();
+                let mut moved = Iterate { u: iterate.u.clone() };
+                moved.add(&system, t, &step);
+                let (next, _) = route.residual(&moved.evaluate(&system, false));
+                let rest = next.iter().zip(&r).map(|(next, r)| next - (1.0 - t) * r);
+                norm(&rest.collect::<Vec<f64>>()) / (t * norm(&r))
+            };
+            let [coupled, uncoupled] = [off(&terms), off(&uncoupled)];
+            assert!(coupled < 1e-3 && uncoupled > 1e-2, "{degree:?}: {coupled:e} {uncoupled:e}");
+        }
+    }
+
+    #[test]
+    fn mixing_finds_the_fixed_point_of_an_affine_map() {
+        let map = |[a, b, _]: [f64; 3]| [1.0 + 0.5 * a - 0.4 * b, 2.0 + 0.3 * a + 0.2 * b, 0.0];
+        // a = 1 + a / 2 - 2 b / 5, b = 2 + 3 a / 10 + b / 5
+        let fixed = [0.0, 2.5, 0.0];
+        let mut mixing = Mixing::default();
+        for before in [[1.0, 1.0, 0.0], [2.0, 1.0, 0.0], [1.0, 3.0, 0.0]] {
+            mixing.remember(vec![before], vec![map(before)]);
+        }
+        // The diagonal is larger by 1e-10.
+        let found = mixing.next()[0];
+        assert!((0..3).all(|a| (found[a] - fixed[a]).abs() < 1e-8), "{found:?}");
+        // The control: the last one alone is not near.
+        let last = map([1.0, 3.0, 0.0]);
+        assert!((0..3).any(|a| (last[a] - fixed[a]).abs() > 0.1));
     }
 
     #[test]

@@ -492,6 +492,24 @@ fn a_mesh_of_tied_bodies_is_adapted_to_a_bound() {
 }
 
 #[test]
+fn a_mesh_of_bodies_that_stick_and_slide_is_adapted_to_a_bound() {
+    for (degree, relative) in [(Degree::One, 0.1), (Degree::Two, 0.02)] {
+        let mut problem = squares([3, 4], [1.0, 1.0]).problem();
+        problem.pairs[0].friction = Some(Friction::Tresca(expression("0.005 + 0.014*x")));
+        let target = Target { relative, max_unknowns: 40_000 };
+        let (problem, adapted) =
+            adapt(problem, &method(degree), &Settings::default(), target, &|_| {}).unwrap();
+        let c = adapted.certified.unwrap();
+        let bounds: Vec<f64> = adapted.levels.iter().map(|level| level.relative).collect();
+        println!("{degree:?}: {bounds:?}");
+        assert!(adapted.unmet.is_none() && c.relative <= relative, "{:?}", adapted.unmet);
+        // The control: the first mesh is not enough.
+        assert!(bounds.len() > 1 && bounds[0] > relative, "{bounds:?}");
+        assert_eq!(compare(problem, &c.certificate, &c.quantities.evidence), Ok(None));
+    }
+}
+
+#[test]
 fn a_mesh_of_two_bodies_is_adapted_to_the_force_between_them() {
     let problem = squares([3, 4], [1.0, 1.0]).problem();
     let target = Target { relative: 0.02, max_unknowns: 40_000 };
