@@ -3,7 +3,7 @@
 //! ```text
 //! cargo bench --bench speed                         our own tables
 //! cargo bench --bench speed -- --peers --large      all of docs/speed.md
-//! cargo bench --bench speed -- --proof              the table of proofs alone, printed
+//! cargo bench --bench speed -- --bodies             the table of bodies alone, printed
 //! cargo bench --bench speed -- --quick              small sizes, nothing written: does it run?
 //! ```
 //!
@@ -73,23 +73,22 @@ fn main() {
     if arguments.first().is_some_and(|a| a == child::FLAG) {
         return child::run(&arguments[1..]);
     }
-    let known = ["--quick", "--peers", "--large", "--proof"];
+    let known = ["--quick", "--peers", "--large", "--bodies"];
     if let Some(unknown) = arguments.iter().find(|a| !known.contains(&a.as_str())) {
         eprintln!("unknown argument {unknown}; expected {}", known.join(", "));
         std::process::exit(2);
     }
     let has = |name: &str| arguments.iter().any(|a| a == name);
     let plan = Plan { quick: has("--quick"), peers: has("--peers"), large: has("--large") };
-    if has("--proof") {
-        return print!("{}", own::proofs(plan.detail(), plan.repetitions()));
+    if has("--bodies") {
+        return print!("{}", own::bodies(plan.detail(), plan.repetitions()));
     }
     let others = provenance::Others::start();
     let own: Vec<own::Measured> =
         plan.sizes().into_iter().map(|size| own::measure(size, plan.repetitions())).collect();
     let mut text = vec![
         own::ratio_table(&own),
-        own::others(plan.repetitions()),
-        own::proofs(plan.detail(), plan.repetitions()),
+        own::bodies(plan.detail(), plan.repetitions()),
         own::growth_table(&own),
         own::newton_table(&own),
         own::phases(plan.detail(), plan.repetitions()),

@@ -6,7 +6,6 @@ use std::time::{Duration, Instant};
 
 use signorini::io::run::Solved;
 use signorini::io::{Case, outputs};
-use signorini::model::Problem;
 use signorini::solve::{self, ContactQuadrature, Times};
 
 use crate::child::{self, Task};
@@ -132,34 +131,26 @@ fn bold(a: Duration, b: Duration) -> String {
     format!("**{:.2}**", ratio(a, b))
 }
 
-/// The same for other bodies.
-pub fn others(repetitions: usize) -> String {
-    let mut rows = Vec::new();
-    for (name, problem) in problem::others().into_iter().chain([problem::disk()]) {
-        for degree in [1, 2] {
-            let method = problem::method(degree, ContactQuadrature::Exact);
-            let [mut linear, mut contact, mut proof] = [Duration::MAX; 3];
-            let mut told = Vec::new();
-            for _ in 0..repetitions {
-                let run = problem::linear(&problem, degree);
-                linear = linear.min(run.assemble + run.solve);
-                let (solution, times) = problem::contact(&problem, &method);
-                contact = contact.min(times.assemble() + times.solve());
-                proof = proof.min(times.certify);
-                let factorizations = solution.newton.factorizations.to_string();
-                let steps = solution.newton.iterations().to_string();
-                let route = format!("{:?}", solution.method.route).to_lowercase();
-                let unknowns = 2 * solution.displacement.len();
-                told = vec![unknowns.to_string(), route, steps, factorizations];
-            }
-            let mut row = vec![name.to_owned(), format!("P{degree}")];
-            row.extend(told);
-            let ratios = [bold(contact, linear), bold(contact + proof, linear)];
-            row.extend([linear, contact, proof].map(time));
-            row.extend(ratios);
-            rows.push(row);
-        }
-    }
+/// The bodies of [`bodies`], as [`problem::posed`] knows them.
+const BODIES: [(&str, &[usize]); 7] = [
+    ("square-64", &[1, 2]),
+    ("square-128", &[1, 2]),
+    ("square-256", &[1]),
+    ("strip", &[1, 2]),
+    ("beam", &[1, 2]),
+    ("graded", &[1, 2]),
+    ("disk", &[1, 2]),
+];
+
+/// The contact solve with its proof over one linear solve, on squares up to `most` cells along a side and on other bodies.
+pub fn bodies(most: usize, repetitions: usize) -> String {
+    let small = |name: &str| {
+        let n = name.split_once('-').map_or("", |parts| parts.1);
+        n.parse().is_ok_and(|n: usize| n <= most) || n.is_empty()
+    };
+    let all = BODIES.iter().filter(|(name, _)| small(name));
+    let all = all.flat_map(|&(name, degrees)| degrees.iter().map(move |&degree| (name, degree)));
+    let rows: Vec<Vec<String>> = all.map(|(name, degree)| on_body(name, degree, repetitions)).collect();
     let head = [
         "body",
         "",
@@ -170,70 +161,61 @@ pub fn others(repetitions: usize) -> String {
         "linear solve",
         "contact solve",
         "proof",
-        "contact / linear",
+        "proved: relative radius",
         "contact with proof / linear",
+        "10^6 instructions of both",
+        "their ratio",
     ];
     format!(
-        "## Other bodies
+        "## Bodies
 
-The same ratios for a strip, which has many contact edges for its size, a beam, which bends, a graded mesh, and the half disk of
-`cases/disk.toml`. The assembled route factors a matrix for each set of contact edges that Newton's method meets.
+A strip has many contact edges for its size, a beam bends; a graded square; the half disk of `cases/disk.toml`. The assembled route
+factors a matrix for each set of contact edges that Newton's method meets. Instructions are counted by valgrind, on a processor that it has (without
+AVX-512).
+`cargo bench --bench speed -- --bodies` prints this table alone.
 
 {}",
         table(&head, &rows)
     )
 }
 
-/// The squares of the table of proofs.
-const SQUARES: [Size; 5] = [
-    Size { degree: 1, n: 64 },
-    Size { degree: 1, n: 128 },
-    Size { degree: 1, n: 256 },
-    Size { degree: 2, n: 64 },
-    Size { degree: 2, n: 128 },
-];
-
-/// The proof of the solution beside the solve: squares up to `most` cells along a side, and the other bodies.
-pub fn proofs(most: usize, repetitions: usize) -> String {
-    let squares = SQUARES.iter().filter(|size| size.n <= most);
-    let mut bodies: Vec<(String, usize, Problem)> = squares
-        .map(|&Size { degree, n }| (format!("square, {n} x {n} cells"), degree, problem::block(n)))
-        .collect();
-    for degree in [1, 2] {
-        let others = problem::others().into_iter().chain([problem::disk()]);
-        bodies.extend(others.map(|(name, problem)| (name.to_owned(), degree, problem)));
+fn on_body(name: &str, degree: usize, repetitions: usize) -> Vec<String> {
+    let problem::Posed { title, problem, .. } = problem::posed(name);
+    let method = problem::method(degree, ContactQuadrature::Exact);
+    let [mut linear, mut contact, mut proof, mut both] = [Duration::MAX; 4];
+    let mut told = [const { String::new() }; 5];
+    let (start, mut runs) = (Instant::now(), 0);
+    while runs < repetitions || (runs < MANY && start.elapsed() < BRIEF) {
+        runs += 1;
+        let run = problem::linear(&problem, degree);
+        linear = linear.min(run.assemble + run.solve);
+        let (solution, times) = problem::contact(&problem, &method);
+        let solve = times.assemble() + times.solve();
+        contact = contact.min(solve);
+        proof = proof.min(times.certify);
+        both = both.min(solve + times.certify);
+        let radius = solution.enclosure.as_ref().ok().and_then(|e| e.relative);
+        told = [
+            (2 * solution.displacement.len()).to_string(),
+            format!("{:?}", solution.method.route).to_lowercase(),
+            solution.newton.iterations().to_string(),
+            solution.newton.factorizations.to_string(),
+            radius.map_or("none".to_owned(), |radius| format!("{radius:.0e}")),
+        ];
     }
-    let row = |(name, degree, problem): &(String, usize, Problem)| {
-        let method = problem::method(*degree, ContactQuadrature::Exact);
-        let (mut solve, mut proof) = (Duration::MAX, Duration::MAX);
-        let mut told = [const { String::new() }; 2];
-        let (start, mut runs) = (Instant::now(), 0);
-        while runs < repetitions || (runs < MANY && start.elapsed() < BRIEF) {
-            runs += 1;
-            let (solution, times) = problem::contact(problem, &method);
-            solve = solve.min(times.solve());
-            proof = proof.min(times.certify);
-            let radius = solution.enclosure.as_ref().ok().and_then(|e| e.relative);
-            let radius = radius.map_or("none".to_owned(), |radius| format!("{radius:.0e}"));
-            told = [(2 * solution.displacement.len()).to_string(), radius];
+    let [unknowns, route, steps, factorizations, radius] = told;
+    let (counts, share) = match child::instructions(degree, name) {
+        Some([linear, both]) => {
+            let counts = format!("{} and {}", three(linear / 1e6), three(both / 1e6));
+            (counts, format!("**{:.2}**", both / linear))
         }
-        let [unknowns, radius] = told;
-        let share = format!("**{:.2}**", ratio(proof, solve));
-        let degree = format!("P{degree}");
-        vec![name.clone(), degree, unknowns, time(solve), time(proof), share, radius]
+        None => ("no valgrind".to_owned(), String::new()),
     };
-    let rows: Vec<Vec<String>> = bodies.iter().map(row).collect();
-    let head =
-        ["body", "", "unknowns", "solve", "proof", "proof / solve", "proved: relative radius"];
-    format!(
-        "## The proof
-
-What decides the verdict, the enclosure of the exact solution of (8), beside the solve phase: factorisation, Newton's method and
-the residual, without assembly. `cargo bench --bench speed -- --proof` prints this table alone.
-
-{}",
-        table(&head, &rows)
-    )
+    eprintln!("{name} P{degree}: measured");
+    let mut row = vec![title, format!("P{degree}"), unknowns, route, steps, factorizations];
+    row.extend([time(linear), time(contact), time(proof), radius, bold(both, linear)]);
+    row.extend([counts, share]);
+    row
 }
 
 /// The exponent of y in x, by least squares on logarithms.
