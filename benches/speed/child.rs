@@ -27,8 +27,7 @@ pub enum Task {
     Proved,
 }
 
-const TASKS: [Task; 5] =
-    [Task::Contact, Task::LikePeers, Task::Mesh, Task::Linear, Task::Proved];
+const TASKS: [Task; 5] = [Task::Contact, Task::LikePeers, Task::Mesh, Task::Linear, Task::Proved];
 
 /// What the child found.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -150,7 +150,8 @@ pub fn bodies(most: usize, repetitions: usize) -> String {
     };
     let all = BODIES.iter().filter(|(name, _)| small(name));
     let all = all.flat_map(|&(name, degrees)| degrees.iter().map(move |&degree| (name, degree)));
-    let rows: Vec<Vec<String>> = all.map(|(name, degree)| on_body(name, degree, repetitions)).collect();
+    let rows: Vec<Vec<String>> =
+        all.map(|(name, degree)| on_body(name, degree, repetitions)).collect();
     let head = [
         "body",
         "",

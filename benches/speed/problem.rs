@@ -125,9 +125,7 @@ pub fn posed(name: &str) -> Posed {
             let n: usize = n.parse().expect("a number of cells");
             posed(&format!("square, {n} x {n} cells"), block(n), "top", [-4.0, 10.0], 0.0)
         }
-        ("strip", _) => {
-            posed("strip 500 : 1, 1000 x 2 cells", strip(), "top", [-4.0, 0.02], 0.0)
-        }
+        ("strip", _) => posed("strip 500 : 1, 1000 x 2 cells", strip(), "top", [-4.0, 0.02], 0.0),
         ("beam", _) => posed("beam 20 : 1, 320 x 16 cells", beam(), "left", [-1e-4, 0.0], -0.01),
         ("graded", _) => {
             let title = "square, 96 x 96 cells, graded to the floor by y^3";

@@ -5,12 +5,12 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::SolveError;
 use super::accuracy::{Pass, Route};
 use super::body::{
-    Body, ContactEnergy, Derivatives, Residual, Step, all_springs, blocks, derivatives, no_springs,
+    Body, ContactEnergy, Derivatives, Residual, Step, all_springs, derivatives, no_springs, times,
 };
 use super::iterate::{Evaluation, Iterate};
 use super::newton::{self, Until};
@@ -18,7 +18,7 @@ use crate::contact::piece::Stretch;
 use crate::held::clearance;
 use crate::held::rigid::Parts;
 use crate::kernel::DoubleDouble;
-use crate::linear::dense::norm;
+use crate::linear::dense::{dot, norm};
 use crate::linear::factor::Factor;
 use crate::linear::system::System;
 
@@ -71,7 +71,7 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
 
     fn factor(&mut self, at: &Derivatives) -> Result<&Factored, SolveError> {
         let (factor, hessian) = match self.factored.take() {
-            Some((factor, old)) if old == at.hessian => (factor, old),
+            Some((factor, old)) if hardly_differ(&old, &at.hessian) => (factor, old),
             _ => {
                 let coercive = self.system.d.kappa() < 1.0;
                 let mut hessian = at.hessian.clone();
@@ -121,9 +121,26 @@ impl Route for Assembled<'_, '_, '_> {
         let soft = self.first;
         self.first = false;
         let d = self.system.d;
-        let mut body = Full { route: self, iterate, at, d: Vec::new(), energy: 0.0, softness: 0.0 };
+        // A pass that corrects makes a step in any case: the first need not go further than such a step does.
+        let nearly = if soft { NEARLY } else { 0.0 };
+        let until = Until { residual: until.residual.max(nearly), ..until };
+        let mut body = Full {
+            route: self,
+            iterate,
+            at,
+            d: Vec::new(),
+            ad: Vec::new(),
+            may_carry: soft,
+            carries: false,
+            energy: 0.0,
+            softness: 0.0,
+        };
         let left = newton::minimise(d, &mut body, soft, residuals, until)?;
-        Ok(Pass { energy: body.energy, left, softness: body.softness })
+        let Full { carries, energy, softness, .. } = body;
+        if carries {
+            *at = iterate.evaluate(self.system, at.precisely);
+        }
+        Ok(Pass { energy, left, softness })
     }
 
     fn step_for(
@@ -145,6 +162,12 @@ struct Full<'r, 'i, 'a, 'd, 'p> {
     at: &'i mut Evaluation,
     /// The step.
     d: Vec<f64>,
+    /// A d, as the step's equation has it.
+    ad: Vec<f64>,
+    /// The residual and P may be carried along with the steps: a pass that corrects follows.
+    may_carry: bool,
+    /// They are, and wait to be evaluated; what rounding may do to them is known from the start.
+    carries: bool,
     /// The largest energy of the steps of this pass, and the largest square of one beside its energy.
     energy: f64,
     softness: f64,
@@ -197,9 +220,7 @@ impl Body for Full<'_, '_, '_, '_, '_> {
     fn residual(&self, at: &Derivatives) -> Residual {
         // The rounding of P, through the springs of contact.
         let mut contact = vec![0.0; self.route.system.numbering.count];
-        let hessian = at.hessian.iter().map(DMatrix::abs).collect();
-        let magnitudes = Derivatives { stiffness: at.stiffness, gradient: Vec::new(), hessian };
-        let forces = magnitudes.hessian_times(&self.at.p_magnitudes);
+        let forces = at.magnitudes_times(&self.at.p_magnitudes);
         self.route.system.each_functional(|row, i, entry| contact[row] += entry.abs() * forces[i]);
         let reference = self.route.reference;
         let noise = self.at.noise + f64::EPSILON * norm(&contact);
@@ -238,32 +259,54 @@ impl Body for Full<'_, '_, '_, '_, '_> {
         self.route.system.enters_step();
         let gradient = self.gradient(at);
         let mut d: Vec<f64> = gradient.iter().map(|r| -r).collect();
-        let (factor, hessian) = self.route.factor(at)?;
-        factor.solve(&mut d);
-        let hessian = hessian.clone();
+        self.route.factor(at)?.0.solve(&mut d);
         let dy = self.values_of_p0(&d);
-        let slope: f64 = gradient.iter().zip(&d).map(|(r, d)| r * d).sum();
-        // d^T A d, where (A + B^T Psi'' B) d = -r with the Psi'' that was factored: nothing is lost where A d cancels.
-        let springs: f64 = blocks(&hessian)
-            .map(|(values, h)| {
-                let dy = DVector::from_column_slice(&dy[values]);
-                dy.dot(&(h * &dy))
-            })
-            .sum();
-        let curvature = -slope - springs;
-        self.d = d;
+        let hessian = self.route.factored.as_ref().map_or(&at.hessian, |(_, hessian)| hessian);
+        let slope = dot(&gradient, &d);
+        // A d and d^T A d, where (A + B^T Psi'' B) d = -r with the Psi'' that was factored: nothing is lost where A d cancels.
+        let forces: Vec<f64> = times(hessian, &dy, |h| -h);
+        let curvature = -slope + dot(&forces, &dy);
+        let mut ad = gradient;
+        ad.iter_mut().for_each(|r| *r = -*r);
+        self.route.system.add_forces(&forces, &mut ad);
+        (self.d, self.ad) = (d, ad);
         Ok(Step { dy, slope, curvature })
     }
 
     fn advance(&mut self, t: f64, step: &Step) {
         self.iterate.add(self.route.system, t, &self.d);
-        *self.at = self.iterate.evaluate(self.route.system, self.route.precisely);
+        if self.carries {
+            for (linear, ad) in self.at.linear.iter_mut().zip(&self.ad) {
+                *linear += t * ad;
+            }
+            for (p, dy) in self.at.p.iter_mut().zip(&step.dy) {
+                *p += DoubleDouble::from(t * dy);
+            }
+        } else {
+            *self.at = self.iterate.evaluate(self.route.system, self.route.precisely);
+            self.carries = self.may_carry;
+        }
         self.energy = self.energy.max(-t * t * step.slope);
         if step.slope < 0.0 {
             let square: f64 = self.d.iter().map(|d| d * d).sum();
             self.softness = self.softness.max(square / -step.slope);
         }
     }
+}
+
+/// The residual at which the first pass ends: the next step takes it to rounding.
+const NEARLY: f64 = 1e-12;
+
+/// The change of an entry of Psi'', beside the largest of its piece, up to which a tangent is not factored anew. Near the solution only the edges
+/// where contact ends change, by ever less. The error of a step is that of Newton's and about ten times this share of itself.
+const SAME: f64 = 1e-3;
+
+fn hardly_differ(old: &[DMatrix<f64>], new: &[DMatrix<f64>]) -> bool {
+    let size = |h: &DMatrix<f64>| h.iter().fold(0.0, |most: f64, h| most.max(h.abs()));
+    old.iter().zip(new).all(|(old, new)| {
+        let most = SAME * size(old);
+        old.iter().zip(new).all(|(a, b)| (a - b).abs() <= most)
+    })
 }
 
 /// The share of the springs of all edges that is added to a tangent which has no factor: the edges that are in contact at an

@@ -50,6 +50,7 @@ struct Parts<'a> {
 }
 
 impl Nodal<f64> for Parts<'_> {
+    #[inline]
     fn difference(&self, node: usize, from: usize) -> Vector2<f64> {
         self.heads.difference(node, from) + self.tails.difference(node, from)
     }
@@ -122,7 +123,7 @@ impl Iterate {
         let is_fine =
             matches!(d.rule, EdgeRule::Gauss(_)) || p.iter().zip(&p_magnitudes).any(is_lost);
         if is_fine {
-            p = residual::p(d, &self.u).collect();
+            p = system.fine_p(&self.u);
             p_magnitudes = p.iter().map(|p| p.tail().abs()).collect();
         }
         let p = idle(p);
