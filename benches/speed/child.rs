@@ -42,8 +42,8 @@ pub struct Report {
     pub proof: f64,
     /// Newton's method.
     pub steps: usize,
-    /// The relative residual in the full system.
-    pub residual: f64,
+    /// The relative radius that is proved.
+    pub radius: Option<f64>,
     /// a(u, u)
     pub energy: f64,
     /// gamma0
@@ -114,7 +114,7 @@ fn solve(task: Task, degree: usize, body: &str) -> Option<Report> {
         contact: contact.as_secs_f64(),
         proof: times.certify.as_secs_f64(),
         steps: solution.newton.iterations(),
-        residual: solution.newton.residual,
+        radius: solution.enclosure.as_ref().ok().and_then(|e| e.relative),
         energy: solution.quantities.energy,
         gamma0: solution.gamma.gamma0,
         memory: peak_memory(),

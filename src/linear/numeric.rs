@@ -347,3 +347,103 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
     }
     sum
 }
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_abs_diff_eq;
+
+    use super::*;
+    use crate::contact::{Discretization, EdgeRule};
+    use crate::kernel::{Material, Plane};
+    use crate::linear::dense::norm;
+    use crate::linear::factor::Factor;
+    use crate::linear::system::System;
+    use crate::model::{Condition, Degree, Diagonal, Problem, Rectangle};
+
+    fn with_system(degree: Degree, n: usize, f: impl FnOnce(&System)) {
+        let square = Rectangle { width: 1.0, height: 1.0, nx: n, ny: n, diagonal: Diagonal::Right };
+        let problem = Problem::of(square.mesh().unwrap(), Material::lame(1.0, 1.0, Plane::Strain))
+            .with("top", Condition::clamped())
+            .with("bottom", Condition::contact(|_| 0.0));
+        let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, EdgeRule::Exact);
+        f(&System::new(&d.unwrap()).unwrap());
+    }
+
+    /// A x
+    fn times(matrix: &LowerTriangle, x: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; x.len()];
+        for j in 0..x.len() {
+            for k in matrix.starts[j]..matrix.starts[j + 1] {
+                let (i, entry) = (matrix.rows[k], matrix.values[k]);
+                product[i] += entry * x[j];
+                if i != j {
+                    product[j] += entry * x[i];
+                }
+            }
+        }
+        product
+    }
+
+    /// L x, and L^T x, by the blocks of L.
+    fn times_factor(factor: &Factor, x: &[f64], transposed: bool) -> Vec<f64> {
+        let structure = factor.structure();
+        let mut product = vec![0.0; x.len()];
+        for s in 0..structure.supernodes() {
+            let block = factor.block(s);
+            let rows = structure.columns(s).chain(structure.rows_below(s).iter().copied());
+            for (i, row) in rows.enumerate() {
+                for (k, column) in structure.columns(s).enumerate().take(i + 1) {
+                    let (to, from) = if transposed { (column, row) } else { (row, column) };
+                    product[to] += block[(i, k)] * x[from];
+                }
+            }
+        }
+        product
+    }
+
+    fn is_the_factor(system: &System, matrix: &LowerTriangle) -> bool {
+        let factor = Factor::with(&system.structure, &system.matrix).unwrap();
+        let x: Vec<f64> = (0..system.numbering.count).map(|i| (1.7 * i as f64).cos()).collect();
+        let (product, lower) = (times(matrix, &x), times_factor(&factor, &x, true));
+        let by_factor = times_factor(&factor, &lower, false);
+        let off: Vec<f64> = product.iter().zip(&by_factor).map(|(a, b)| a - b).collect();
+        let [mut back, mut there] = [lower, times_factor(&factor, &x, false)];
+        factor.backward(&mut back);
+        factor.forward(&mut there);
+        // The substitutions lose what the condition of L takes, some 1e2.
+        for (x, (back, there)) in x.iter().zip(back.iter().zip(&there)) {
+            assert_abs_diff_eq!(x, back, epsilon = 1e-11);
+            assert_abs_diff_eq!(x, there, epsilon = 1e-11);
+        }
+        norm(&off) <= 1e-13 * norm(&product)
+    }
+
+    #[test]
+    fn l_times_its_transpose_is_the_matrix_where_supernodes_are_small_and_where_they_are_large() {
+        for (degree, n) in [(Degree::One, 5), (Degree::One, 48), (Degree::Two, 24)] {
+            with_system(degree, n, |system| {
+                let structure = &system.structure;
+                let widest = (0..structure.supernodes()).map(|s| structure.columns(s).len()).max();
+                assert_eq!(widest >= Some(WIDE), n > 5, "both ways of a block");
+                assert!(is_the_factor(system, &system.matrix));
+                let mut other = system.matrix.clone();
+                other.values[0] *= 1.0 + 1e-6;
+                assert!(!is_the_factor(system, &other), "control");
+            });
+        }
+    }
+
+    #[test]
+    fn a_matrix_that_is_not_positive_definite_has_no_factor() {
+        for n in [5, 48] {
+            with_system(Degree::One, n, |system| {
+                for entry in [-1.0, f64::NAN] {
+                    let mut other = system.matrix.clone();
+                    other.values[system.matrix.starts[system.numbering.count - 1]] = entry;
+                    let factor = Factor::with(&system.structure, &other);
+                    assert_eq!(factor.err(), Some(SolveError::NotPositiveDefinite));
+                }
+            });
+        }
+    }
+}

@@ -1,4 +1,4 @@
-//! The assembled route: Newton's method on the displacement itself, the tangent A + B^T Psi'' B factored in each step. This
+//! The assembled route: Newton's method on the displacement itself, the tangent A + B^T Psi'' B factored where Psi'' has changed. This
 //! route is the cheaper one where contact edges are many beside the body (strips, graded meshes), and the only one where A
 //! alone is singular or nearly so: only contact holds the body, and the tangent includes its springs.
 
@@ -10,9 +10,10 @@ use nalgebra::DMatrix;
 use super::SolveError;
 use super::accuracy::{Pass, Route};
 use super::body::{
-    Body, ContactEnergy, Derivatives, Residual, Step, all_springs, derivatives, no_springs, times,
+    Body, ContactEnergy, Derivatives, Residual, Step, all_springs, derivatives, does_again,
+    no_springs, times,
 };
-use super::iterate::{Evaluation, Iterate};
+use super::iterate::{Evaluation, Iterate, has_few_digits};
 use super::newton::{self, Until};
 use crate::contact::piece::Stretch;
 use crate::held::clearance;
@@ -28,6 +29,8 @@ pub struct Assembled<'a, 'd, 'p> {
     /// The size that residuals are relative to.
     reference: f64,
     factored: Option<Factored>,
+    /// The norm of the residual where it was used last.
+    used_at: f64,
     /// L of A alone, once it has been made.
     body: Option<Arc<Factor>>,
     factorizations: usize,
@@ -42,6 +45,7 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
             system,
             reference,
             factored: None,
+            used_at: 0.0,
             body: None,
             factorizations: 0,
             precisely: false,
@@ -69,9 +73,12 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
         at.hessian.iter().zip(&all.hessian).map(|(h, all)| h + SUPPORT * all).collect()
     }
 
-    fn factor(&mut self, at: &Derivatives) -> Result<&Factored, SolveError> {
+    fn factor(&mut self, at: &Derivatives, residual: f64) -> Result<&Factored, SolveError> {
+        // What needs more than doubles has springs so stiff that a small change of them is not small beside the body.
+        let residuals = [if self.precisely { 0.0 } else { self.used_at }, residual];
+        self.used_at = residual;
         let (factor, hessian) = match self.factored.take() {
-            Some((factor, old)) if hardly_differ(&old, &at.hessian) => (factor, old),
+            Some((factor, old)) if does_again(&old, &at.hessian, residuals) => (factor, old),
             _ => {
                 let coercive = self.system.d.kappa() < 1.0;
                 let mut hessian = at.hessian.clone();
@@ -131,13 +138,13 @@ impl Route for Assembled<'_, '_, '_> {
             d: Vec::new(),
             ad: Vec::new(),
             may_carry: soft,
-            carries: false,
+            carried: None,
             energy: 0.0,
             softness: 0.0,
         };
         let left = newton::minimise(d, &mut body, soft, residuals, until)?;
-        let Full { carries, energy, softness, .. } = body;
-        if carries {
+        let Full { carried, energy, softness, .. } = body;
+        if carried.is_some() {
             *at = iterate.evaluate(self.system, at.precisely);
         }
         Ok(Pass { energy, left, softness })
@@ -150,7 +157,7 @@ impl Route for Assembled<'_, '_, '_> {
     ) -> Result<Option<Vec<f64>>, SolveError> {
         let terms = derivatives(self.system.d, 1.0, &at.p);
         let mut d: Vec<f64> = residual.iter().map(|r| -r).collect();
-        self.factor(&terms)?.0.solve(&mut d);
+        self.factor(&terms, norm(residual))?.0.solve(&mut d);
         Ok(Some(d))
     }
 }
@@ -166,8 +173,8 @@ struct Full<'r, 'i, 'a, 'd, 'p> {
     ad: Vec<f64>,
     /// The residual and P may be carried along with the steps: a pass that corrects follows.
     may_carry: bool,
-    /// They are, and wait to be evaluated; what rounding may do to them is known from the start.
-    carries: bool,
+    /// They are, and wait to be evaluated: the magnitudes that P was added up from since.
+    carried: Option<Vec<f64>>,
     /// The largest energy of the steps of this pass, and the largest square of one beside its energy.
     energy: f64,
     softness: f64,
@@ -202,6 +209,22 @@ impl Full<'_, '_, '_, '_, '_> {
             piece.length / (piece.gamma * softest)
         });
         stiffer.sum::<f64>().max(1.0)
+    }
+
+    /// Moves what is carried by `t` times a step. `false` if nothing is, or if P has too few digits left somewhere: then nothing is
+    /// from there on.
+    fn carry(&mut self, t: f64, step: &Step) -> bool {
+        let Some(mut sizes) = self.carried.take() else { return false };
+        for (linear, ad) in self.at.linear.iter_mut().zip(&self.ad) {
+            *linear += t * ad;
+        }
+        for (p, dy) in self.at.p.iter_mut().zip(&step.dy) {
+            *p += DoubleDouble::from(t * dy);
+        }
+        self.route.system.each_functional(|row, i, b| sizes[i] += (t * b * self.d[row]).abs());
+        self.may_carry = !self.at.p.iter().zip(&sizes).any(has_few_digits);
+        self.carried = self.may_carry.then_some(sizes);
+        self.may_carry
     }
 
     /// B x
@@ -259,7 +282,7 @@ impl Body for Full<'_, '_, '_, '_, '_> {
         self.route.system.enters_step();
         let gradient = self.gradient(at);
         let mut d: Vec<f64> = gradient.iter().map(|r| -r).collect();
-        self.route.factor(at)?.0.solve(&mut d);
+        self.route.factor(at, norm(&gradient))?.0.solve(&mut d);
         let dy = self.values_of_p0(&d);
         let hessian = self.route.factored.as_ref().map_or(&at.hessian, |(_, hessian)| hessian);
         let slope = dot(&gradient, &d);
@@ -275,16 +298,9 @@ impl Body for Full<'_, '_, '_, '_, '_> {
 
     fn advance(&mut self, t: f64, step: &Step) {
         self.iterate.add(self.route.system, t, &self.d);
-        if self.carries {
-            for (linear, ad) in self.at.linear.iter_mut().zip(&self.ad) {
-                *linear += t * ad;
-            }
-            for (p, dy) in self.at.p.iter_mut().zip(&step.dy) {
-                *p += DoubleDouble::from(t * dy);
-            }
-        } else {
+        if !self.carry(t, step) {
             *self.at = self.iterate.evaluate(self.route.system, self.route.precisely);
-            self.carries = self.may_carry;
+            self.carried = self.may_carry.then(|| vec![0.0; self.at.p.len()]);
         }
         self.energy = self.energy.max(-t * t * step.slope);
         if step.slope < 0.0 {
@@ -296,18 +312,6 @@ impl Body for Full<'_, '_, '_, '_, '_> {
 
 /// The residual at which the first pass ends: the next step takes it to rounding.
 const NEARLY: f64 = 1e-12;
-
-/// The change of an entry of Psi'', beside the largest of its piece, up to which a tangent is not factored anew. Near the solution only the edges
-/// where contact ends change, by ever less. The error of a step is that of Newton's and about ten times this share of itself.
-const SAME: f64 = 1e-3;
-
-fn hardly_differ(old: &[DMatrix<f64>], new: &[DMatrix<f64>]) -> bool {
-    let size = |h: &DMatrix<f64>| h.iter().fold(0.0, |most: f64, h| most.max(h.abs()));
-    old.iter().zip(new).all(|(old, new)| {
-        let most = SAME * size(old);
-        old.iter().zip(new).all(|(a, b)| (a - b).abs() <= most)
-    })
-}
 
 /// The share of the springs of all edges that is added to a tangent which has no factor: the edges that are in contact at an
 /// iterate need not hold the body that those of the solution hold. The step goes downhill all the same. The share is far below

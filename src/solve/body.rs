@@ -177,6 +177,25 @@ impl Derivatives {
     }
 }
 
+/// The change of an entry of Psi'', beside the largest of its piece, up to which a tangent is not factored anew. Near the solution
+/// only the edges where contact ends change, by ever less.
+const SAME: f64 = 1e-4;
+
+/// The share to which the residual must fall from one step with a tangent to the next, or it is factored anew all the same.
+const FALLS: f64 = 0.1;
+
+/// Returns whether a tangent with the `old` Psi'' does for a step where Psi'' is the `new` one: `residuals` are the norms of those
+/// where it was used last and here.
+pub(super) fn does_again(old: &[DMatrix<f64>], new: &[DMatrix<f64>], residuals: [f64; 2]) -> bool {
+    let size = |h: &DMatrix<f64>| h.iter().fold(0.0, |most: f64, h| most.max(h.abs()));
+    let is_near = |(old, new): (&DMatrix<f64>, &DMatrix<f64>)| {
+        let most = SAME * size(old);
+        old.iter().zip(new).all(|(a, b)| (a - b).abs() <= most)
+    };
+    let [before, now] = residuals;
+    old == new || (now <= FALLS * before && old.iter().zip(new).all(is_near))
+}
+
 /// The product of blocks along a diagonal, of each entry what `of` it is, with a vector.
 pub(super) fn times(diagonal: &[DMatrix<f64>], v: &[f64], of: impl Fn(f64) -> f64) -> Vec<f64> {
     let mut product = Vec::with_capacity(v.len());

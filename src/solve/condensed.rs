@@ -158,6 +158,15 @@ impl Reduced<'_, '_, '_, '_> {
     fn stiffened(&self, roots: &[(Range<usize>, DVector<f64>)]) -> Mat<f64> {
         let mut system = Mat::zeros(roots.len(), roots.len());
         let mut gr = vec![0.0; self.y.len()];
+        // R in one list, with the first functional of each column and the place of its entries.
+        let entries: Vec<f64> = roots.iter().flat_map(|(_, root)| root.iter().copied()).collect();
+        let mut places = Vec::with_capacity(roots.len() + 1);
+        let mut end = 0;
+        for (values, root) in roots {
+            places.push((values.start, end));
+            end += root.len();
+        }
+        places.push((0, end));
         for (j, (values, root)) in roots.iter().enumerate() {
             // The rows of pieces before that of this column are above the diagonal.
             let first = values.start;
@@ -169,8 +178,13 @@ impl Reduced<'_, '_, '_, '_> {
                 }
             }
             let column = system.col_as_slice_mut(j);
-            for (entry, (values, root)) in column[j..].iter_mut().zip(&roots[j..]) {
-                *entry = product(root, &gr[values.clone()]);
+            for i in j..roots.len() {
+                let ((start, from), (_, to)) = (places[i], places[i + 1]);
+                let mut sum = 0.0;
+                for (entry, gr) in entries[from..to].iter().zip(&gr[start..]) {
+                    sum += entry * gr;
+                }
+                column[i] = sum;
             }
             column[j] += 1.0;
         }
