@@ -128,9 +128,6 @@ impl Route for Assembled<'_, '_, '_> {
         let soft = self.first;
         self.first = false;
         let d = self.system.d;
-        // A pass that corrects makes a step in any case: the first need not go further than such a step does.
-        let nearly = if soft { NEARLY } else { 0.0 };
-        let until = Until { residual: until.residual.max(nearly), ..until };
         let mut body = Full {
             route: self,
             iterate,
@@ -309,9 +306,6 @@ impl Body for Full<'_, '_, '_, '_, '_> {
         }
     }
 }
-
-/// The residual at which the first pass ends: the next step takes it to rounding.
-const NEARLY: f64 = 1e-12;
 
 /// The share of the springs of all edges that is added to a tangent which has no factor: the edges that are in contact at an
 /// iterate need not hold the body that those of the solution hold. The step goes downhill all the same. The share is far below
