@@ -19,7 +19,15 @@ pub enum Task {
     Contact,
     /// A linear solve and a contact solve with 4 Gauss points, as the other codes do it.
     LikePeers,
+    /// The mesh alone.
+    Mesh,
+    /// The mesh and a linear solve.
+    Linear,
+    /// The mesh and a contact solve with its proof, to displacements.
+    Proved,
 }
+
+const TASKS: [Task; 5] = [Task::Contact, Task::LikePeers, Task::Mesh, Task::Linear, Task::Proved];
 
 /// What the child found.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -34,8 +42,8 @@ pub struct Report {
     pub proof: f64,
     /// Newton's method.
     pub steps: usize,
-    /// The relative residual in the full system.
-    pub residual: f64,
+    /// The relative radius that is proved.
+    pub radius: Option<f64>,
     /// a(u, u)
     pub energy: f64,
     /// gamma0
@@ -60,6 +68,9 @@ fn name(task: Task) -> &'static str {
     match task {
         Task::Contact => "contact",
         Task::LikePeers => "like-peers",
+        Task::Mesh => "mesh",
+        Task::Linear => "linear",
+        Task::Proved => "proved",
     }
 }
 
@@ -68,16 +79,26 @@ pub fn run(arguments: &[String]) {
     let [task, degree, body] = arguments else {
         panic!("a task, a degree and a body; found {arguments:?}")
     };
-    let task = [Task::Contact, Task::LikePeers].into_iter().find(|&t| name(t) == task);
-    let task = task.expect("a known task");
-    let report = solve(task, degree.parse().expect("a number"), body);
-    println!("{}", serde_json::to_string(&report).expect("numbers"));
+    let task = TASKS.into_iter().find(|&t| name(t) == task).expect("a known task");
+    if let Some(report) = solve(task, degree.parse().expect("a number"), body) {
+        println!("{}", serde_json::to_string(&report).expect("numbers"));
+    }
 }
 
-fn solve(task: Task, degree: usize, body: &str) -> Report {
+fn solve(task: Task, degree: usize, body: &str) -> Option<Report> {
     let problem = problem::posed(body).problem;
+    let exact = ContactQuadrature::Exact;
     let (quadrature, linear) = match task {
-        Task::Contact => (ContactQuadrature::Exact, None),
+        Task::Mesh => return None,
+        Task::Linear => {
+            problem::linear(&problem, degree);
+            return None;
+        }
+        Task::Proved => {
+            problem::contact_alone(&problem, &problem::method(degree, exact));
+            return None;
+        }
+        Task::Contact => (exact, None),
         Task::LikePeers => {
             // What happens once per process is over after this, as in the scripts for the other codes.
             problem::linear(&problem::block(8), degree);
@@ -87,17 +108,34 @@ fn solve(task: Task, degree: usize, body: &str) -> Report {
     let start = Instant::now();
     let (solution, times) = problem::contact(&problem, &problem::method(degree, quadrature));
     let contact = start.elapsed() - times.evaluate - times.certify;
-    Report {
+    Some(Report {
         assembly: linear.map_or(0.0, |t| t.assemble.as_secs_f64()),
         factor: linear.map_or(0.0, |t| t.solve.as_secs_f64()),
         contact: contact.as_secs_f64(),
         proof: times.certify.as_secs_f64(),
         steps: solution.newton.iterations(),
-        residual: solution.newton.residual,
+        radius: solution.enclosure.as_ref().ok().and_then(|e| e.relative),
         energy: solution.quantities.energy,
         gamma0: solution.gamma.gamma0,
         memory: peak_memory(),
-    }
+    })
+}
+
+/// The instructions of a linear solve, and of the contact solve with its proof, as valgrind counts them; `None` without valgrind.
+pub fn instructions(degree: usize, body: &str) -> Option<[f64; 2]> {
+    let of = |task| -> Option<f64> {
+        let output = Command::new("valgrind")
+            .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+            .arg(std::env::current_exe().ok()?)
+            .args([FLAG, name(task), &degree.to_string(), body])
+            .output()
+            .ok()?;
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        let count = text.lines().find_map(|line| line.split_once("Collected : "))?.1.trim();
+        count.parse().ok()
+    };
+    let mesh = of(Task::Mesh)?;
+    Some([of(Task::Linear)? - mesh, of(Task::Proved)? - mesh])
 }
 
 /// VmHWM, in bytes.

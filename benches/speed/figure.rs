@@ -3,8 +3,8 @@
 use svg::Document;
 use svg::node::element::{Circle, Group, Line, Polyline, Rectangle, Text};
 
-use crate::own::Measured;
-use crate::peers::Rival;
+use crate::own::{Measured, squares};
+use crate::peers::OnBody;
 
 const WIDTH: f64 = 330.0;
 const HEIGHT: f64 = 260.0;
@@ -29,20 +29,17 @@ struct Panel {
 }
 
 /// The figure.
-pub fn draw(own: &[Measured], rivals: &[Rival]) -> String {
+pub fn draw(own: &[Measured], rivals: &[OnBody]) -> String {
     let curve = |name: &str, degree: usize, dashed: bool, of: &dyn Fn(&Measured) -> f64| Curve {
         name: format!("{name}, P{degree}"),
         colour: if degree == 1 { "#0072b2" } else { "#d55e00" },
         dashed,
-        points: own
-            .iter()
-            .filter(|m| m.size.degree == degree)
-            .map(|m| (m.size.unknowns() as f64, of(m)))
-            .collect(),
+        points: squares(own, degree).map(|m| (m.unknowns as f64, of(m))).collect(),
     };
     let contact = |m: &Measured| m.contact.as_secs_f64();
-    let linear = |m: &Measured| m.linear_total().as_secs_f64();
-    let others = rivals.iter().filter(|r| r.name != "signorini");
+    let linear = |m: &Measured| m.linear.as_secs_f64();
+    let others =
+        rivals.iter().flat_map(OnBody::runs).filter(|r| r.degree == 1 && r.name != "signorini");
     let time = Panel {
         title: "time",
         curves: vec![

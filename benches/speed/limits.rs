@@ -1,33 +1,27 @@
-//! How far the factorisation is from what the machine can do, and whether the order of elimination is a good one.
+//! How far the factorisation is from what the machine can do.
 
 use std::time::{Duration, Instant};
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::matmul::matmul;
+use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::cholesky::simplicial::{
     prefactorize_symbolic_cholesky, prefactorize_symbolic_cholesky_scratch,
 };
-use faer::sparse::linalg::cholesky::{
-    SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
-};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Accum, Mat, Par, Side};
+use faer::{Accum, Mat, Par};
 use signorini::linear::factor::Factor;
 use signorini::linear::matrix::{LowerTriangle, Neighbours};
 
-use crate::own::Measured;
+use crate::own::{Measured, squares};
 use crate::problem::{self, Size};
 use crate::table::{table, three, time};
 
-/// The matrix of the body without contact, and the time its order took.
-fn body(Size { degree, n }: Size) -> (LowerTriangle, Duration) {
+/// The matrix of the body without contact.
+fn body(Size { degree, n }: Size) -> LowerTriangle {
     let problem = problem::block(n);
     let d = &problem::without_contact(&problem, degree);
     let neighbours = Neighbours::new(&d.space);
-    let start = Instant::now();
-    let order = problem::dissect(d, &neighbours);
-    let time = start.elapsed();
-    (problem::matrix(d, &neighbours, &order).1, time)
+    problem::matrix(d, &neighbours, &problem::dissect(d, &neighbours)).1
 }
 
 fn pattern(matrix: &LowerTriangle) -> SymbolicSparseColMatRef<'_, usize> {
@@ -70,13 +64,15 @@ pub fn table_of_limits(n: usize, repetitions: usize, own: &[Measured]) -> String
     let rows: Vec<Vec<String>> = [1, 2]
         .map(|degree| Size { degree, n })
         .into_iter()
-        .map(|size| {
-            let (matrix, _) = body(size);
+        .map(|size @ Size { degree, .. }| {
+            let matrix = body(size);
             let (least, factor) = least_factor(&matrix, repetitions);
             let rate = operations(&matrix) / least.as_secs_f64();
             let unknowns = size.unknowns() as f64;
             let factor = 8.0 * factor.structure().stored_entries() as f64 / unknowns;
-            let memory = own.iter().find(|m| m.size == size).map(|m| m.memory / unknowns);
+            let memory = squares(own, degree)
+                .find(|m| m.unknowns == size.unknowns())
+                .map(|m| m.memory / unknowns);
             vec![
                 format!("P{}", size.degree),
                 three(operations(&matrix) / 1e9),
@@ -114,13 +110,13 @@ The sparse factorisation at n = {n}, analysis included, against faer's dense pro
 /// What was measured and not built.
 pub const LEFT_OUT: &str = "## Tried, and left out
 
-Each measured beside the code as it is, on a quiet machine, P1 on squares, 2026-11-22:
+Each measured beside the code as it was, on a quiet machine, P1 on squares, 2026-11-22:
 
 - Two threads in the sparse factorisation (faer's own, by rayon): n = 128 takes 2.2 times as long, n = 256 1.5 times,
   n = 512 1.3 times: supernodes of two-dimensional bodies are too small to share. So there is no option for threads.
-- Substitutions of our own: the forward one takes 40 % less, the solve 1 %.
-- No correction where the first pass is accurate enough: the solve takes 4 to 8 % less (n = 128: contact / linear 1.25),
-  but forces balance to 1e-12 and not to 1e-15, and their enclosures are ten times as wide.
+- faer's minimum degree in place of nested dissection: at n = 256 order, analysis and factorisation take 1.8 times as long.
+- No correction where the first pass is accurate enough: the solve takes 4 to 8 % less, but forces balance to 1e-12 and not to 1e-15, and
+  their enclosures are ten times as wide.
 ";
 
 fn least_factor(matrix: &LowerTriangle, repetitions: usize) -> (Duration, Factor) {
@@ -133,70 +129,4 @@ fn least_factor(matrix: &LowerTriangle, repetitions: usize) -> (Duration, Factor
         least = least.min(start.elapsed());
     }
     (least, last.expect("at least one repetition"))
-}
-
-/// faer's approximate minimum degree on the same matrix: order and analysis, numeric part, stored entries of L.
-fn minimum_degree(matrix: &LowerTriangle) -> (Duration, Duration, usize) {
-    let start = Instant::now();
-    let symbolic = factorize_symbolic_cholesky(
-        pattern(matrix),
-        Side::Lower,
-        SymmetricOrdering::Amd,
-        Default::default(),
-    )
-    .expect("memory");
-    let analysis = start.elapsed();
-    let start = Instant::now();
-    let values = numeric(matrix, &symbolic);
-    (analysis, start.elapsed(), values.len())
-}
-
-fn numeric(matrix: &LowerTriangle, symbolic: &SymbolicCholesky<usize>) -> Vec<f64> {
-    let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
-    let mut memory = MemBuffer::new(scratch);
-    let mut values = vec![0.0; symbolic.len_val()];
-    let a = SparseColMatRef::new(pattern(matrix), &matrix.values);
-    let stack = MemStack::new(&mut memory);
-    let (regular, settings) = Default::default();
-    symbolic
-        .factorize_numeric_llt(&mut values, a, Side::Lower, regular, Par::Seq, stack, settings)
-        .expect("a clamped body");
-    values
-}
-
-/// Nested dissection against minimum degree.
-pub fn orderings(n: usize, repetitions: usize) -> String {
-    let mut rows = Vec::new();
-    for degree in [1, 2] {
-        let size = Size { degree, n };
-        let (matrix, mut order) = body(size);
-        let mut other = minimum_degree(&matrix);
-        let mut factorisation = Duration::MAX;
-        let mut stored = 0;
-        for _ in 0..repetitions {
-            order = order.min(body(size).1);
-            let (least, factor) = least_factor(&matrix, 1);
-            (factorisation, stored) =
-                (factorisation.min(least), factor.structure().stored_entries());
-            drop(factor);
-            let (analysis, numeric, entries) = minimum_degree(&matrix);
-            other = (other.0.min(analysis), other.1.min(numeric), entries);
-        }
-        let row = |name: &str, time_of_order: String, total: Duration, stored: usize| {
-            let entries = three(stored as f64 / 1e6);
-            vec![format!("P{degree}"), name.to_owned(), time_of_order, time(total), entries]
-        };
-        rows.push(row("nested dissection", time(order), order + factorisation, stored));
-        let analysis = format!("{} with analysis", time(other.0));
-        rows.push(row("minimum degree (faer)", analysis, other.0 + other.1, other.2));
-    }
-    let head = ["", "order", "order alone", "order, analysis, factorisation", "10^6 entries of L"];
-    format!(
-        "## Order of elimination
-
-The matrix of the linear solve at n = {n}.
-
-{}",
-        table(&head, &rows)
-    )
 }

@@ -3,7 +3,8 @@
 //! ```text
 //! cargo bench --bench speed                         our own tables
 //! cargo bench --bench speed -- --peers --large      all of docs/speed.md
-//! cargo bench --bench speed -- --proof              the table of proofs alone, printed
+//! cargo bench --bench speed -- --huge               a square with 10^7 unknowns alone, printed: some 20 GB
+//! cargo bench --bench speed -- --bodies             the table of bodies alone, printed
 //! cargo bench --bench speed -- --quick              small sizes, nothing written: does it run?
 //! ```
 //!
@@ -34,12 +35,9 @@ struct Plan {
 }
 
 impl Plan {
-    fn sizes(&self) -> Vec<Size> {
-        let (linear, quadratic) = if self.quick { (64, 32) } else { (512, 256) };
-        let up_to = |degree, most| {
-            (5..10).map(|k| 1 << k).filter(move |&n| n <= most).map(move |n| Size { degree, n })
-        };
-        up_to(1, linear).chain(up_to(2, quadratic)).collect()
+    /// The most cells along a side of a square, for P1 and P2.
+    fn most(&self) -> [usize; 2] {
+        if self.quick { [64, 32] } else { [512, 256] }
     }
 
     fn repetitions(&self) -> usize {
@@ -48,7 +46,7 @@ impl Plan {
 
     /// Those of other codes, which start slowly.
     fn peer_repetitions(&self) -> usize {
-        if self.quick { 1 } else { 3 }
+        if self.quick { 1 } else { 2 }
     }
 
     /// The size at which details are shown.
@@ -56,16 +54,31 @@ impl Plan {
         if self.quick { 32 } else { 256 }
     }
 
-    fn peer_bodies(&self) -> &'static [&'static str] {
+    fn peer_bodies(&self) -> &'static [(&'static str, usize)] {
         if self.quick {
-            &["square-16", "disk"]
+            &[("square-16", 1), ("disk", 1), ("disk", 2)]
         } else {
-            &["square-64", "square-128", "square-256", "strip", "beam", "disk"]
+            &[
+                ("square-64", 1),
+                ("square-128", 1),
+                ("square-256", 1),
+                ("strip", 1),
+                ("beam", 1),
+                ("graded", 1),
+                ("disk", 1),
+                ("square-128", 2),
+                ("strip", 2),
+                ("beam", 2),
+                ("graded", 2),
+                ("disk", 2),
+            ]
         }
     }
 }
 
 const LARGE: [Size; 2] = [Size { degree: 1, n: 1024 }, Size { degree: 2, n: 512 }];
+
+const HUGE: [Size; 1] = [Size { degree: 1, n: 2236 }];
 
 fn main() {
     // Cargo adds --bench.
@@ -73,28 +86,31 @@ fn main() {
     if arguments.first().is_some_and(|a| a == child::FLAG) {
         return child::run(&arguments[1..]);
     }
-    let known = ["--quick", "--peers", "--large", "--proof"];
+    let known = ["--quick", "--peers", "--large", "--bodies", "--huge"];
     if let Some(unknown) = arguments.iter().find(|a| !known.contains(&a.as_str())) {
         eprintln!("unknown argument {unknown}; expected {}", known.join(", "));
         std::process::exit(2);
     }
     let has = |name: &str| arguments.iter().any(|a| a == name);
     let plan = Plan { quick: has("--quick"), peers: has("--peers"), large: has("--large") };
-    if has("--proof") {
-        return print!("{}", own::proofs(plan.detail(), plan.repetitions()));
+    if has("--huge") {
+        return print!("{}", own::large(&HUGE));
+    }
+    let [linear, quadratic] = plan.most();
+    let measure = || -> Vec<own::Measured> {
+        let bodies = own::bodies(linear, quadratic);
+        let one = |(name, degree): (String, usize)| own::measure(&name, degree, plan.repetitions());
+        bodies.into_iter().map(one).collect()
+    };
+    if has("--bodies") {
+        return print!("{}", own::ratio_table(&measure()));
     }
     let others = provenance::Others::start();
-    let own: Vec<own::Measured> =
-        plan.sizes().into_iter().map(|size| own::measure(size, plan.repetitions())).collect();
+    let own = measure();
     let mut text = vec![
         own::ratio_table(&own),
-        own::others(plan.repetitions()),
-        own::proofs(plan.detail(), plan.repetitions()),
-        own::growth_table(&own),
-        own::newton_table(&own),
         own::phases(plan.detail(), plan.repetitions()),
         limits::table_of_limits(plan.detail(), plan.repetitions(), &own),
-        limits::orderings(plan.detail(), plan.repetitions()),
         limits::LEFT_OUT.to_owned(),
     ];
     let rivals = plan.peers.then(|| peers::measure(plan.peer_bodies(), plan.peer_repetitions()));

@@ -6,35 +6,33 @@ use std::time::{Duration, Instant};
 
 use signorini::io::run::Solved;
 use signorini::io::{Case, outputs};
-use signorini::model::Problem;
 use signorini::solve::{self, ContactQuadrature, Times};
 
 use crate::child::{self, Task};
-use crate::problem::{self, LinearTimes, Size};
-use crate::table::{bytes, seconds, table, three, time};
+use crate::problem::{self, Size};
+use crate::table::{bytes, seconds, table, time};
 
-/// Minima at one size.
+/// A body of [`problem::posed`] with elements of a degree, and minima on it.
 pub struct Measured {
-    pub size: Size,
+    pub degree: usize,
+    /// What it is.
+    title: String,
+    is_square: bool,
+    pub unknowns: usize,
     /// One linear elastic solve.
-    pub linear: LinearTimes,
-    /// The same, judged as the contact solve is.
-    pub judged: Duration,
+    pub linear: Duration,
     /// The contact solve, to judged displacements.
     pub contact: Duration,
     /// The proof of it.
-    pub proof: Duration,
-    /// Of the contact solve: Newton's method.
-    pub newton: Duration,
-    pub steps: usize,
+    proof: Duration,
+    /// All of it.
+    both: Duration,
+    /// The route, Newton steps, factorisations, the relative radius that is proved.
+    told: [String; 4],
+    /// The instructions of the linear solve, and of the contact solve with its proof.
+    instructions: Option<[f64; 2]>,
     /// The peak memory of a contact solve in bytes.
     pub memory: f64,
-}
-
-impl Measured {
-    pub fn linear_total(&self) -> Duration {
-        self.linear.assemble + self.linear.solve
-    }
 }
 
 /// Small sizes are run more often: up to so many times,
@@ -43,197 +41,135 @@ const MANY: usize = 50;
 /// within this time.
 const BRIEF: Duration = Duration::from_millis(500);
 
+/// The most unknowns for which instructions are counted: valgrind takes fifty times as long as the solve.
+const COUNTED: usize = 40_000;
+
+/// The bodies: squares up to `linear` cells along a side for P1 and `quadratic` for P2, and others.
+pub fn bodies(linear: usize, quadratic: usize) -> Vec<(String, usize)> {
+    let squares = |degree, most| {
+        let sizes = (5..10).map(|k| 1 << k).filter(move |&n| n <= most);
+        sizes.map(move |n| (Size { degree, n }.body(), degree))
+    };
+    let others = ["strip", "beam", "graded", "disk"];
+    let others = others.iter().flat_map(|name| [1, 2].map(|degree| ((*name).to_owned(), degree)));
+    squares(1, linear).chain(squares(2, quadratic)).chain(others).collect()
+}
+
 /// Linear and contact solves in turn, at least `repetitions` of each.
-pub fn measure(size: Size, repetitions: usize) -> Measured {
-    let problem = problem::block(size.n);
-    let method = problem::method(size.degree, ContactQuadrature::Exact);
-    let mut linear: Option<LinearTimes> = None;
-    let [mut contact, mut proof, mut newton, mut judged] = [Duration::MAX; 4];
-    let mut steps = 0;
+pub fn measure(name: &str, degree: usize, repetitions: usize) -> Measured {
+    let problem::Posed { title, problem, .. } = problem::posed(name);
+    let method = problem::method(degree, ContactQuadrature::Exact);
+    let [mut linear, mut contact, mut proof, mut both] = [Duration::MAX; 4];
+    let (mut told, mut unknowns) = ([const { String::new() }; 4], 0);
     let (start, mut runs) = (Instant::now(), 0);
     while runs < repetitions || (runs < MANY && start.elapsed() < BRIEF) {
         runs += 1;
-        let run = problem::linear(&problem, size.degree);
-        if linear.is_none_or(|best| run.assemble + run.solve < best.assemble + best.solve) {
-            linear = Some(run);
-        }
-        judged = judged.min(problem::linear_judged(&problem, size.degree));
+        linear = linear.min(problem::linear(&problem, degree).total());
         let (solution, times) = problem::contact(&problem, &method);
-        contact = contact.min(times.assemble() + times.solve());
+        let solve = times.assemble() + times.solve();
+        contact = contact.min(solve);
         proof = proof.min(times.certify);
-        newton = newton.min(times.newton);
-        steps = solution.newton.iterations();
+        both = both.min(solve + times.certify);
+        let radius = solution.enclosure.as_ref().ok().and_then(|e| e.relative);
+        unknowns = 2 * solution.displacement.len();
+        told = [
+            format!("{:?}", solution.method.route).to_lowercase(),
+            solution.newton.iterations().to_string(),
+            solution.newton.factorizations.to_string(),
+            radius.map_or("none".to_owned(), |radius| format!("{radius:.0e}")),
+        ];
     }
-    let linear = linear.expect("at least one repetition");
-    let memory = child::start(Task::Contact, size.degree, &size.body()).memory as f64;
-    eprintln!("P{} n = {}: measured", size.degree, size.n);
-    Measured { size, linear, judged, contact, proof, newton, steps, memory }
+    let is_counted = unknowns <= COUNTED;
+    let instructions = if is_counted { child::instructions(degree, name) } else { None };
+    let memory = child::start(Task::Contact, degree, name).memory as f64;
+    eprintln!("{title}, P{degree}: measured");
+    let is_square = name.starts_with("square-");
+    Measured {
+        degree,
+        title,
+        is_square,
+        unknowns,
+        linear,
+        contact,
+        proof,
+        both,
+        told,
+        instructions,
+        memory,
+    }
 }
 
-fn ratio(a: Duration, b: Duration) -> f64 {
-    a.as_secs_f64() / b.as_secs_f64()
+/// The squares of a degree, the smallest first.
+pub fn squares(own: &[Measured], degree: usize) -> impl Iterator<Item = &Measured> {
+    own.iter().filter(move |m| m.is_square && m.degree == degree)
 }
 
-fn name(size: Size) -> [String; 3] {
-    [format!("P{}", size.degree), size.n.to_string(), size.unknowns().to_string()]
-}
-
-/// (i)
+/// The contact solve with its proof over one linear solve.
 pub fn ratio_table(own: &[Measured]) -> String {
-    let rows: Vec<Vec<String>> = own
-        .iter()
-        .map(|m| {
-            let mut row = name(m.size).to_vec();
-            row.extend([
-                time(m.linear.assemble),
-                time(m.linear.solve),
-                time(m.judged),
-                time(m.contact),
-                time(m.proof),
-                m.steps.to_string(),
-                bold(m.contact, m.linear_total()),
-                bold(m.contact + m.proof, m.linear_total()),
-                bold(m.contact, m.judged),
-            ]);
-            row
-        })
-        .collect();
-    let head = [
-        "",
-        "n",
-        "unknowns",
-        "assembly",
-        "factor and solve",
-        "the same, judged",
-        "contact solve",
-        "proof",
-        "Newton steps",
-        "contact / linear",
-        "contact with proof / linear",
-        "contact / linear judged",
-    ];
-    format!(
-        "## The contact solve over one linear elastic solve
-
-The linear solve is of the same body with a free floor: same mesh, data, assembly and factorisation, ordered by the same
-nested dissection without a contact layer.
-
-The contact solve ends with a correction from the residual by the definitions: its size is the forward error that is reported.
-It costs two substitutions and a residual, and another residual says how good it is. A linear solve that is judged in the same
-way, by the same functions, stands beside the bare one: the last ratio is what contact alone costs. `signorini solve` always
-proves its solution, too (\"The proof\" below): the ratio before the last is the whole of it.
-
-{}",
-        table(&head, &rows)
-    )
-}
-
-fn bold(a: Duration, b: Duration) -> String {
-    format!("**{:.2}**", ratio(a, b))
-}
-
-/// The same for other bodies.
-pub fn others(repetitions: usize) -> String {
-    let mut rows = Vec::new();
-    for (name, problem) in problem::others().into_iter().chain([problem::disk()]) {
-        for degree in [1, 2] {
-            let method = problem::method(degree, ContactQuadrature::Exact);
-            let [mut linear, mut contact, mut proof] = [Duration::MAX; 3];
-            let mut told = Vec::new();
-            for _ in 0..repetitions {
-                let run = problem::linear(&problem, degree);
-                linear = linear.min(run.assemble + run.solve);
-                let (solution, times) = problem::contact(&problem, &method);
-                contact = contact.min(times.assemble() + times.solve());
-                proof = proof.min(times.certify);
-                let factorizations = solution.newton.factorizations.to_string();
-                let steps = solution.newton.iterations().to_string();
-                let route = format!("{:?}", solution.method.route).to_lowercase();
-                let unknowns = 2 * solution.displacement.len();
-                told = vec![unknowns.to_string(), route, steps, factorizations];
-            }
-            let mut row = vec![name.to_owned(), format!("P{degree}")];
-            row.extend(told);
-            let ratios = [bold(contact, linear), bold(contact + proof, linear)];
-            row.extend([linear, contact, proof].map(time));
-            row.extend(ratios);
-            rows.push(row);
-        }
-    }
+    let row = |m: &Measured| {
+        let [route, steps, factorizations, radius] = m.told.clone();
+        let share = m.instructions.map(|[linear, both]| format!("{:.2}", both / linear));
+        vec![
+            m.title.clone(),
+            format!("P{}", m.degree),
+            m.unknowns.to_string(),
+            route,
+            format!("{steps} / {factorizations}"),
+            time(m.linear),
+            time(m.contact),
+            time(m.proof),
+            radius,
+            format!("**{:.2}**", ratio(m.both, m.linear)),
+            share.unwrap_or_default(),
+            format!("{} ({:.0})", bytes(m.memory), m.memory / m.unknowns as f64),
+        ]
+    };
     let head = [
         "body",
         "",
         "unknowns",
         "route",
-        "Newton steps",
-        "factorisations",
+        "steps / factorisations",
         "linear solve",
         "contact solve",
         "proof",
-        "contact / linear",
+        "relative radius proved",
         "contact with proof / linear",
+        "the same in instructions",
+        "peak memory (bytes per unknown)",
     ];
-    format!(
-        "## Other bodies
+    let mut text = format!(
+        "## The contact solve over one linear elastic solve
 
-The same ratios for a strip, which has many contact edges for its size, a beam, which bends, a graded mesh, and the half disk of
-`cases/disk.toml`. The assembled route factors a matrix for each set of contact edges that Newton's method meets.
+The linear solve is of the same body with a free floor: same mesh, data, assembly and factorisation, ordered by the same
+nested dissection. The contact solve ends with a correction from the residual by the definitions, and with the proof of how far its
+displacements are from the exact ones. A strip has many contact edges for its size, a beam bends; the half disk is `cases/disk.toml`. The assembled
+route factors a matrix for each set of contact edges that Newton's method meets. Instructions are counted by valgrind, on bodies of up to {COUNTED}
+unknowns, on a processor without AVX-512.
 
-{}",
-        table(&head, &rows)
-    )
+{}
+",
+        table(&head, &own.iter().map(row).collect::<Vec<_>>())
+    );
+    for degree in [1, 2] {
+        let all: Vec<&Measured> = squares(own, degree).collect();
+        let last = &all[all.len().saturating_sub(3)..];
+        let fit = |y: &dyn Fn(&Measured) -> f64| {
+            let points: Vec<(f64, f64)> = last.iter().map(|m| (m.unknowns as f64, y(m))).collect();
+            exponent(&points)
+        };
+        text += &format!(
+            "On the last squares of P{degree}: contact solve ~ N^{:.2}, linear solve ~ N^{:.2}, memory ~ N^{:.2} in N unknowns.\n",
+            fit(&|m| m.contact.as_secs_f64()),
+            fit(&|m| m.linear.as_secs_f64()),
+            fit(&|m| m.memory),
+        );
+    }
+    text
 }
 
-/// The squares of the table of proofs.
-const SQUARES: [Size; 5] = [
-    Size { degree: 1, n: 64 },
-    Size { degree: 1, n: 128 },
-    Size { degree: 1, n: 256 },
-    Size { degree: 2, n: 64 },
-    Size { degree: 2, n: 128 },
-];
-
-/// The proof of the solution beside the solve: squares up to `most` cells along a side, and the other bodies.
-pub fn proofs(most: usize, repetitions: usize) -> String {
-    let squares = SQUARES.iter().filter(|size| size.n <= most);
-    let mut bodies: Vec<(String, usize, Problem)> = squares
-        .map(|&Size { degree, n }| (format!("square, {n} x {n} cells"), degree, problem::block(n)))
-        .collect();
-    for degree in [1, 2] {
-        let others = problem::others().into_iter().chain([problem::disk()]);
-        bodies.extend(others.map(|(name, problem)| (name.to_owned(), degree, problem)));
-    }
-    let row = |(name, degree, problem): &(String, usize, Problem)| {
-        let method = problem::method(*degree, ContactQuadrature::Exact);
-        let (mut solve, mut proof) = (Duration::MAX, Duration::MAX);
-        let mut told = [const { String::new() }; 2];
-        let (start, mut runs) = (Instant::now(), 0);
-        while runs < repetitions || (runs < MANY && start.elapsed() < BRIEF) {
-            runs += 1;
-            let (solution, times) = problem::contact(problem, &method);
-            solve = solve.min(times.solve());
-            proof = proof.min(times.certify);
-            let radius = solution.enclosure.as_ref().ok().and_then(|e| e.relative);
-            let radius = radius.map_or("none".to_owned(), |radius| format!("{radius:.0e}"));
-            told = [(2 * solution.displacement.len()).to_string(), radius];
-        }
-        let [unknowns, radius] = told;
-        let share = format!("**{:.2}**", ratio(proof, solve));
-        let degree = format!("P{degree}");
-        vec![name.clone(), degree, unknowns, time(solve), time(proof), share, radius]
-    };
-    let rows: Vec<Vec<String>> = bodies.iter().map(row).collect();
-    let head =
-        ["body", "", "unknowns", "solve", "proof", "proof / solve", "proved: relative radius"];
-    format!(
-        "## The proof
-
-What decides the verdict, the enclosure of the exact solution of (8), beside the solve phase: factorisation, Newton's method and
-the residual, without assembly. `cargo bench --bench speed -- --proof` prints this table alone.
-
-{}",
-        table(&head, &rows)
-    )
+fn ratio(a: Duration, b: Duration) -> f64 {
+    a.as_secs_f64() / b.as_secs_f64()
 }
 
 /// The exponent of y in x, by least squares on logarithms.
@@ -245,67 +181,6 @@ fn exponent(points: &[(f64, f64)]) -> f64 {
         .iter()
         .fold((0.0, 0.0), |(a, b), (x, y)| (a + (x - mx) * (y - my), b + (x - mx) * (x - mx)));
     above / below
-}
-
-/// (iii)
-pub fn growth_table(own: &[Measured]) -> String {
-    let rows: Vec<Vec<String>> = own
-        .iter()
-        .map(|m| {
-            let unknowns = m.size.unknowns() as f64;
-            let mut row = name(m.size).to_vec();
-            row.extend([
-                three(unknowns / m.contact.as_secs_f64() / 1e3),
-                bytes(m.memory),
-                format!("{:.0}", m.memory / unknowns),
-            ]);
-            row
-        })
-        .collect();
-    let head =
-        ["", "n", "unknowns", "thousand unknowns per second", "peak memory", "bytes per unknown"];
-    let mut text = format!("## Growth\n\n{}\n", table(&head, &rows));
-    for degree in [1, 2] {
-        let last: Vec<&Measured> = own.iter().filter(|m| m.size.degree == degree).collect();
-        let last = &last[last.len().saturating_sub(3)..];
-        let fit = |y: &dyn Fn(&Measured) -> f64| {
-            let points: Vec<(f64, f64)> =
-                last.iter().map(|m| (m.size.unknowns() as f64, y(m))).collect();
-            exponent(&points)
-        };
-        text += &format!(
-            "P{degree}, n = {} to {}: contact solve ~ N^{:.2}, linear solve ~ N^{:.2}, memory ~ N^{:.2} in N unknowns.\n",
-            last[0].size.n,
-            last[last.len() - 1].size.n,
-            fit(&|m| m.contact.as_secs_f64()),
-            fit(&|m| m.linear_total().as_secs_f64()),
-            fit(&|m| m.memory),
-        );
-    }
-    text
-}
-
-/// Newton's method against n.
-pub fn newton_table(own: &[Measured]) -> String {
-    let rows: Vec<Vec<String>> = own
-        .iter()
-        .map(|m| {
-            let mut row = name(m.size).to_vec();
-            let share = ratio(m.newton, m.contact);
-            let step = m.newton / u32::try_from(m.steps.max(1)).unwrap_or(u32::MAX);
-            row.extend([m.steps.to_string(), time(step), percent(share)]);
-            row
-        })
-        .collect();
-    let head = ["", "n", "unknowns", "steps", "one step", "all steps, of the contact solve"];
-    format!(
-        "## Newton's method
-
-All passes of the route, with the residuals and substitutions of the corrections between them; contact integrals exact.
-
-{}",
-        table(&head, &rows)
-    )
 }
 
 fn percent(share: f64) -> String {
@@ -412,16 +287,17 @@ pub fn large(sizes: &[Size]) -> String {
         .map(|&size| {
             let report = child::start(Task::Contact, size.degree, &size.body());
             let unknowns = size.unknowns() as f64;
-            let mut row = name(size).to_vec();
-            row.extend([
+            vec![
+                format!("P{}", size.degree),
+                size.n.to_string(),
+                size.unknowns().to_string(),
                 seconds(report.contact),
                 seconds(report.proof),
+                report.radius.map_or("none".to_owned(), |radius| format!("{radius:.0e}")),
                 report.steps.to_string(),
-                format!("{:.0e}", report.residual),
                 bytes(report.memory as f64),
                 format!("{:.0}", report.memory as f64 / unknowns),
-            ]);
-            row
+            ]
         })
         .collect();
     let head = [
@@ -430,10 +306,10 @@ pub fn large(sizes: &[Size]) -> String {
         "unknowns",
         "contact solve",
         "proof",
+        "relative radius proved",
         "Newton steps",
-        "residual",
         "peak memory",
         "bytes per unknown",
     ];
-    format!("## Large\n\nOne run each.\n\n{}", table(&head, &rows))
+    format!("## Large\n\nSquares, one run each.\n\n{}", table(&head, &rows))
 }

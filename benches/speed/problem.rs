@@ -65,12 +65,21 @@ fn body(mesh: Mesh, clamped: &str, force: &str, gap: &str) -> Problem {
     )
 }
 
-/// Bodies that are no squares, each with what it is.
-pub fn others() -> [(&'static str, Problem); 3] {
-    let crossed = |width, height, nx, ny| {
-        let rectangle = Rectangle { width, height, nx, ny, diagonal: Diagonal::Crossed };
-        rectangle.mesh().expect("a valid mesh")
-    };
+fn crossed(width: f64, height: f64, nx: usize, ny: usize) -> Mesh {
+    let rectangle = Rectangle { width, height, nx, ny, diagonal: Diagonal::Crossed };
+    rectangle.mesh().expect("a valid mesh")
+}
+
+fn strip() -> Problem {
+    body(crossed(500.0, 1.0, 1000, 2), "top", "-4 + x/50", "0")
+}
+
+fn beam() -> Problem {
+    body(crossed(20.0, 1.0, 320, 16), "left", "-1e-4", "0.01")
+}
+
+/// A square with cells that are graded to the floor by y^3.
+fn graded() -> Problem {
     let square = crossed(1.0, 1.0, 96, 96);
     let graded = square.vertices().iter().map(|&[x, y]| [x, y.powi(3)]).collect();
     let sides = square.boundary_names().map(|name| {
@@ -78,23 +87,13 @@ pub fn others() -> [(&'static str, Problem); 3] {
         (name.to_owned(), edges.map(|e| ends(&square, e)).collect())
     });
     let graded = Mesh::new(graded, square.triangles().to_vec(), sides);
-    [
-        (
-            "strip 500 : 1, 1000 x 2 cells",
-            body(crossed(500.0, 1.0, 1000, 2), "top", "-4 + x/50", "0"),
-        ),
-        ("beam 20 : 1, 320 x 16 cells", body(crossed(20.0, 1.0, 320, 16), "left", "-1e-4", "0.01")),
-        (
-            "square, 96 x 96 cells, graded to the floor by y^3",
-            body(graded.expect("a valid mesh"), "top", "-4 + 10*x", "0"),
-        ),
-    ]
+    body(graded.expect("a valid mesh"), "top", "-4 + 10*x", "0")
 }
 
 /// The half disk on a floor of `cases/disk.toml`.
-pub fn disk() -> (&'static str, Problem) {
+fn disk() -> Problem {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/disk.toml");
-    ("half disk", Case::read(&file).expect("a valid case").problem)
+    Case::read(&file).expect("a valid case").problem
 }
 
 /// A problem in the words of the scripts for other codes (`reference/peers/common.py`).
@@ -110,9 +109,9 @@ pub struct Posed {
     level: f64,
 }
 
-/// `square-N`, `strip`, `beam` or `disk`.
-pub fn posed(body: &str) -> Posed {
-    let posed = |(title, problem): (&str, Problem), held, force, level| Posed {
+/// `square-N`, `strip`, `beam`, `graded` or `disk`.
+pub fn posed(name: &str) -> Posed {
+    let posed = |title: &str, problem, held, force, level| Posed {
         title: title.to_owned(),
         problem,
         held,
@@ -121,27 +120,29 @@ pub fn posed(body: &str) -> Posed {
         force,
         level,
     };
-    let [strip, beam, _] = others();
-    match body.split_once('-') {
-        Some(("square", n)) => {
+    match name.split_once('-').map_or((name, ""), |parts| parts) {
+        ("square", n) => {
             let n: usize = n.parse().expect("a number of cells");
-            let title = format!("square, {n} x {n} cells");
-            posed((&title, block(n)), "top", [-4.0, 10.0], 0.0)
+            posed(&format!("square, {n} x {n} cells"), block(n), "top", [-4.0, 10.0], 0.0)
         }
-        None if body == "strip" => posed(strip, "top", [-4.0, 0.02], 0.0),
-        None if body == "beam" => posed(beam, "left", [-1e-4, 0.0], -0.01),
-        None if body == "disk" => Posed {
+        ("strip", _) => posed("strip 500 : 1, 1000 x 2 cells", strip(), "top", [-4.0, 0.02], 0.0),
+        ("beam", _) => posed("beam 20 : 1, 320 x 16 cells", beam(), "left", [-1e-4, 0.0], -0.01),
+        ("graded", _) => {
+            let title = "square, 96 x 96 cells, graded to the floor by y^3";
+            posed(title, graded(), "top", [-4.0, 10.0], 0.0)
+        }
+        ("disk", _) => Posed {
             floor: "contact",
             prescribed: [0.0, -0.015],
-            ..posed(disk(), "top", [0.0; 2], 0.0)
+            ..posed("half disk", disk(), "top", [0.0; 2], 0.0)
         },
-        _ => panic!("expected square-N, strip, beam or disk; found {body}"),
+        _ => panic!("expected square-N, strip, beam, graded or disk; found {name}"),
     }
 }
 
 impl Posed {
     /// The file that the scripts read.
-    pub fn json(&self) -> String {
+    pub fn json(&self, degree: usize) -> String {
         let mesh = &self.problem.mesh;
         let edges = |name: &str| -> Vec<[usize; 2]> {
             let edges = mesh.edges_of(name).expect("a boundary of the body").iter();
@@ -152,14 +153,16 @@ impl Posed {
         serde_json::json!({
             "vertices": mesh.vertices(), "triangles": mesh.triangles(), "held": edges(self.held),
             "floor": edges(self.floor), "prescribed": self.prescribed, "force": self.force,
-            "level": self.level, "lambda": lambda, "mu": mu,
+            "level": self.level, "lambda": lambda, "mu": mu, "degree": degree,
         })
         .to_string()
     }
 
-    /// Degrees of freedom of P1, prescribed ones included.
-    pub fn unknowns(&self) -> usize {
-        2 * self.problem.mesh.vertices().len()
+    /// Degrees of freedom, prescribed ones included.
+    pub fn unknowns(&self, degree: usize) -> usize {
+        let mesh = &self.problem.mesh;
+        let middles = if degree == 1 { 0 } else { mesh.edge_count() };
+        2 * (mesh.vertices().len() + middles)
     }
 }
 
@@ -180,6 +183,13 @@ pub fn contact(problem: &Problem, method: &Method) -> (Solution, Times) {
     (solution, times)
 }
 
+/// The contact solve with its proof, from the mesh to displacements.
+pub fn contact_alone(problem: &Problem, method: &Method) {
+    let d = solve::discretize(problem, method).expect("a valid problem");
+    let solved = solve::solve_discrete(&d, &Settings::default());
+    std::hint::black_box(solved.expect("the body has a solution"));
+}
+
 /// How long a linear solve took.
 #[derive(Clone, Copy, Debug)]
 pub struct LinearTimes {
@@ -187,6 +197,13 @@ pub struct LinearTimes {
     pub assemble: Duration,
     /// Factorisation and substitution.
     pub solve: Duration,
+}
+
+impl LinearTimes {
+    /// All of it.
+    pub fn total(&self) -> Duration {
+        self.assemble + self.solve
+    }
 }
 
 /// One linear elastic solve of the same body with a free floor: same mesh, data, assembly and factorisation.
@@ -206,16 +223,6 @@ pub fn linear(problem: &Problem, degree: usize) -> LinearTimes {
     numbering.scatter(&x, &mut u);
     std::hint::black_box(&u);
     LinearTimes { assemble, solve: start.elapsed() }
-}
-
-/// The same by the solver itself: corrected, with its residual and its forward error.
-pub fn linear_judged(problem: &Problem, degree: usize) -> Duration {
-    let start = Instant::now();
-    let d = without_contact(problem, degree);
-    let discretize = start.elapsed();
-    let (u, _, times) = solve::solve_discrete(&d, &Settings::default()).expect("a clamped body");
-    std::hint::black_box(&u);
-    discretize + times.matrix + times.solve()
 }
 
 /// The discretization of the body with a free floor.

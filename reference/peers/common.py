@@ -1,6 +1,6 @@
 """What the scripts for the other codes share: the problem, Newton's method, the clock, the line of JSON.
 
-The problem is in a file that the bench writes: a body of P1 triangles with constant moduli (plane strain), a body force (0, a + b x), a
+The problem is in a file that the bench writes: a body of triangles, P1 (for DOLFINx also P2), with constant moduli (plane strain), a body force (0, a + b x), a
 displacement (0, c) prescribed on the edges `held`, and contact of the edges `floor` with a rigid floor at the height `level`. Its direction
 is d = (0, -1), and the gap is y - level. Method (8) with 4 Gauss points per contact edge:
 

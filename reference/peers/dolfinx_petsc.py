@@ -40,7 +40,7 @@ def direct(matrix, solver):
 
 def run(body, gamma0, solver, clock):
     domain, tags, h = meshed(body)
-    V = fem.VectorFunctionSpace(domain, ("Lagrange", 1))
+    V = fem.VectorFunctionSpace(domain, ("Lagrange", body.degree))
     u, v, w = fem.Function(V), ufl.TestFunction(V), ufl.TrialFunction(V)
     x = ufl.SpatialCoordinate(domain)
     top = fem.locate_dofs_topological(V, 1, tags.find(2))

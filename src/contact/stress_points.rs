@@ -20,6 +20,7 @@ pub(crate) trait Nodal<S> {
 }
 
 impl<S: Scalar> Nodal<S> for [[S; 2]] {
+    #[inline]
     fn difference(&self, node: usize, from: usize) -> Vector2<S> {
         Vector2::from(self[node]) - Vector2::from(self[from])
     }

@@ -174,9 +174,18 @@ impl Writer {
     }
 }
 
-/// A block by zlib, fast: doubles do not get much smaller by more effort.
+/// The bytes at the beginning of a block by which the rest is judged.
+const SAMPLE: usize = 1 << 12;
+
+/// A block by zlib, fast: doubles do not get much smaller by more effort, and most scalars get larger, which are stored as they are.
 fn compressed(block: &[u8]) -> Vec<u8> {
-    let mut zlib = ZlibEncoder::new(Vec::with_capacity(block.len() / 2), Compression::fast());
+    let sample = &block[..block.len().min(SAMPLE)];
+    let gains = zlib(sample, Compression::fast()).len() < sample.len();
+    zlib(block, if gains { Compression::fast() } else { Compression::none() })
+}
+
+fn zlib(block: &[u8], level: Compression) -> Vec<u8> {
+    let mut zlib = ZlibEncoder::new(Vec::with_capacity(block.len() + block.len() / 64 + 64), level);
     // Writing to memory cannot fail.
     let _ = zlib.write_all(block);
     zlib.finish().unwrap_or_default()

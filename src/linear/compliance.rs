@@ -34,15 +34,12 @@ impl Reach {
     /// For pieces with their functionals and the unknowns that these touch, in the order of the functionals.
     pub fn new(structure: &Structure, pieces: &[(Range<usize>, Vec<usize>)]) -> Self {
         let count = structure.supernodes();
-        let mut supernode_of = vec![0; structure.size()];
-        for s in 0..count {
-            supernode_of[structure.columns(s)].fill(s);
-        }
+        let supernode_of = |row: usize| structure.supernode_of(row);
         let parent: Vec<Option<usize>> = (0..count)
-            .map(|s| structure.rows_below(s).first().map(|&row| supernode_of[row]))
+            .map(|s| structure.rows_below(s).first().map(|&row| supernode_of(row)))
             .collect();
         let rank = postorder(&parent);
-        let first = |e: usize| pieces[e].1.iter().min().map(|&row| supernode_of[row]);
+        let first = |e: usize| pieces[e].1.iter().min().map(|&row| supernode_of(row));
         let mut order: Vec<usize> = (0..pieces.len()).collect();
         order.sort_by_key(|&e| (first(e).map(|s| rank[s]), e));
         let mut ranges: Vec<Option<Range<usize>>> = vec![None; count];
@@ -212,6 +209,11 @@ impl<'a> Compliance<'a> {
             walked[(a.max(b), a.min(b))]
         });
         Ok(Compliance { structure, reach, x, g })
+    }
+
+    /// A column of G.
+    pub(crate) fn column(&self, functional: usize) -> &[f64] {
+        self.g.col_as_slice(functional)
     }
 
     /// X^T v

@@ -1,19 +1,18 @@
-//! The sparse Cholesky factor H = L L^T of a matrix on the free degrees of freedom, by faer, in a given order: its structure,
-//! which all matrices with one pattern share and from which the cost of a factorisation follows, and its numbers.
+//! The sparse Cholesky factor H = L L^T of a matrix on the free degrees of freedom in a given order: its structure, by faer,
+//! which all matrices with one pattern share and from which the cost of a factorisation follows, and its [numbers](super::numeric).
 
 use std::sync::Arc;
 
+use faer::MatRef;
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::LltError;
+use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::cholesky::simplicial::prefactorize_symbolic_cholesky;
 use faer::sparse::linalg::cholesky::supernodal::{
-    SupernodalLltRef, SymbolicSupernodalCholesky, factorize_supernodal_numeric_llt,
-    factorize_supernodal_numeric_llt_scratch, factorize_supernodal_symbolic_cholesky,
+    SymbolicSupernodalCholesky, factorize_supernodal_symbolic_cholesky,
     factorize_supernodal_symbolic_cholesky_scratch,
 };
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, MatRef, Par};
 
+use super::numeric;
 use crate::linear::matrix::LowerTriangle;
 use crate::memory;
 use crate::solve::SolveError;
@@ -21,6 +20,8 @@ use crate::solve::SolveError;
 /// The structure of L: its columns in groups with one pattern, the supernodes.
 pub struct Structure {
     symbolic: SymbolicSupernodalCholesky<usize>,
+    /// The supernode of each column.
+    supernodes: Vec<usize>,
 }
 
 impl Structure {
@@ -51,7 +52,11 @@ impl Structure {
             Default::default(),
         )
         .map_err(|_| out_of_memory())?;
-        Ok(Structure { symbolic })
+        let mut supernodes = vec![0; n];
+        for s in 0..symbolic.n_supernodes() {
+            supernodes[symbolic.supernode_begin()[s]..symbolic.supernode_end()[s]].fill(s);
+        }
+        Ok(Structure { symbolic, supernodes })
     }
 
     /// The number of unknowns.
@@ -72,6 +77,22 @@ impl Structure {
     /// The rows of L below the block of supernode `s` on the diagonal, in increasing order.
     pub(crate) fn rows_below(&self, s: usize) -> &[usize] {
         self.symbolic.supernode(s).pattern()
+    }
+
+    /// The supernode of a column.
+    pub(crate) fn supernode_of(&self, column: usize) -> usize {
+        self.supernodes[column]
+    }
+
+    /// The numbers of rows and of columns of the block of supernode `s`.
+    pub(super) fn shape(&self, s: usize) -> [usize; 2] {
+        let columns = self.columns(s).len();
+        [columns + self.rows_below(s).len(), columns]
+    }
+
+    /// The place of the block of supernode `s` among the entries of L.
+    pub(super) fn start(&self, s: usize) -> usize {
+        self.symbolic.col_ptr_for_val()[s]
     }
 
     /// The entries of L that are stored.
@@ -117,37 +138,12 @@ impl Factor {
     /// # Errors
     /// [`SolveError::NotPositiveDefinite`], as far as doubles tell, and [`SolveError::OutOfMemory`].
     pub fn with(structure: &Arc<Structure>, matrix: &LowerTriangle) -> Result<Self, SolveError> {
-        let n = structure.size();
-        let parallel = Par::Seq;
-        let scratch = factorize_supernodal_numeric_llt_scratch::<usize, f64>(
-            &structure.symbolic,
-            parallel,
-            Default::default(),
-        );
-        let bytes = (8 * structure.stored_entries() + scratch.size_bytes() + BESIDE * n) as u64;
-        memory::check(bytes)?;
-        let mut values = vec![0.0; structure.stored_entries()];
-        let mut memory =
-            MemBuffer::try_new(scratch).map_err(|_| SolveError::OutOfMemory { bytes })?;
-        let pattern =
-            SymbolicSparseColMatRef::new_checked(n, n, &matrix.starts, None, &matrix.rows);
-        let factored = factorize_supernodal_numeric_llt(
-            &mut values,
-            SparseColMatRef::new(pattern, &matrix.values),
-            Default::default(),
-            &structure.symbolic,
-            parallel,
-            MemStack::new(&mut memory),
-            Default::default(),
-        );
-        match factored {
-            Ok(_) => Ok(Factor { structure: Arc::clone(structure), values }),
-            Err(LltError::NonPositivePivot { .. }) => Err(SolveError::NotPositiveDefinite),
-        }
-    }
-
-    fn llt(&self) -> SupernodalLltRef<'_, usize, f64> {
-        SupernodalLltRef::new(&self.structure.symbolic, &self.values)
+        let scratch = numeric::scratch_bytes(structure);
+        let entries = structure.stored_entries();
+        memory::check((8 * entries + scratch + BESIDE * structure.size()) as u64)?;
+        let mut values = vec![0.0; entries];
+        numeric::factorise(structure, matrix, &mut values)?;
+        Ok(Factor { structure: Arc::clone(structure), values })
     }
 
     /// Its structure.
@@ -158,7 +154,9 @@ impl Factor {
     /// The columns of supernode `s`: first the lower triangle on the diagonal, below it the rows of
     /// [`Structure::rows_below`].
     pub fn block(&self, s: usize) -> MatRef<'_, f64> {
-        self.llt().supernode(s).val()
+        let [rows, columns] = self.structure.shape(s);
+        let values = &self.values[self.structure.start(s)..][..rows * columns];
+        MatRef::from_column_major_slice(values, rows, columns)
     }
 
     /// x <- H^-1 x
@@ -169,26 +167,12 @@ impl Factor {
 
     /// x <- L^-1 x
     pub fn forward(&self, x: &mut [f64]) {
-        self.with_scratch(x, |llt, x, stack| llt.l_solve_with_conj(Conj::No, x, Par::Seq, stack));
+        numeric::forward(&self.structure, &self.values, x);
     }
 
     /// x <- L^-T x
     pub fn backward(&self, x: &mut [f64]) {
-        self.with_scratch(x, |llt, x, stack| {
-            llt.l_transpose_solve_with_conj(Conj::No, x, Par::Seq, stack);
-        });
-    }
-
-    fn with_scratch(
-        &self,
-        x: &mut [f64],
-        solve: impl FnOnce(SupernodalLltRef<'_, usize, f64>, MatMut<'_, f64>, &mut MemStack),
-    ) {
-        let scratch = self.structure.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
-        let mut memory = MemBuffer::new(scratch);
-        let n = x.len();
-        let x = MatMut::from_column_major_slice_mut(x, n, 1);
-        solve(self.llt(), x, MemStack::new(&mut memory));
+        numeric::backward(&self.structure, &self.values, x);
     }
 }
 

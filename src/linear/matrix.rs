@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::{DMatrix, Matrix2};
+use nalgebra::{DMatrix, Matrix2, Vector2};
 use thiserror::Error;
 
 use crate::contact::discretization::Discretization;
@@ -334,16 +334,19 @@ impl LowerTriangle {
         piece: &Piece,
         h: &DMatrix<f64>,
     ) -> Result<(), OutsidePattern> {
-        let p0 = &piece.p0;
+        if h.iter().all(|h| *h == 0.0) {
+            return Ok(());
+        }
+        let (p0, nodes) = (&piece.p0, piece.nodes.len());
+        let springs: Vec<Vector2<f64>> = (0..h.nrows() * nodes)
+            .map(|at| {
+                let (a, j) = (at / nodes, at % nodes);
+                (0..h.ncols()).fold(Vector2::zeros(), |sum, b| sum + p0[b][j] * h[(a, b)])
+            })
+            .collect();
         self.add(numbering, &piece.nodes, |i, j| {
-            Matrix2::from_fn(|c, k| {
-                let mut sum = 0.0;
-                for a in 0..h.nrows() {
-                    for b in 0..h.ncols() {
-                        sum += p0[a][i][c] * h[(a, b)] * p0[b][j][k];
-                    }
-                }
-                sum
+            (0..h.nrows()).fold(Matrix2::zeros(), |sum, a| {
+                sum + p0[a][i] * springs[a * nodes + j].transpose()
             })
         })
     }

@@ -7,6 +7,7 @@ pub mod dense;
 #[doc(hidden)]
 pub mod factor;
 pub mod matrix;
+mod numeric;
 #[doc(hidden)]
 pub mod ordering;
 #[doc(hidden)]

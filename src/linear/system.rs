@@ -2,7 +2,7 @@
 //! factor, and B, the values of P0 at the nodes of the pieces of Gamma_C. The tangent A + B^T Psi'' B has the pattern of A, which is
 //! joined over the triangles of each piece.
 
-use std::cell::Cell;
+use std::cell::{Cell, OnceCell};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -10,8 +10,9 @@ use nalgebra::DMatrix;
 
 use super::factor::{Factor, Structure};
 use super::ordering::nested_dissection;
-use crate::contact::Piece;
 use crate::contact::discretization::Discretization;
+use crate::contact::{Piece, residual};
+use crate::kernel::DoubleDouble;
 use crate::kernel::ball::larger;
 use crate::linear::matrix;
 use crate::linear::matrix::{LowerTriangle, Neighbours, Numbering};
@@ -30,8 +31,36 @@ pub struct System<'d, 'p> {
     /// The structure of the factor of A and of every tangent.
     pub structure: Arc<Structure>,
     pub(crate) course: Course<'d>,
+    /// The entries of B.
+    functionals: Arc<[Entry]>,
+    /// The pieces of Gamma_C in double-doubles, once they are needed.
+    fine: OnceCell<Vec<Piece<DoubleDouble>>>,
     /// The Newton steps so far.
     steps: Cell<usize>,
+}
+
+/// An entry of B.
+struct Entry {
+    unknown: usize,
+    functional: usize,
+    value: f64,
+}
+
+/// The entries of B, piece by piece.
+fn entries(d: &Discretization, numbering: &Numbering) -> Arc<[Entry]> {
+    let mut entries = Vec::new();
+    for piece in &d.contact {
+        for (functional, row) in piece.functionals().zip(&piece.p0) {
+            for (&node, &values) in piece.nodes.iter().zip(row) {
+                let values = numbering.in_frame(node, values.into());
+                for (number, value) in numbering.of[node].iter().zip(values) {
+                    let entry = |unknown| Entry { unknown, functional, value };
+                    entries.extend(number.map(entry));
+                }
+            }
+        }
+    }
+    entries.into()
 }
 
 impl<'d, 'p> System<'d, 'p> {
@@ -54,7 +83,17 @@ impl<'d, 'p> System<'d, 'p> {
         let numbering = Numbering::under(&order, &d.constraints);
         let matrix = matrix::assemble(d, &numbering, &neighbours)?;
         let structure = Arc::new(Structure::new(&matrix)?);
-        Ok(System { d, numbering, matrix, structure, course, steps: Cell::new(0) })
+        let functionals = entries(d, &numbering);
+        Ok(System {
+            d,
+            numbering,
+            matrix,
+            structure,
+            course,
+            functionals,
+            fine: OnceCell::new(),
+            steps: Cell::new(0),
+        })
     }
 
     /// The same matrices for a discretization that differs in the laws of its pieces alone.
@@ -69,6 +108,8 @@ impl<'d, 'p> System<'d, 'p> {
             matrix: self.matrix.clone(),
             structure: Arc::clone(&self.structure),
             course,
+            functionals: Arc::clone(&self.functionals),
+            fine: OnceCell::new(),
             steps: Cell::new(self.steps.get()),
         }
     }
@@ -77,6 +118,12 @@ impl<'d, 'p> System<'d, 'p> {
     pub(crate) fn enters_step(&self) {
         self.steps.set(self.steps.get() + 1);
         self.course.enters(Phase::Newton { step: self.steps.get() });
+    }
+
+    /// P(u) at the nodes of each piece, in double-doubles.
+    pub(crate) fn fine_p(&self, u: &[[DoubleDouble; 2]]) -> Vec<DoubleDouble> {
+        let pieces = || self.d.contact.iter().map(|e| residual::exact_piece(self.d, e)).collect();
+        self.fine.get_or_init(pieces).iter().flat_map(|piece| piece.p(u)).collect()
     }
 
     /// The number of functionals.
@@ -110,17 +157,8 @@ impl<'d, 'p> System<'d, 'p> {
 
     /// B: calls `f` with the unknown, the number of the functional and the entry.
     pub(crate) fn each_functional(&self, mut f: impl FnMut(usize, usize, f64)) {
-        for piece in &self.d.contact {
-            for (i, functional) in piece.functionals().zip(&piece.p0) {
-                for (&node, &entries) in piece.nodes.iter().zip(functional) {
-                    let entries = self.numbering.in_frame(node, entries.into());
-                    for (number, entry) in self.numbering.of[node].iter().zip(entries) {
-                        if let Some(number) = *number {
-                            f(number, i, entry);
-                        }
-                    }
-                }
-            }
+        for &Entry { unknown, functional, value } in &*self.functionals {
+            f(unknown, functional, value);
         }
     }
 

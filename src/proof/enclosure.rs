@@ -249,6 +249,9 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         arithmetic: Arithmetic,
     ) -> Result<Enclosure, Unproved> {
         let d = self.system.d;
+        if d.slides.is_none() {
+            return self.around(u, u, near, arithmetic);
+        }
         let known: Option<Vec<DoubleDouble>> = near.map(|near| residual::p(d, near).collect());
         let Some(loose) = Slides::around(d, u, known.as_deref()) else {
             return self.around(u, u, near, arithmetic);

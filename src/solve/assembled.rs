@@ -1,24 +1,25 @@
-//! The assembled route: Newton's method on the displacement itself, the tangent A + B^T Psi'' B factored in each step. This
+//! The assembled route: Newton's method on the displacement itself, the tangent A + B^T Psi'' B factored where Psi'' has changed. This
 //! route is the cheaper one where contact edges are many beside the body (strips, graded meshes), and the only one where A
 //! alone is singular or nearly so: only contact holds the body, and the tangent includes its springs.
 
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::SolveError;
 use super::accuracy::{Pass, Route};
 use super::body::{
-    Body, ContactEnergy, Derivatives, Residual, Step, all_springs, blocks, derivatives, no_springs,
+    Body, ContactEnergy, Derivatives, Residual, Step, all_springs, derivatives, does_again,
+    no_springs, times,
 };
-use super::iterate::{Evaluation, Iterate};
+use super::iterate::{Evaluation, Iterate, has_few_digits};
 use super::newton::{self, Until};
 use crate::contact::piece::Stretch;
 use crate::held::clearance;
 use crate::held::rigid::Parts;
 use crate::kernel::DoubleDouble;
-use crate::linear::dense::norm;
+use crate::linear::dense::{dot, norm};
 use crate::linear::factor::Factor;
 use crate::linear::system::System;
 
@@ -28,6 +29,8 @@ pub struct Assembled<'a, 'd, 'p> {
     /// The size that residuals are relative to.
     reference: f64,
     factored: Option<Factored>,
+    /// The norm of the residual where it was used last.
+    used_at: f64,
     /// L of A alone, once it has been made.
     body: Option<Arc<Factor>>,
     factorizations: usize,
@@ -42,6 +45,7 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
             system,
             reference,
             factored: None,
+            used_at: 0.0,
             body: None,
             factorizations: 0,
             precisely: false,
@@ -69,9 +73,12 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
         at.hessian.iter().zip(&all.hessian).map(|(h, all)| h + SUPPORT * all).collect()
     }
 
-    fn factor(&mut self, at: &Derivatives) -> Result<&Factored, SolveError> {
+    fn factor(&mut self, at: &Derivatives, residual: f64) -> Result<&Factored, SolveError> {
+        // What needs more than doubles has springs so stiff that a small change of them is not small beside the body.
+        let residuals = [if self.precisely { 0.0 } else { self.used_at }, residual];
+        self.used_at = residual;
         let (factor, hessian) = match self.factored.take() {
-            Some((factor, old)) if old == at.hessian => (factor, old),
+            Some((factor, old)) if does_again(&old, &at.hessian, residuals) => (factor, old),
             _ => {
                 let coercive = self.system.d.kappa() < 1.0;
                 let mut hessian = at.hessian.clone();
@@ -121,9 +128,23 @@ impl Route for Assembled<'_, '_, '_> {
         let soft = self.first;
         self.first = false;
         let d = self.system.d;
-        let mut body = Full { route: self, iterate, at, d: Vec::new(), energy: 0.0, softness: 0.0 };
+        let mut body = Full {
+            route: self,
+            iterate,
+            at,
+            d: Vec::new(),
+            ad: Vec::new(),
+            may_carry: soft,
+            carried: None,
+            energy: 0.0,
+            softness: 0.0,
+        };
         let left = newton::minimise(d, &mut body, soft, residuals, until)?;
-        Ok(Pass { energy: body.energy, left, softness: body.softness })
+        let Full { carried, energy, softness, .. } = body;
+        if carried.is_some() {
+            *at = iterate.evaluate(self.system, at.precisely);
+        }
+        Ok(Pass { energy, left, softness })
     }
 
     fn step_for(
@@ -133,7 +154,7 @@ impl Route for Assembled<'_, '_, '_> {
     ) -> Result<Option<Vec<f64>>, SolveError> {
         let terms = derivatives(self.system.d, 1.0, &at.p);
         let mut d: Vec<f64> = residual.iter().map(|r| -r).collect();
-        self.factor(&terms)?.0.solve(&mut d);
+        self.factor(&terms, norm(residual))?.0.solve(&mut d);
         Ok(Some(d))
     }
 }
@@ -145,6 +166,12 @@ struct Full<'r, 'i, 'a, 'd, 'p> {
     at: &'i mut Evaluation,
     /// The step.
     d: Vec<f64>,
+    /// A d, as the step's equation has it.
+    ad: Vec<f64>,
+    /// The residual and P may be carried along with the steps: a pass that corrects follows.
+    may_carry: bool,
+    /// They are, and wait to be evaluated: the magnitudes that P was added up from since.
+    carried: Option<Vec<f64>>,
     /// The largest energy of the steps of this pass, and the largest square of one beside its energy.
     energy: f64,
     softness: f64,
@@ -181,6 +208,22 @@ impl Full<'_, '_, '_, '_, '_> {
         stiffer.sum::<f64>().max(1.0)
     }
 
+    /// Moves what is carried by `t` times a step. `false` if nothing is, or if P has too few digits left somewhere: then nothing is
+    /// from there on.
+    fn carry(&mut self, t: f64, step: &Step) -> bool {
+        let Some(mut sizes) = self.carried.take() else { return false };
+        for (linear, ad) in self.at.linear.iter_mut().zip(&self.ad) {
+            *linear += t * ad;
+        }
+        for (p, dy) in self.at.p.iter_mut().zip(&step.dy) {
+            *p += DoubleDouble::from(t * dy);
+        }
+        self.route.system.each_functional(|row, i, b| sizes[i] += (t * b * self.d[row]).abs());
+        self.may_carry = !self.at.p.iter().zip(&sizes).any(has_few_digits);
+        self.carried = self.may_carry.then_some(sizes);
+        self.may_carry
+    }
+
     /// B x
     fn values_of_p0(&self, x: &[f64]) -> Vec<f64> {
         let mut values = vec![0.0; self.at.p.len()];
@@ -197,9 +240,7 @@ impl Body for Full<'_, '_, '_, '_, '_> {
     fn residual(&self, at: &Derivatives) -> Residual {
         // The rounding of P, through the springs of contact.
         let mut contact = vec![0.0; self.route.system.numbering.count];
-        let hessian = at.hessian.iter().map(DMatrix::abs).collect();
-        let magnitudes = Derivatives { stiffness: at.stiffness, gradient: Vec::new(), hessian };
-        let forces = magnitudes.hessian_times(&self.at.p_magnitudes);
+        let forces = at.magnitudes_times(&self.at.p_magnitudes);
         self.route.system.each_functional(|row, i, entry| contact[row] += entry.abs() * forces[i]);
         let reference = self.route.reference;
         let noise = self.at.noise + f64::EPSILON * norm(&contact);
@@ -238,26 +279,26 @@ impl Body for Full<'_, '_, '_, '_, '_> {
         self.route.system.enters_step();
         let gradient = self.gradient(at);
         let mut d: Vec<f64> = gradient.iter().map(|r| -r).collect();
-        let (factor, hessian) = self.route.factor(at)?;
-        factor.solve(&mut d);
-        let hessian = hessian.clone();
+        self.route.factor(at, norm(&gradient))?.0.solve(&mut d);
         let dy = self.values_of_p0(&d);
-        let slope: f64 = gradient.iter().zip(&d).map(|(r, d)| r * d).sum();
-        // d^T A d, where (A + B^T Psi'' B) d = -r with the Psi'' that was factored: nothing is lost where A d cancels.
-        let springs: f64 = blocks(&hessian)
-            .map(|(values, h)| {
-                let dy = DVector::from_column_slice(&dy[values]);
-                dy.dot(&(h * &dy))
-            })
-            .sum();
-        let curvature = -slope - springs;
-        self.d = d;
+        let hessian = self.route.factored.as_ref().map_or(&at.hessian, |(_, hessian)| hessian);
+        let slope = dot(&gradient, &d);
+        // A d and d^T A d, where (A + B^T Psi'' B) d = -r with the Psi'' that was factored: nothing is lost where A d cancels.
+        let forces: Vec<f64> = times(hessian, &dy, |h| -h);
+        let curvature = -slope + dot(&forces, &dy);
+        let mut ad = gradient;
+        ad.iter_mut().for_each(|r| *r = -*r);
+        self.route.system.add_forces(&forces, &mut ad);
+        (self.d, self.ad) = (d, ad);
         Ok(Step { dy, slope, curvature })
     }
 
     fn advance(&mut self, t: f64, step: &Step) {
         self.iterate.add(self.route.system, t, &self.d);
-        *self.at = self.iterate.evaluate(self.route.system, self.route.precisely);
+        if !self.carry(t, step) {
+            *self.at = self.iterate.evaluate(self.route.system, self.route.precisely);
+            self.carried = self.may_carry.then(|| vec![0.0; self.at.p.len()]);
+        }
         self.energy = self.energy.max(-t * t * step.slope);
         if step.slope < 0.0 {
             let square: f64 = self.d.iter().map(|d| d * d).sum();

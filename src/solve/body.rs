@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::SolveError;
 use crate::contact::discretization::Discretization;
@@ -162,11 +162,12 @@ impl Derivatives {
 
     /// The product of the Hessian with nodal values.
     pub(super) fn hessian_times(&self, v: &[f64]) -> Vec<f64> {
-        let product = |(values, h): (Range<usize>, &DMatrix<f64>)| {
-            let product = h * DVector::from_column_slice(&v[values]);
-            product.iter().copied().collect::<Vec<f64>>()
-        };
-        self.blocks().flat_map(product).collect()
+        times(&self.hessian, v, |h| h)
+    }
+
+    /// The product of the magnitudes of the entries of the Hessian with nodal values.
+    pub(super) fn magnitudes_times(&self, v: &[f64]) -> Vec<f64> {
+        times(&self.hessian, v, f64::abs)
     }
 
     /// The derivatives at y of springs with this Hessian that pull as well as push.
@@ -174,6 +175,36 @@ impl Derivatives {
         let heads: Vec<f64> = y.iter().map(|y| y.head()).collect();
         Derivatives { gradient: self.hessian_times(&heads), ..self }
     }
+}
+
+/// The change of an entry of Psi'', beside the largest of its piece, up to which a tangent is not factored anew. Near the solution
+/// only the edges where contact ends change, by ever less.
+const SAME: f64 = 1e-4;
+
+/// The share to which the residual must fall from one step with a tangent to the next, or it is factored anew all the same.
+const FALLS: f64 = 0.1;
+
+/// Returns whether a tangent with the `old` Psi'' does for a step where Psi'' is the `new` one: `residuals` are the norms of those
+/// where it was used last and here.
+pub(super) fn does_again(old: &[DMatrix<f64>], new: &[DMatrix<f64>], residuals: [f64; 2]) -> bool {
+    let size = |h: &DMatrix<f64>| h.iter().fold(0.0, |most: f64, h| most.max(h.abs()));
+    let is_near = |(old, new): (&DMatrix<f64>, &DMatrix<f64>)| {
+        let most = SAME * size(old);
+        old.iter().zip(new).all(|(a, b)| (a - b).abs() <= most)
+    };
+    let [before, now] = residuals;
+    old == new || (now <= FALLS * before && old.iter().zip(new).all(is_near))
+}
+
+/// The product of blocks along a diagonal, of each entry what `of` it is, with a vector.
+pub(super) fn times(diagonal: &[DMatrix<f64>], v: &[f64], of: impl Fn(f64) -> f64) -> Vec<f64> {
+    let mut product = Vec::with_capacity(v.len());
+    for (values, h) in blocks(diagonal) {
+        let v = &v[values];
+        let row = |a: usize| v.iter().enumerate().map(|(b, v)| of(h[(a, b)]) * v).sum::<f64>();
+        product.extend((0..v.len()).map(row));
+    }
+    product
 }
 
 /// Blocks that follow each other along a diagonal, each with the numbers of its rows.

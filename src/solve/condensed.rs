@@ -153,6 +153,44 @@ impl Reduced<'_, '_, '_, '_> {
         at.blocks().flat_map(of).collect()
     }
 
+    /// The lower triangle of I + R^T G R for the columns of R, column by column: G R is added up from columns of G, which are
+    /// contiguous.
+    fn stiffened(&self, roots: &[(Range<usize>, DVector<f64>)]) -> Mat<f64> {
+        let mut system = Mat::zeros(roots.len(), roots.len());
+        let mut gr = vec![0.0; self.y.len()];
+        // R in one list, with the first functional of each column and the place of its entries.
+        let entries: Vec<f64> = roots.iter().flat_map(|(_, root)| root.iter().copied()).collect();
+        let mut places = Vec::with_capacity(roots.len() + 1);
+        let mut end = 0;
+        for (values, root) in roots {
+            places.push((values.start, end));
+            end += root.len();
+        }
+        places.push((0, end));
+        for (j, (values, root)) in roots.iter().enumerate() {
+            // The rows of pieces before that of this column are above the diagonal.
+            let first = values.start;
+            gr[first..].fill(0.0);
+            for (functional, &factor) in values.clone().zip(root) {
+                let g = self.route.compliance.column(functional);
+                for (sum, g) in gr[first..].iter_mut().zip(&g[first..]) {
+                    *sum += factor * g;
+                }
+            }
+            let column = system.col_as_slice_mut(j);
+            for i in j..roots.len() {
+                let ((start, from), (_, to)) = (places[i], places[i + 1]);
+                let mut sum = 0.0;
+                for (entry, gr) in entries[from..to].iter().zip(&gr[start..]) {
+                    sum += entry * gr;
+                }
+                column[i] = sum;
+            }
+            column[j] += 1.0;
+        }
+        system
+    }
+
     fn s(&self, at: &Derivatives) -> Vec<f64> {
         let w = self.route.w.iter().zip(&self.change);
         w.zip(&at.gradient).map(|((w, change), g)| (w - g) + change).collect()
@@ -214,20 +252,7 @@ impl Body for Reduced<'_, '_, '_, '_> {
         let columns = Self::roots(at);
         let s = self.s(at);
         let gs = self.times_compliance(&s);
-        let g = &self.route.compliance.g;
-        let system = Mat::from_fn(columns.len(), columns.len(), |i, j| {
-            if i < j {
-                return 0.0;
-            }
-            let ((rows, r), (columns, q)) = (&columns[i], &columns[j]);
-            let mut sum = f64::from(u8::from(i == j));
-            for a in 0..r.len() {
-                for b in 0..q.len() {
-                    sum += r[a] * g[(rows.start + a, columns.start + b)] * q[b];
-                }
-            }
-            sum
-        });
+        let system = self.stiffened(&columns);
         let right =
             Col::from_fn(columns.len(), |i| product(&columns[i].1, &gs[columns[i].0.clone()]));
         let llt = system.llt(Side::Lower).map_err(|_| SolveError::Singular)?;

@@ -20,6 +20,11 @@ pub(super) const NOISE: f64 = 4.0;
 /// The size of P, in roundings of its terms (some four digits), below which P is evaluated in double-doubles.
 const FEW_DIGITS: f64 = 1e4;
 
+/// Returns whether P presses with a value that is small beside the magnitudes it was added up from.
+pub(super) fn has_few_digits((p, size): (&DoubleDouble, &f64)) -> bool {
+    p.head() > 0.0 && p.head() < FEW_DIGITS * f64::EPSILON * size
+}
+
 /// A displacement.
 pub struct Iterate {
     pub(super) u: Vec<[DoubleDouble; 2]>,
@@ -50,6 +55,7 @@ struct Parts<'a> {
 }
 
 impl Nodal<f64> for Parts<'_> {
+    #[inline]
     fn difference(&self, node: usize, from: usize) -> Vector2<f64> {
         self.heads.difference(node, from) + self.tails.difference(node, from)
     }
@@ -116,13 +122,10 @@ impl Iterate {
         let mut p_magnitudes: Vec<f64> =
             d.contact.iter().flat_map(|piece| piece.p0_magnitudes(&heads)).collect();
         // gamma times the pressure is small beside displacement and gap, and has few digits in doubles.
-        let is_lost = |(p, size): (&DoubleDouble, &f64)| {
-            p.head() > 0.0 && p.head() < FEW_DIGITS * f64::EPSILON * size
-        };
         let is_fine =
-            matches!(d.rule, EdgeRule::Gauss(_)) || p.iter().zip(&p_magnitudes).any(is_lost);
+            matches!(d.rule, EdgeRule::Gauss(_)) || p.iter().zip(&p_magnitudes).any(has_few_digits);
         if is_fine {
-            p = residual::p(d, &self.u).collect();
+            p = system.fine_p(&self.u);
             p_magnitudes = p.iter().map(|p| p.tail().abs()).collect();
         }
         let p = idle(p);
