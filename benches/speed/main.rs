@@ -56,7 +56,7 @@ impl Plan {
 
     fn peer_bodies(&self) -> &'static [(&'static str, usize)] {
         if self.quick {
-            &[("square-16", 1), ("disk", 1), ("disk", 2)]
+            &[("square-16", 1), ("square-16", 2), ("disk", 1)]
         } else {
             &[
                 ("square-64", 1),
@@ -70,7 +70,6 @@ impl Plan {
                 ("strip", 2),
                 ("beam", 2),
                 ("graded", 2),
-                ("disk", 2),
             ]
         }
     }

@@ -253,11 +253,14 @@ pub fn tables(all: &[OnBody]) -> String {
         let least = |of: &dyn Fn(&Rival) -> f64| {
             on.others.iter().flatten().map(of).fold(f64::INFINITY, f64::min)
         };
+        let over = |a: f64, b: f64| {
+            if a.is_finite() { three(a / b) } else { "no result".to_owned() }
+        };
         row.extend([
-            format!("**{}**", three(least(&|r| r.contact) / ours.proved())),
-            three(least(&|r| r.contact) / ours.contact),
-            three(least(&Rival::linear) / ours.linear()),
-            three(least(&|r| r.memory) / ours.memory),
+            format!("**{}**", over(least(&|r| r.contact), ours.proved())),
+            over(least(&|r| r.contact), ours.contact),
+            over(least(&Rival::linear), ours.linear()),
+            over(least(&|r| r.memory), ours.memory),
         ]);
         row
     };
