@@ -4,7 +4,7 @@
 
     python3 .ci/planted.py --all              every mistake must be noticed by its check, and no check without one; date and count
                                               of the run are written into props/mutants.md
-    python3 .ci/planted.py --only TEXT        those with TEXT in their name
+    python3 .ci/planted.py --only PATTERN     those whose name it matches
     python3 .ci/planted.py --check            none is planted: only that each text is found in the sources
     python3 .ci/planted.py --survey           all rows for each: which checks notice it (hours)
 
@@ -225,14 +225,14 @@ def keep(noticed, count):
 def main():
     arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     arguments.add_argument("--all", action="store_true")
-    arguments.add_argument("--only", default="", metavar="TEXT")
+    arguments.add_argument("--only", default="", metavar="PATTERN")
     arguments.add_argument("--check", action="store_true")
     arguments.add_argument("--survey", action="store_true")
     arguments.add_argument("--seconds", type=float, default=600)
     options = arguments.parse_args()
     if options.all == bool(options.only or options.check or options.survey):
-        arguments.error("expected one of --all, --only TEXT, --check and --survey")
-    entries = [e for e in mistakes(ROOT / "props/planted.toml") if options.only in e["name"]]
+        arguments.error("expected one of --all, --only PATTERN, --check and --survey")
+    entries = [e for e in mistakes(ROOT / "props/planted.toml") if re.search(options.only, e["name"])]
     if options.check:
         print(f"{len(entries)} mistakes, each found in the sources")
         return
