@@ -242,7 +242,7 @@ fn cylinders(cells: [usize; 2], drag: f64, mu: f64) -> Problem {
 #[test]
 fn dragged_cylinders_stick_and_slide_as_cattaneo_and_mindlin_say() {
     let mu = 0.3;
-    for (degree, cells) in [(Degree::One, [96, 72]), (Degree::Two, [48, 36])] {
+    for (degree, cells) in [(Degree::One, [116, 88]), (Degree::Two, [48, 36])] {
         let problem = cylinders(cells, 0.0033, mu);
         let s = proved(&problem, &method(degree));
         let [shear, force] = s.boundaries[0].resultant.map(f64::abs);
@@ -295,11 +295,11 @@ fn dragged_cylinders_stick_and_slide_as_cattaneo_and_mindlin_say() {
             s.newton.factorizations
         );
         // The shear stress is c - |x| to the power 1/2 above the bound there, and what sticks ends short of that by a part of an edge:
-        // by half of one of the coarser body at most. On 20 edges to a that is 3.6 % of c.
+        // by half of one of the coarser body at most. On 24 edges to a that is 3 % of c.
         let edge = 0.4 * 0.09 / (0.6 * cells[1] as f64 / 2.0);
         assert!((stuck_on - c).abs() <= edge / 2.0 && off[1].abs() <= 1e-2, "{degree:?}: {off:?}");
         // By moments c is short by a twenty-fifth of an edge of the coarser body with P2, by a fifth of one with P1.
-        let most = if degree == Degree::One { 0.02 } else { 0.01 };
+        let most = if degree == Degree::One { 0.015 } else { 0.01 };
         assert!(off[2].abs() <= most && off[0] < 1.2 * off[2], "{degree:?}: {off:?}");
         // The control: as if all of it slid.
         assert!((second / (mu * force * a * a / 4.0) - 1.0).abs() > 0.1);
