@@ -1,5 +1,5 @@
 //! The sparse Cholesky factor H = L L^T of a matrix on the free degrees of freedom in a given order: its structure, by faer,
-//! which all matrices with one pattern share and from which the cost of a factorisation follows, and its [numbers](super::numeric).
+//! which all matrices with one pattern share and from which the cost of a factorisation follows, and its numbers (`linear::numeric`).
 
 use std::sync::Arc;
 
