@@ -77,7 +77,7 @@ impl Plan {
 
 const LARGE: [Size; 2] = [Size { degree: 1, n: 1024 }, Size { degree: 2, n: 512 }];
 
-const HUGE: [Size; 1] = [Size { degree: 1, n: 2236 }];
+const HUGE: [Size; 1] = [Size { degree: 2, n: 1118 }];
 
 fn main() {
     // Cargo adds --bench.
