@@ -76,7 +76,7 @@ impl<'s> Source<'s> {
         Ok(entries)
     }
 
-    /// Those of a load step, from 0: each \[\[step\]\] up to that one is laid over the rest of the file, one after the other.
+    /// The entries of a load step, from 0: each \[\[step\]\] up to this step is laid over the rest of the file, one after the other.
     pub fn entries_of_step(
         self,
         layers: &'s [String],
