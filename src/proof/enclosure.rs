@@ -25,7 +25,7 @@ use thiserror::Error;
 use super::balls::{field, free, kappa, length, pieces, root};
 use super::intervals::{Arithmetic, EnclosedResidual, Intervals};
 use super::isolated::{self, Isolated};
-use super::pressed::{self, Pressed, SHARES};
+use super::pressed::{self, Pressed};
 use crate::contact::{Discretization, Piece, residual};
 use crate::held::rigid::NEGLIGIBLE;
 use crate::held::solvability::Slides;
@@ -132,6 +132,10 @@ impl Unproved {
         !(by_friction || by_contact || *self == Unproved::NoKappa)
     }
 }
+
+/// Where not all of S stays pressed on the ball of the bound, what would on one that is so many times larger is taken: less holds the
+/// body less, and the bound grows.
+const LESS_PRESSED: f64 = 2.0;
 
 /// The energy norm below which a body is at rest. [`solve`](crate::solve::solve) refuses energies below 1e-270, and a slender
 /// body may have as little as this.
@@ -299,58 +303,32 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         self.unbalanced = r.iter().map(|r| r.magnitude()).sum();
         self.residual = r.iter().map(|r| r.head()).collect();
         let fields = (u, reported);
-        let nowhere = Pressed::nowhere(self.lines.len());
-        if let Some(for_middles) = &at.for_middles {
-            let r = free(system, for_middles);
-            let by_a = match d.slides {
-                None => self.held_by(&nowhere, &at, fields, (&r, arithmetic)),
-                Some(_) => Err(Unproved::HeldByContact),
-            };
-            let is_enough = match &by_a {
-                Ok(enclosure) => enclosure.is_within(self.proof),
-                Err(Unproved::NotIsolated | Unproved::NoFactor | Unproved::HeldByContact) => false,
-                Err(_) => true,
-            };
-            let pressed = Pressed::at(d, &self.lines, &at.u, 0.0);
-            if is_enough || pressed.is_nowhere() {
-                return by_a;
+        let coulomb = at.for_middles.as_ref();
+        let r = coulomb.map_or(r, |for_middles| free(system, for_middles));
+        let by_a = match d.slides {
+            None => {
+                let nowhere = Pressed::nowhere(self.lines.len());
+                self.held_by(&nowhere, &at, fields, (&r, arithmetic))
             }
-            let found = self.held_by(&pressed, &at, fields, (&r, arithmetic));
-            let radius = |of: &Result<Enclosure, Unproved>| {
-                of.as_ref().map_or(f64::INFINITY, |of| of.radius)
-            };
-            return if by_a.is_ok() && radius(&by_a) <= radius(&found) { by_a } else { found };
-        }
-        if d.slides.is_none() {
-            let mut best = self.held_by(&nowhere, &at, fields, (&r, arithmetic));
-            // Of a slender body that lies on its obstacle A alone has no factor in doubles, or has one by luck.
-            let is_enough = |found: &Result<Enclosure, Unproved>, proof: f64| match found {
-                Ok(enclosure) => proof == 0.0 || enclosure.is_within(proof),
-                Err(why) => *why != Unproved::NoFactor,
-            };
-            for share in SHARES {
-                if is_enough(&best, self.proof) {
-                    break;
-                }
-                let pressed = Pressed::at(d, &self.lines, &at.u, share);
-                let next = self.held_by(&pressed, &at, fields, (&r, arithmetic));
-                let radius = |found: &Result<Enclosure, Unproved>| {
-                    found.as_ref().map_or(f64::INFINITY, |enclosure| enclosure.radius)
-                };
-                if radius(&next) < radius(&best) {
-                    best = next;
-                }
+            Some(_) => Err(Unproved::HeldByContact),
+        };
+        // Of a slender body that lies on its obstacle A alone has no factor in doubles, or has one by luck.
+        let is_enough = match &by_a {
+            Ok(enclosure) => {
+                enclosure.is_within(self.proof) || (self.proof == 0.0 && coulomb.is_none())
             }
-            return best;
+            Err(Unproved::NotIsolated | Unproved::NoFactor | Unproved::HeldByContact) => false,
+            Err(_) => true,
+        };
+        if is_enough {
+            return by_a;
         }
-        for share in SHARES {
-            let pressed = Pressed::at(d, &self.lines, &at.u, share);
-            let found = self.held_by(&pressed, &at, fields, (&r, arithmetic));
-            if found != Err(Unproved::HeldByContact) {
-                return found;
-            }
+        let pressed = Pressed::at(d, &self.lines, &at.u, 0.0);
+        if pressed.is_nowhere() {
+            return by_a;
         }
-        Err(Unproved::HeldByContact)
+        let found = self.held_by(&pressed, &at, fields, (&r, arithmetic));
+        if radius(&found) < radius(&by_a) || d.slides.is_some() { found } else { by_a }
     }
 
     /// |v|_A^2 is at least this times |v|_a^2.
@@ -408,7 +386,8 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         }
         let rho = up(dual.norm + up_to);
         if !coulomb && !pressed.stay(rho) {
-            return Err(Unproved::HeldByContact);
+            let fewer = Pressed::at(d, &self.lines, &at.u, LESS_PRESSED * rho);
+            return self.held_by(&fewer, at, (u, reported), (r, arithmetic));
         }
         let mut isolated = None;
         if let (true, Some(factor)) = (coulomb, factor) {
@@ -468,6 +447,11 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             isolation,
         })
     }
+}
+
+/// The radius of an enclosure, infinite where there is none.
+fn radius(of: &Result<Enclosure, Unproved>) -> f64 {
+    of.as_ref().map_or(f64::INFINITY, |of| of.radius)
 }
 
 /// Adds to each bound at a node what `exactly` and the reported displacement are apart.

@@ -20,11 +20,6 @@ use crate::kernel::edge_integral;
 use crate::model::Degree;
 use crate::proof::korn::{Hold, Term};
 
-/// Thresholds of pressed pieces, tried in turn: P all along the piece, as a share of the largest such value. More pieces hold
-/// the body better, fewer stay pressed on a larger ball. Of 2,000 random bodies, twelve have no enclosure with the first
-/// threshold alone, nine with the first two, five with all.
-pub const SHARES: [f64; 3] = [0.0, 1.0 / 256.0, 1.0 / 16.0];
-
 /// The share of a stretch that is left out at a root of P, where P is too small to stay positive: without this, stretches that
 /// end at a root hold nothing.
 const INSET: f64 = 1.0 / 64.0;
@@ -232,17 +227,25 @@ fn stuck(line: &Piece<PreciseBall>, p: &[PreciseBall]) -> Option<[Row; 2]> {
     Some([pairs().map(|(&m, &p)| m - p).collect(), pairs().map(|(&m, &p)| m + p).collect()])
 }
 
+/// Returns whether P, at least `least`, stays positive on a ball of radius `rho` where P0 is `most` beside it.
+fn stays(least: f64, most: f64, rho: f64) -> bool {
+    least > SAFETY * most * rho
+}
+
 impl PressedPart {
-    /// The part of the piece `line`, of number `edge`, in these stretches, each with the least that P is there. `None` where there
-    /// are none.
+    /// The part of the piece `line`, of number `edge`, in those of these stretches, each with the least that P is there, that stay so
+    /// on a ball of radius `rho`. `None` where there are none.
     fn new(
         (edge, line): (usize, &Piece<PreciseBall>),
         values: Range<usize>,
-        stretches: &[&Measured],
+        stretches: &[Measured],
+        rho: f64,
     ) -> Option<Self> {
+        let most = |piece: &EdgePiece| SAFETY * root_of(line) * piece.square.upper().sqrt();
+        let stays = |(least, piece): &&Measured| stays(*least, most(piece), rho);
+        let stretches: Vec<&Measured> = stretches.iter().filter(stays).collect();
         let mut mass = vec![vec![PreciseBall::from(0); values.len()]; values.len()];
         stretches.iter().for_each(|(_, piece)| add(&mut mass, &piece.mass));
-        let most = |piece: &EdgePiece| SAFETY * root_of(line) * piece.square.upper().sqrt();
         let bounds = stretches.iter().map(|(least, piece)| [*least, most(piece)]).collect();
         // In the plane the most of the square of P0 is above that of the stress, which is affine.
         let of_stress = SAFETY * root_of(line) * line.radii.map_or(0.0, |_| stress_factor(line));
@@ -263,14 +266,14 @@ impl Pressed {
         Pressed { count, parts: Vec::new() }
     }
 
-    /// Finds the stretches that are surely pressed at the displacement `u`, those that have their `share` of the pressure; what pulls
-    /// as well as it pushes is pressed whatever P is. And those that surely stick, of which the least distance to the bound has its
-    /// share likewise. Coulomb's bound moves with P_n: whether S stays so is then not for [`Pressed::stay`] to say.
+    /// Finds the stretches that are pressed at the displacement `u` and stay so on a ball of radius `rho` around it; what pulls
+    /// as well as it pushes is pressed whatever P is. And those that stick there likewise. Coulomb's bound moves with P_n: whether S
+    /// stays so is then not for [`Pressed::stay`] to say.
     pub fn at(
         d: &Discretization,
         lines: &[Piece<PreciseBall>],
         u: &[[PreciseBall; 2]],
-        share: f64,
+        rho: f64,
     ) -> Self {
         let degree = d.space.degree();
         let positive = |line: &Piece<PreciseBall>, all: &[Row]| -> Vec<Measured> {
@@ -298,11 +301,8 @@ impl Pressed {
             }
         }
         let parts_of = |all: &[Found]| -> Vec<PressedPart> {
-            let leasts = all.iter().flat_map(|(.., pieces)| pieces).map(|(least, _)| *least);
-            let enough = share * leasts.filter(|least| least.is_finite()).fold(0.0, f64::max);
             let part = |(edge, values, pieces): &Found| {
-                let taken = pieces.iter().filter(|(least, _)| *least >= enough);
-                PressedPart::new((*edge, &lines[*edge]), values.clone(), &taken.collect::<Vec<_>>())
+                PressedPart::new((*edge, &lines[*edge]), values.clone(), pieces, rho)
             };
             all.iter().filter_map(part).collect()
         };
@@ -327,10 +327,15 @@ impl Pressed {
         self.parts.is_empty()
     }
 
+    /// The number of stretches in S.
+    pub(crate) fn stretches(&self) -> usize {
+        self.parts.iter().map(|part| part.pieces.len()).sum()
+    }
+
     /// Returns whether all of S stays pressed on a ball of radius `rho` and a little more.
     pub fn stay(&self, rho: f64) -> bool {
         let mut all = self.parts.iter().flat_map(|part| &part.bounds);
-        all.all(|[least, most]| *least > SAFETY * most * rho)
+        all.all(|&[least, most]| stays(least, most, rho))
     }
 
     /// The holds of S: sums of n~ . v, or across n~ where it sticks, at the places of its nodes, less those on the other side, each
