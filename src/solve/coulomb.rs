@@ -49,6 +49,9 @@ const ROUNDING: f64 = 3e-14;
 /// The residual, as a share of |u|_a, that may be rounding: with 12,000 unknowns rounding leaves some 1e-13.
 const NEAR_ROUNDING: f64 = 1e-12;
 
+/// The residual, as a share of |u|_a, of an iterate that is taken where nothing leads on: the proof tells what it is worth.
+const NEARLY_SOLVED: f64 = 1e-9;
+
 /// After so many factorisations beyond the start pressures are mixed, and after so many more it is tried by continuation: of 45
 /// problems of well-shaped bodies none took more than 24.
 const MOST_FACTORIZATIONS: usize = 40;
@@ -368,6 +371,7 @@ impl Route for Coulomb<'_, '_, '_> {
         let mut mixing = Mixing::default();
         let mut tried = f64::INFINITY;
         let mut rejected = self.newton(iterate, at, residuals, until, &mut way)?;
+        let mut nearest = (way.size, iterate.u.clone());
         // What leads nowhere is not the way to the solution.
         let mut aside = Vec::new();
         while let Some(next) = rejected {
@@ -389,6 +393,13 @@ impl Route for Coulomb<'_, '_, '_> {
             } else if let Some(along) = ways.next() {
                 self.continued(iterate, until, along)?;
             } else {
+                let (size, u) = nearest;
+                *iterate = Iterate { u };
+                *at = iterate.evaluate(system, precisely);
+                // The passes that follow evaluate more precisely.
+                if size <= NEARLY_SOLVED * system.size(at.energy.sqrt(), &iterate.rounded()) {
+                    break;
+                }
                 return Err(SolveError::NoFrictionSolution {
                     residual: way.least / self.reference,
                     factorizations: self.factorizations,
@@ -399,6 +410,9 @@ impl Route for Coulomb<'_, '_, '_> {
             let mut trial_at = trial.evaluate(system, precisely);
             let mut own = Vec::new();
             rejected = self.newton(&mut trial, &mut trial_at, &mut own, until, &mut way)?;
+            if way.size < nearest.0 {
+                nearest = (way.size, trial.u.clone());
+            }
             if rejected.is_none() {
                 residuals.extend(own);
             }

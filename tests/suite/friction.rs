@@ -359,6 +359,26 @@ fn where_forces_of_stiff_springs_have_too_few_digits_the_residual_of_the_proof_c
     }
 }
 
+#[test]
+fn stiff_springs_are_approached_in_stages_of_few_steps() {
+    // gamma0 is 7e-8 and 5e-7 of its limit: 200 steps do not do where each stage takes as many as it likes.
+    for seed in [86, 352] {
+        let body = with_random_friction(seed);
+        let mut steps = Vec::new();
+        assert_eq!(bodies::outcome(&body, &mut steps), Ok(PROVED), "{}", body.said);
+        assert!(steps[0] <= 170, "seed {seed}: {} steps", steps[0]);
+    }
+}
+
+#[test]
+fn what_hardly_presses_or_hardly_sticks_holds_no_body() {
+    // Stretches that are pressed or stick at the displacement, but not all around it, are left out of what holds the body.
+    for seed in [30, 207] {
+        let body = with_random_friction(seed);
+        assert_eq!(bodies::outcome(&body, &mut Vec::new()), Ok(PROVED), "{}", body.said);
+    }
+}
+
 fn with_coefficient(problem: Problem, mu: f64) -> Problem {
     problem.with_friction("bottom", Friction::Coulomb(mu))
 }

@@ -20,7 +20,7 @@ use signorini::model::quadrature::gauss;
 use signorini::model::{Diagonal, Problem, Rectangle};
 use signorini::proof::balls::pieces;
 use signorini::proof::korn::Term;
-use signorini::proof::pressed::{Pressed, SHARES};
+use signorini::proof::pressed::Pressed;
 use signorini::solve::{Method, Settings, solve};
 
 use props::claim::{Outcome, text};
@@ -55,7 +55,7 @@ impl<'a, 'p> At<'a, 'p> {
     }
 
     fn pressed(&self, u: &[[f64; 2]]) -> Pressed {
-        Pressed::at(self.d, &self.lines, &balls(u), SHARES[0])
+        Pressed::at(self.d, &self.lines, &balls(u), 0.0)
     }
 
     /// P at the nodes of the edge. There is no gap: it is P0.
