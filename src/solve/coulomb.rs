@@ -49,9 +49,6 @@ const ROUNDING: f64 = 3e-14;
 /// The residual, as a share of |u|_a, that may be rounding: with 12,000 unknowns rounding leaves some 1e-13.
 const NEAR_ROUNDING: f64 = 1e-12;
 
-/// The residual, as a share of |u|_a, of an iterate that is taken where nothing leads on: the proof tells what it is worth.
-const NEARLY_SOLVED: f64 = 1e-9;
-
 /// After so many factorisations beyond the start pressures are mixed, and after so many more it is tried by continuation: of 45
 /// problems of well-shaped bodies none took more than 24.
 const MOST_FACTORIZATIONS: usize = 40;
@@ -63,12 +60,12 @@ const STEPS_FROM_HERE: usize = 12;
 /// The first and the least share of the coefficient by which continuation goes on, the steps that it may take for one, and the residual
 /// beside the size of the solution that is enough before it goes on.
 const FIRST_SHARE: f64 = 0.25;
-const LEAST_SHARE: f64 = 1.0 / 512.0;
-const STEPS_OF_A_SHARE: usize = 12;
+const LEAST_SHARE: f64 = 1.0 / 4096.0;
+const STEPS_OF_A_SHARE: usize = 40;
 const NEARLY_THERE: f64 = 1e-8;
 
 /// The stiffness of springs that continuation begins with: a soft body in contact is hardly harder to solve than an elastic one.
-const SOFTEST: f64 = 1e-10;
+const SOFTEST: f64 = 1e-16;
 
 /// Newton's method is tried again where the pressures change by this share of what they did when it was tried last.
 const NEARER: f64 = 0.2;
@@ -367,11 +364,10 @@ impl Route for Coulomb<'_, '_, '_> {
             self.begin(iterate, at, residuals, until)?;
         }
         let mut way = Way { is_first, precisely, ..Way::default() };
-        let mut ways = [Along::Coefficient, Along::Stiffness].into_iter();
+        let mut ways = [Along::Stiffness, Along::Coefficient].into_iter();
         let mut mixing = Mixing::default();
         let mut tried = f64::INFINITY;
         let mut rejected = self.newton(iterate, at, residuals, until, &mut way)?;
-        let mut nearest = (way.size, iterate.u.clone());
         // What leads nowhere is not the way to the solution.
         let mut aside = Vec::new();
         while let Some(next) = rejected {
@@ -393,13 +389,6 @@ impl Route for Coulomb<'_, '_, '_> {
             } else if let Some(along) = ways.next() {
                 self.continued(iterate, until, along)?;
             } else {
-                let (size, u) = nearest;
-                *iterate = Iterate { u };
-                *at = iterate.evaluate(system, precisely);
-                // The passes that follow evaluate more precisely.
-                if size <= NEARLY_SOLVED * system.size(at.energy.sqrt(), &iterate.rounded()) {
-                    break;
-                }
                 return Err(SolveError::NoFrictionSolution {
                     residual: way.least / self.reference,
                     factorizations: self.factorizations,
@@ -410,10 +399,11 @@ impl Route for Coulomb<'_, '_, '_> {
             let mut trial_at = trial.evaluate(system, precisely);
             let mut own = Vec::new();
             rejected = self.newton(&mut trial, &mut trial_at, &mut own, until, &mut way)?;
-            if way.size < nearest.0 {
-                nearest = (way.size, trial.u.clone());
-            }
             if rejected.is_none() {
+                if ways.len() < 2 {
+                    // Continuation begins elsewhere.
+                    residuals.clear();
+                }
                 residuals.extend(own);
             }
             if rejected.is_none() || mixing.steps.is_empty() {
@@ -575,7 +565,11 @@ impl<'d, 'p> Coulomb<'_, 'd, 'p> {
         let glued = self.system.d.slides.is_some();
         let pieces = self.system.d.contact.len();
         let start = if glued { f64::INFINITY } else { 0.0 };
-        self.tresca(iterate, &mut Vec::new(), until, (&vec![[start; 3]; pieces], false))?;
+        if along == Along::Stiffness && !glued {
+            *iterate = Iterate::lift(self.system.d);
+        } else {
+            self.tresca(iterate, &mut Vec::new(), until, (&vec![[start; 3]; pieces], false))?;
+        }
         let (mut done, mut by) = (0.0, FIRST_SHARE);
         while done < 1.0 && by >= LEAST_SHARE {
             let next = f64::min(done + by, 1.0);
@@ -591,10 +585,12 @@ impl<'d, 'p> Coulomb<'_, 'd, 'p> {
             let mut at = trial.evaluate(&system, false);
             let mut way = Way { is_first: true, ..Way::default() };
             let few = Until { steps: STEPS_OF_A_SHARE, ..until };
-            let left = other.newton(&mut trial, &mut at, &mut Vec::new(), few, &mut way)?;
+            let mut own = Vec::new();
+            let left = other.newton(&mut trial, &mut at, &mut own, few, &mut way)?;
             self.factorizations += other.factorizations;
             let scale = system.size(at.energy.sqrt(), &trial.rounded());
-            if left.is_none() && way.size <= NEARLY_THERE * scale {
+            if std::env::var("DBG").is_ok() { eprintln!("CONT {along:?} {next} {} {:.2e} {}", left.is_none(), way.size / scale, other.factorizations); }
+            if left.is_none() && (way.size <= NEARLY_THERE * scale || own.len() <= few.steps) {
                 (*iterate, done, by) = (trial, next, 1.5 * by);
             } else {
                 by /= 2.0;
