@@ -164,20 +164,10 @@ impl<'a> Discretization<'a> {
     /// piece, from its number and its coefficient.
     #[must_use]
     pub(crate) fn with_slip_bounds(&self, bound: impl Fn(usize, f64) -> [f64; 3]) -> Self {
-        self.with_coulomb(|e, mu| Bound::Given(bound(e, mu)))
-    }
-
-    /// The discretization with this many times the coefficients of Coulomb's friction.
-    #[must_use]
-    pub(crate) fn with_coefficients(&self, times: f64) -> Self {
-        self.with_coulomb(|_, mu| Bound::Coulomb(times * mu))
-    }
-
-    fn with_coulomb(&self, bound: impl Fn(usize, f64) -> Bound) -> Self {
         let mut contact = self.contact.clone();
         for (e, piece) in contact.iter_mut().enumerate() {
             if let Law::Friction(Bound::Coulomb(mu)) = piece.geometry.law {
-                let law = Law::Friction(bound(e, mu));
+                let law = Law::Friction(Bound::Given(bound(e, mu)));
                 piece.geometry = Arc::new(PieceGeometry { law, ..(*piece.geometry).clone() });
             }
         }

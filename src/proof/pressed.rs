@@ -327,11 +327,6 @@ impl Pressed {
         self.parts.is_empty()
     }
 
-    /// The number of stretches in S.
-    pub(crate) fn stretches(&self) -> usize {
-        self.parts.iter().map(|part| part.pieces.len()).sum()
-    }
-
     /// Returns whether all of S stays pressed on a ball of radius `rho` and a little more.
     pub fn stay(&self, rho: f64) -> bool {
         let mut all = self.parts.iter().flat_map(|part| &part.bounds);

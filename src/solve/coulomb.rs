@@ -5,9 +5,7 @@
 //!    with one that is never reached), then with mu times the pressure of the first;
 //! 2. Newton's method on F as long as its residual, in the dual norm of A, falls by a tenth in each step;
 //! 3. where it does not, the problem with the bound of the step that was not taken, then 2. again;
-//! 4. where that leads nowhere, problems with the pressure of the one before for a bound, whose fixed point is the solution, mixed
-//!    (`Mixing`), with 2. from what they come to;
-//! 5. where that leads nowhere, Newton's method from one coefficient to a larger one, and at last from soft springs to stiffer ones.
+//! 4. where 40 factorisations do not lead there, Newton's method from soft springs to stiffer ones.
 //!
 //! The tangent of F is S + B^T D B: S is symmetric positive definite, with the springs of what is pressed and of what sticks, and is
 //! factored; D couples the friction of what slides to its pressure. With z = D B d the step is
@@ -15,8 +13,6 @@
 
 use std::sync::Arc;
 
-use faer::Mat;
-use faer::linalg::solvers::Solve;
 use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
@@ -49,26 +45,22 @@ const ROUNDING: f64 = 3e-14;
 /// The residual, as a share of |u|_a, that may be rounding: with 12,000 unknowns rounding leaves some 1e-13.
 const NEAR_ROUNDING: f64 = 1e-12;
 
-/// After so many factorisations beyond the start pressures are mixed, and after so many more it is tried by continuation: of 45
-/// problems of well-shaped bodies none took more than 24.
+/// After so many factorisations beyond the start springs are soft at first: of 45 problems of well-shaped bodies none took more than
+/// 24.
 const MOST_FACTORIZATIONS: usize = 40;
-const MOST_MIXED: usize = 160;
 
 /// The number of steps after which a problem with a given bound is started again with soft springs.
 const STEPS_FROM_HERE: usize = 12;
 
-/// The first and the least share of the coefficient by which continuation goes on, the steps that it may take for one, and the residual
-/// beside the size of the solution that is enough before it goes on.
+/// The stiffness of springs that continuation begins with, beside those of (8): a soft body in contact is hardly harder to solve than an
+/// elastic one.
+const SOFTEST: f64 = 1e-16;
+
+/// The first and the least share of the way to the springs of (8), in powers of the stiffness, by which continuation goes on, and the
+/// steps that it may take for one.
 const FIRST_SHARE: f64 = 0.25;
 const LEAST_SHARE: f64 = 1.0 / 4096.0;
 const STEPS_OF_A_SHARE: usize = 40;
-const NEARLY_THERE: f64 = 1e-8;
-
-/// The stiffness of springs that continuation begins with: a soft body in contact is hardly harder to solve than an elastic one.
-const SOFTEST: f64 = 1e-16;
-
-/// Newton's method is tried again where the pressures change by this share of what they did when it was tried last.
-const NEARER: f64 = 0.2;
 
 /// The share of the springs of all pieces that is added to a tangent without a factor.
 const SUPPORT: f64 = 1e-6;
@@ -282,65 +274,6 @@ impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
     }
 }
 
-/// Anderson's mixing of the pressures p that problems with a given bound begin with, for their fixed point: of the last of these the
-/// combination, with weights that add up to 1, whose changes nearly cancel.
-#[derive(Default)]
-struct Mixing {
-    /// What each problem began with and what it came to.
-    steps: Vec<[Vec<[f64; 3]>; 2]>,
-}
-
-/// The number of problems that are remembered.
-const REMEMBERED: usize = 6;
-
-impl Mixing {
-    /// Remembers a problem: the pressures before and after it. Tells the size of the change.
-    fn remember(&mut self, before: Vec<[f64; 3]>, after: Vec<[f64; 3]>) -> f64 {
-        if self.steps.len() == REMEMBERED {
-            self.steps.remove(0);
-        }
-        self.steps.push([before, after]);
-        self.steps.last().map_or(0.0, |step| norm(&Self::change(step)))
-    }
-
-    /// What changes of the bound: what pulls is no bound.
-    fn change([before, after]: &[Vec<[f64; 3]>; 2]) -> Vec<f64> {
-        let pairs = before.as_flattened().iter().zip(after.as_flattened());
-        pairs.map(|(b, a)| a.max(0.0) - b.max(0.0)).collect()
-    }
-
-    /// The pressures to go on with.
-    fn next(&self) -> Vec<[f64; 3]> {
-        let Some(last) = self.steps.last() else { return Vec::new() };
-        let change = Self::change(last);
-        let others: Vec<&[Vec<[f64; 3]>; 2]> = self.steps.iter().rev().skip(1).collect();
-        let differences: Vec<Vec<f64>> = others
-            .iter()
-            .map(|step| change.iter().zip(Self::change(step)).map(|(c, o)| c - o).collect())
-            .collect();
-        // Least squares by the normal equations, kept definite by a small multiple of their diagonal.
-        let count = differences.len();
-        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let square = |i: usize| product(&differences[i], &differences[i]);
-        let matrix = Mat::from_fn(count, count, |i, j| {
-            let more = if i == j { 1e-10 * square(i) + f64::MIN_POSITIVE } else { 0.0 };
-            product(&differences[i], &differences[j]) + more
-        });
-        let right = Mat::from_fn(count, 1, |i, _| product(&differences[i], &change));
-        let weights = matrix.partial_piv_lu().solve(&right);
-        let weights = (0..count).map(|i| weights[(i, 0)]);
-        let mut next = last[1].clone();
-        for (weight, other) in weights.zip(&others) {
-            for (e, next) in next.iter_mut().enumerate() {
-                for a in 0..3 {
-                    next[a] -= weight * (last[1][e][a] - other[1][e][a]);
-                }
-            }
-        }
-        next
-    }
-}
-
 impl Route for Coulomb<'_, '_, '_> {
     fn factor_of_a(&self) -> Option<Arc<Factor>> {
         self.of_a.clone()
@@ -364,30 +297,15 @@ impl Route for Coulomb<'_, '_, '_> {
             self.begin(iterate, at, residuals, until)?;
         }
         let mut way = Way { is_first, precisely, ..Way::default() };
-        let mut ways = [Along::Stiffness, Along::Coefficient].into_iter();
-        let mut mixing = Mixing::default();
-        let mut tried = f64::INFINITY;
         let mut rejected = self.newton(iterate, at, residuals, until, &mut way)?;
-        // What leads nowhere is not the way to the solution.
-        let mut aside = Vec::new();
+        let mut is_continued = false;
         while let Some(next) = rejected {
-            let beyond = self.factorizations - self.at_start;
-            if beyond < MOST_FACTORIZATIONS {
-                let pressures = self.pressures(&next);
-                self.tresca(iterate, &mut aside, until, (&pressures, true))?;
-            } else if beyond < MOST_FACTORIZATIONS + MOST_MIXED {
-                let before =
-                    if mixing.steps.is_empty() { self.pressures(at) } else { mixing.next() };
-                self.tresca(iterate, &mut aside, until, (&before, true))?;
-                *at = iterate.evaluate(system, precisely);
-                let change = mixing.remember(before, self.pressures(at));
-                if change > NEARER * tried {
-                    rejected = Some(next);
-                    continue;
-                }
-                tried = change;
-            } else if let Some(along) = ways.next() {
-                self.continued(iterate, until, along)?;
+            if self.factorizations - self.at_start < MOST_FACTORIZATIONS {
+                // What leads nowhere is not the way to the solution.
+                self.tresca(iterate, &mut Vec::new(), until, (&self.pressures(&next), true))?;
+            } else if !std::mem::replace(&mut is_continued, true) {
+                self.continued(iterate, until)?;
+                residuals.clear();
             } else {
                 return Err(SolveError::NoFrictionSolution {
                     residual: way.least / self.reference,
@@ -395,20 +313,7 @@ impl Route for Coulomb<'_, '_, '_> {
                 });
             }
             *at = iterate.evaluate(system, precisely);
-            let mut trial = Iterate { u: iterate.u.clone() };
-            let mut trial_at = trial.evaluate(system, precisely);
-            let mut own = Vec::new();
-            rejected = self.newton(&mut trial, &mut trial_at, &mut own, until, &mut way)?;
-            if rejected.is_none() {
-                if ways.len() < 2 {
-                    // Continuation begins elsewhere.
-                    residuals.clear();
-                }
-                residuals.extend(own);
-            }
-            if rejected.is_none() || mixing.steps.is_empty() {
-                (*iterate, *at) = (trial, trial_at);
-            }
+            rejected = self.newton(iterate, at, residuals, until, &mut way)?;
         }
         Ok(Pass {
             energy: if way.taken > 0 { way.moved } else { way.size * way.size },
@@ -425,15 +330,6 @@ impl Route for Coulomb<'_, '_, '_> {
         let (_, terms) = self.residual(at);
         self.step(residual, &terms).map(Some)
     }
-}
-
-/// What continuation goes along.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Along {
-    /// From the coefficient 0, or from glue where friction alone holds the body, to the one that is meant.
-    Coefficient,
-    /// From soft springs to those of (8): what friction bears at most is the same.
-    Stiffness,
 }
 
 /// The progress of Newton's method.
@@ -555,47 +451,32 @@ impl<'d, 'p> Coulomb<'_, 'd, 'p> {
         }
     }
 
-    /// Moves the iterate to a solution by continuation, or as near as that leads.
-    fn continued(
-        &mut self,
-        iterate: &mut Iterate,
-        until: Until,
-        along: Along,
-    ) -> Result<(), SolveError> {
-        let glued = self.system.d.slides.is_some();
-        let pieces = self.system.d.contact.len();
-        let start = if glued { f64::INFINITY } else { 0.0 };
-        if along == Along::Stiffness && !glued {
-            *iterate = Iterate::lift(self.system.d);
-        } else {
-            self.tresca(iterate, &mut Vec::new(), until, (&vec![[start; 3]; pieces], false))?;
+    /// Moves the iterate to a solution by continuation from soft springs to those of (8), or as near as that leads: what friction bears
+    /// at most is the same share of the pressure.
+    fn continued(&mut self, iterate: &mut Iterate, until: Until) -> Result<(), SolveError> {
+        let system = self.system;
+        *iterate = Iterate::lift(system.d);
+        if system.d.slides.is_some() {
+            let glue = vec![[f64::INFINITY; 3]; system.d.contact.len()];
+            self.tresca(iterate, &mut Vec::new(), until, (&glue, false))?;
         }
+        let few = Until { steps: STEPS_OF_A_SHARE, ..until };
         let (mut done, mut by) = (0.0, FIRST_SHARE);
         while done < 1.0 && by >= LEAST_SHARE {
             let next = f64::min(done + by, 1.0);
-            let (times, stiffness) = match along {
-                Along::Coefficient => (if glued { 1.0 / next } else { next }, 1.0),
-                Along::Stiffness => (1.0, SOFTEST.powf(1.0 - next)),
-            };
-            let d = self.system.d.with_coefficients(times);
-            let system = self.system.with_other_laws(&d, Course::default());
-            let metric = self.metric.clone();
-            let mut other = Coulomb { stiffness, metric, ..Coulomb::new(&system, self.reference) };
+            self.stiffness = SOFTEST.powf(1.0 - next);
             let mut trial = Iterate { u: iterate.u.clone() };
-            let mut at = trial.evaluate(&system, false);
+            let mut at = trial.evaluate(system, false);
             let mut way = Way { is_first: true, ..Way::default() };
-            let few = Until { steps: STEPS_OF_A_SHARE, ..until };
-            let mut own = Vec::new();
-            let left = other.newton(&mut trial, &mut at, &mut own, few, &mut way)?;
-            self.factorizations += other.factorizations;
-            let scale = system.size(at.energy.sqrt(), &trial.rounded());
-            if std::env::var("DBG").is_ok() { eprintln!("CONT {along:?} {next} {} {:.2e} {}", left.is_none(), way.size / scale, other.factorizations); }
-            if left.is_none() && (way.size <= NEARLY_THERE * scale || own.len() <= few.steps) {
+            let mut residuals = Vec::new();
+            let left = self.newton(&mut trial, &mut at, &mut residuals, few, &mut way)?;
+            if left.is_none() && residuals.len() <= few.steps {
                 (*iterate, done, by) = (trial, next, 1.5 * by);
             } else {
                 by /= 2.0;
             }
         }
+        self.stiffness = 1.0;
         Ok(())
     }
 }
@@ -672,41 +553,25 @@ mod tests {
     }
 
     #[test]
-    fn continuation_alone_leads_to_a_solution_and_mixing_to_a_fixed_point() {
+    fn continuation_alone_leads_to_a_solution() {
         let problem = block();
         for degree in [Degree::One, Degree::Two] {
             let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, EdgeRule::Exact);
             let d = d.unwrap();
             let system = System::new(&d).unwrap();
             let mut route = Coulomb::new(&system, 1.0);
-            let size = |route: &mut Coulomb, iterate: &Iterate| {
+            let mut size = |stiffness: f64, iterate: &Iterate| {
+                route.stiffness = stiffness;
                 let (r, _) = route.residual(&iterate.evaluate(&system, false));
                 route.dual(&r).unwrap()
             };
-            let first = size(&mut route, &Iterate::lift(&d));
-            let until = Until { steps: 200, residual: 0.0 };
-            for along in [Along::Coefficient, Along::Stiffness] {
-                let mut iterate = Iterate::lift(&d);
-                route.continued(&mut iterate, until, along).unwrap();
-                let last = size(&mut route, &iterate);
-                assert!(last <= 10.0 * NEARLY_THERE * first, "{along:?}: {last:e} {first:e}");
-            }
             let mut iterate = Iterate::lift(&d);
-            // The fixed point of problems with given bounds, from afar.
-            let mut mixing = Mixing::default();
-            let mut before = vec![[0.0; 3]; d.contact.len()];
-            let mut changes = Vec::new();
-            for _ in 0..12 {
-                let mut other = Iterate::lift(&d);
-                route.tresca(&mut other, &mut Vec::new(), until, (&before, false)).unwrap();
-                let after = route.pressures(&other.evaluate(&system, false));
-                changes.push(mixing.remember(before, after));
-                before = mixing.next();
-                iterate = other;
-            }
-            assert!(changes[11] < 1e-6 * changes[0], "{degree:?}: {changes:?}");
-            let last = size(&mut route, &iterate);
-            assert!(last <= 1e-5 * first, "{degree:?}: {last:e} {first:e}");
+            let first = size(1.0, &iterate);
+            let until = Until { steps: 200, residual: 0.0 };
+            Coulomb::new(&system, 1.0).continued(&mut iterate, until).unwrap();
+            // The control: for softer springs this is no solution.
+            let [last, soft] = [1.0, 0.5].map(|stiffness| size(stiffness, &iterate));
+            assert!(last <= 1e-9 * first && soft >= 1e-3 * first, "{last:e} {soft:e} {first:e}");
         }
     }
 
@@ -743,23 +608,6 @@ mod tests {
             let [coupled, uncoupled] = [off(&terms), off(&uncoupled)];
             assert!(coupled < 1e-3 && uncoupled > 1e-2, "{degree:?}: {coupled:e} {uncoupled:e}");
         }
-    }
-
-    #[test]
-    fn mixing_finds_the_fixed_point_of_an_affine_map() {
-        let map = |[a, b, _]: [f64; 3]| [1.0 + 0.5 * a - 0.4 * b, 2.0 + 0.3 * a + 0.2 * b, 0.0];
-        // a = 1 + a / 2 - 2 b / 5, b = 2 + 3 a / 10 + b / 5
-        let fixed = [0.0, 2.5, 0.0];
-        let mut mixing = Mixing::default();
-        for before in [[1.0, 1.0, 0.0], [2.0, 1.0, 0.0], [1.0, 3.0, 0.0]] {
-            mixing.remember(vec![before], vec![map(before)]);
-        }
-        // The diagonal is larger by 1e-10.
-        let found = mixing.next()[0];
-        assert!((0..3).all(|a| (found[a] - fixed[a]).abs() < 1e-8), "{found:?}");
-        // The control: the last one alone is not near.
-        let last = map([1.0, 3.0, 0.0]);
-        assert!((0..3).any(|a| (last[a] - fixed[a]).abs() > 0.1));
     }
 
     #[test]
