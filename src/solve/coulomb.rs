@@ -553,7 +553,7 @@ mod tests {
     }
 
     #[test]
-    fn continuation_alone_leads_to_a_solution() {
+    fn continuation_alone_leads_to_a_solution_which_is_that_with_its_pressure_for_a_bound() {
         let problem = block();
         for degree in [Degree::One, Degree::Two] {
             let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, EdgeRule::Exact);
@@ -565,13 +565,23 @@ mod tests {
                 let (r, _) = route.residual(&iterate.evaluate(&system, false));
                 route.dual(&r).unwrap()
             };
+            let mut other = Coulomb::new(&system, 1.0);
             let mut iterate = Iterate::lift(&d);
             let first = size(1.0, &iterate);
             let until = Until { steps: 200, residual: 0.0 };
-            Coulomb::new(&system, 1.0).continued(&mut iterate, until).unwrap();
+            other.continued(&mut iterate, until).unwrap();
             // The control: for softer springs this is no solution.
             let [last, soft] = [1.0, 0.5].map(|stiffness| size(stiffness, &iterate));
             assert!(last <= 1e-9 * first && soft >= 1e-3 * first, "{last:e} {soft:e} {first:e}");
+            let pressures = other.pressures(&iterate.evaluate(&system, false));
+            for (times, is_there) in [(1.0, true), (0.5, false)] {
+                let bound: Vec<_> = pressures.iter().map(|p| p.map(|p| times * p)).collect();
+                let mut again = Iterate::lift(&d);
+                other.tresca(&mut again, &mut Vec::new(), until, (&bound, false)).unwrap();
+                let off = size(1.0, &again) / first;
+                assert_eq!(off <= 1e-6, is_there, "{times}: {off:e}");
+                assert!(off <= 1e-6 || off >= 1e-3, "{times}: {off:e}");
+            }
         }
     }
 
