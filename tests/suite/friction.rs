@@ -414,7 +414,7 @@ fn a_solution_with_coulombs_friction_satisfies_the_law_and_is_isolated() {
             );
             assert!(enclosure.relative.unwrap() < 1e-11 && isolation.relative.unwrap() > 1e-8);
             assert_eq!(isolation.everywhere, mu < 0.05, "{mu}");
-            assert!(solution.newton.factorizations <= 40);
+            assert!(solution.newton.factorizations <= 30);
         }
     }
 }
@@ -434,8 +434,9 @@ fn a_block_with_coulombs_friction_is_held_up_to_its_coefficient_or_until_it_tips
         for height in [0.5, 1.0] {
             let limit = if height == 1.0 { f64::min(mu, 0.5) } else { mu };
             for sign in [-1.0, 1.0] {
-                assert!(is_held(sign * (limit - 1e-5), height, mu), "{mu} {height}");
-                assert!(!is_held(sign * (limit + 1e-5), height, mu), "{mu} {height}");
+                // What is nearer to the verge than a millionth is refused, as is the verge itself.
+                assert!(is_held(sign * (limit - 1e-6), height, mu), "{mu} {height}");
+                assert!(!is_held(sign * limit, height, mu), "{mu} {height}");
             }
         }
     }
