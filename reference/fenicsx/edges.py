@@ -333,8 +333,9 @@ class ContactEdges:
                  "peak_pressure": float(max(value / size for at in nodes.values() for _, value, size in at if size > 0))}
         if name in self.problem.rough:
             of_edges = np.array([part[-1] for part in parts])
-            shear, sticks, slides, _, work, open_, most = of_edges.sum(axis=0).tolist()
-            found["friction"] = {"shear": shear, "sticks": sticks, "slides": slides, "slip": float(of_edges[:, 3].max()), "dissipated": work,
+            shear, sticks, slides, work, open_, most, *_ = of_edges.sum(axis=0).tolist()
+            slip, *at = max(of_edges[:, 6:].tolist())
+            found["friction"] = {"shear": shear, "sticks": sticks, "slides": slides, "slip": slip, "slip_at": at, "dissipated": work,
                                  "across_gaps": open_ / most if most > 0 else 0.0}
         return found
 

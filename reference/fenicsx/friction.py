@@ -108,13 +108,16 @@ class Friction:
         return float(np.sum(w * self.on[:, None] / edges.gamma[:, None] * difference))
 
     def report(self, u):
-        """What is said of each edge: its shear force, the lengths on which it sticks and slides, the largest slip at a node, the work, and
-        what Tresca's friction bears at most: where nothing is pressed, and all of it."""
+        """What is said of each edge: its shear force, the lengths on which it sticks and slides, the work, what Tresca's friction bears at
+        most, where nothing is pressed and all of it; the largest slip at a node, and where that is."""
         edges = self.edges
         forces, sticks, slides = self.forces(u)
         slip = np.einsum("eqd,ed->eq", self.V, u[edges.dofs])
         _, w, (pressed,) = edges.rule(edges.P(u))
         active, middle = np.sum(w * pressed, axis=1), (self.s[:, 0] + self.s[:, -1]) / 2
         open_ = middle * np.maximum(edges.length - active, 0)
-        return np.column_stack((np.abs(forces.sum(axis=1)), sticks, slides, np.abs(slip).max(axis=1), np.sum(forces * slip, axis=1),
-                                open_, middle * edges.length))
+        largest = np.argmax(np.abs(slip), axis=1)
+        at = (largest / edges.p)[:, None]
+        places = (1 - at) * edges.ends[:, 0] + at * edges.ends[:, 1]
+        return np.column_stack((np.abs(forces.sum(axis=1)), sticks, slides, np.sum(forces * slip, axis=1), open_, middle * edges.length,
+                                np.abs(slip).max(axis=1), places))

@@ -87,6 +87,7 @@ class Solutions(TestCase):
                 self.assertTrue(np.all(p[slides != 0] * slides[slides != 0] >= m[slides != 0]))
                 found = content["contact"][0]["friction"]
                 self.assertTrue(found["sticks"] > 0 and found["slides"] > 0 and found["dissipated"] > 0)
+                self.assertLess(np.min(np.hypot(*(edges.ends.reshape(-1, 2) - found["slip_at"]).T)), 1e-12)
 
     def test_forces_are_in_equilibrium(self):
         for name in ("tresca", "drag", "journal"):
