@@ -1,4 +1,5 @@
-"""Writes reference/cases/*.toml: the example cases, the exact solutions on several meshes, and parts, P1 and P2, Gauss 4 and exact.
+"""Writes reference/cases/*.toml: the example cases, the exact solutions on several meshes, and parts, P1 and P2, Gauss 4 and exact; with
+friction Gauss 11, which is exact to degree 21, and exact.
 
 Each is a complete case file. The patch tests use the mesh square.msh, which Gmsh 4.8.4 made from square.geo, as the other meshes. Meshes with n <= 8 have all
 their vertices as probes. A variant keeps the example's gamma0 if it keeps its degree, and takes "auto" otherwise (the limit falls to a
@@ -16,6 +17,7 @@ from fenicsx.mesh import rectangle, trapezoid
 FOLDER = Path(__file__).parent / "cases"
 OMEGA = 3 * math.pi / 4
 QUADRATURES = {"gauss4": "{ gauss = 4 }", "exact": '"exact"'}
+WITH_FRICTION = {"gauss11": "{ gauss = 11 }", "exact": '"exact"'}
 
 LAME = "lambda = 1.0\nmu = 1.0"
 CLAMPED = 'displacement = ["0", "0"]'
@@ -40,7 +42,7 @@ def probes(points):
 
 def case(title, mesh, material, middle, degree, gamma0, quadrature):
     return (f'title = "{title}"\n\n[mesh]\n{mesh}\n\n[material]\n{material}\n\n{middle}\n\n'
-            f"[method]\ndegree = {degree}\ngamma0 = {gamma0}\ncontact_quadrature = {QUADRATURES[quadrature]}\n")
+            f"[method]\ndegree = {degree}\ngamma0 = {gamma0}\ncontact_quadrature = {(QUADRATURES | WITH_FRICTION)[quadrature]}\n")
 
 
 def examples():
@@ -171,8 +173,45 @@ def revolutions():
                 yield f"{name}-p{degree}-{quadrature}", text + probes(points())
 
 
+def of_cells(*shape):
+    return rectangle_line(*shape), lambda: rectangle(*shape).points
+
+
+def of_file(name):
+    return f'gmsh = "{name}.msh"', lambda: gmsh.read(FOLDER / f"{name}.msh").points
+
+
+FRICTION = {  # name: (what is in it, (mesh, its points), material, the rest)
+    "tresca": ("a block with a given slip bound, in part across an open gap, is turned and dragged", of_cells(1.0, 1.0, 8, 8, "crossed"), LAME,
+               '[boundary.top]\ndisplacement = ["0.02 + 0.01*x", "-0.05 - 0.02*x"]\n\n'
+               '[boundary.bottom]\ncontact = { gap = "0.2*(x - 0.7)^2", friction = { tresca = "0.02 + 0.03*x" } }'),
+    "drag": ("a pad with Coulomb's friction is pressed and dragged", of_cells(4.0, 1.0, 16, 4, "left"), "young = 10.0\npoisson = 0.3",
+             '[boundary.top]\ndisplacement = ["0.01", "-0.01 - 0.002*x"]\n\n[boundary.bottom]\n'
+             'contact = { gap = "0", friction = { coulomb = 0.4 } }'),
+    "stay": ("a block that Coulomb's friction alone holds, on two boundaries", of_cells(2.0, 1.0, 8, 4, "right"), "young = 1.0\npoisson = 0.3",
+             '[load]\nbody = ["0.006*y", "-0.02"]\n\n[boundary.bottom]\ncontact = { gap = "0", friction = { coulomb = 0.5 } }\n\n'
+             '[boundary.right]\ncontact = { gap = "0.001", friction = { tresca = "0.001*y" } }'),
+    "journal": ("a shaft in a bearing with Coulomb's friction, along which the direction turns", of_file("seat"), "lambda = 1.5\nmu = 1.0",
+                '[obstacle.bearing]\ncircle = { center = [0.005, -0.01], radius = 1.02, side = "inside" }\n\n[point.key]\n'
+                'displacement = [0.01, "free"]\n\n[boundary.chord]\nnormal = "-0.05 + 0.01*x"\n\n[boundary.arc]\n'
+                'contact = { obstacle = "bearing", friction = { coulomb = 0.3 } }'),
+    "grain": ("a tensor with a given slip bound on a drum", of_cells(2.0, 1.0, 8, 4, "crossed"), LAWS["orthotropic"],
+              '[boundary.top]\ndisplacement = [0.03, "-0.05 - 0.02*x"]\n\n[obstacle.drum]\n'
+              'circle = { center = [0.8, -5.01], radius = 5, side = "outside" }\n\n[boundary.bottom]\n'
+              'contact = { obstacle = "drum", friction = { tresca = 0.03 } }'),
+}
+
+
+def friction():
+    for name, (what, (mesh, points), material, middle) in FRICTION.items():
+        for degree in (1, 2):
+            for quadrature in WITH_FRICTION:
+                text = case(f"Friction: {what}, P{degree}, {quadrature}", mesh, material, middle, degree, '"auto"', quadrature)
+                yield f"friction-{name}-p{degree}-{quadrature}", text + probes(points())
+
+
 def main():
-    for name, text in (*examples(), *exact_solutions(), *patches(), *parts(), *tensors(), *revolutions()):
+    for name, text in (*examples(), *exact_solutions(), *patches(), *parts(), *tensors(), *revolutions(), *friction()):
         (FOLDER / f"{name}.toml").write_text(text)
 
 

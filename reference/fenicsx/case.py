@@ -96,12 +96,13 @@ class Boundary:
     displacement: two expressions, None for a free component; `traction`: two expressions that act in the free ones
     traction: two expressions; pressure: an expression; support: u . n and u . t, expressions or None
     force: two numbers, the whole force on the boundary, for the whole thickness
-    contact: the gap, an expression, or an obstacle
+    contact: the gap, an expression, or an obstacle; `friction`: a coefficient or, for a given slip bound, an expression
     """
 
     kind: str
     data: object
     traction: object = None
+    friction: object = None
 
 
 @dataclass
@@ -266,7 +267,7 @@ def read_case(path):
     if root.has("pair"):
         root.refuse("pair", "a pair of boundaries", "contact with rigid obstacles only: this engine has no contact between bodies")
     if root.has("step"):
-        root.refuse("step", "load steps", "a case without: this engine has no friction")
+        root.refuse("step", "load steps", "a case without: this engine solves one step")
     body = root.table("body", needed=False)
     materials = _materials(root.table("material"), _plane(body, "strain"))
     if root.has("exact") and None not in materials:
@@ -307,6 +308,9 @@ def read_case(path):
         table.finish()
     if case.of_revolution and solution:
         root.fail("exact", content["exact"], "no [exact] for a body of revolution: the solutions are plane")
+    rough = [name for name, boundary in case.boundaries.items() if boundary.friction is not None]
+    if rough and (case.of_revolution or solution):
+        root.refuse(f"boundary.{rough[0]}.contact.friction", "friction", "none in a body of revolution" if case.of_revolution else "none beside [exact]")
     if case.of_revolution and body.has("thickness"):
         body.fail("thickness", case.thickness, "none for a body of revolution")
     return case
@@ -444,7 +448,7 @@ def _boundary(table, obstacles):
     given = [key for key in CONDITIONS if table.has(key)]
     table.finish()
     if given == ["contact"]:
-        return Boundary("contact", _contact(table.table("contact"), obstacles))
+        return Boundary("contact", *_contact(table.table("contact"), obstacles))
     if given == ["traction"]:
         return Boundary("traction", table.pair("traction", table.content["traction"]))
     if given == ["force"]:
@@ -470,17 +474,27 @@ def _is_zero(expression):
 
 
 def _contact(table, obstacles):
-    if "friction" in table.content:
-        table.refuse("friction", "friction", "contact without it: this engine has no friction")
+    """(what it is with, the traction that it has none of, friction)"""
+    friction = _friction(table.table("friction")) if table.has("friction") else None
     if table.has("gap") and table.has("obstacle"):
         table.refuse("", "gap, obstacle", "one of the two")
     if table.has("obstacle"):
         name = table.choice("obstacle", tuple(obstacles))
         table.finish()
-        return obstacles[name]
+        return obstacles[name], None, friction
     data = table.expression("gap", table.get("gap", "0"))
     table.finish()
-    return data
+    return data, None, friction
+
+
+def _friction(table):
+    given = [key for key in ("tresca", "coulomb") if table.has(key)]
+    table.finish()
+    if len(given) != 1:
+        table.refuse("", ", ".join(given), "either tresca or coulomb")
+    if given == ["coulomb"]:
+        return table.number("coulomb", "a coefficient, a number that is not negative", lambda mu: mu >= 0)
+    return table.expression("tresca", table.content["tresca"])
 
 
 def _obstacles(root):

@@ -4,13 +4,14 @@ P restricted to an edge has the displacement's degree p, so its values at the ed
 P(u) = B u_T - g there, B the matrix of P0 on the dofs u_T of the owning triangle T. The direction of contact n~ is given at these
 points (docs/theory.md, 2.1): u . n~ is interpolated from them, and s(v) = n~ . sigma(v) n, which stands for sigma_n, from the two ends. Between consecutive roots P keeps its sign and
 p + 1 Gauss points integrate its square, and all else in (8), without error: this is the rule "exact". Tables of P at points have one
-row per edge.
+row per edge. What friction adds is in friction.py.
 """
 
 import numpy as np
 from mpi4py import MPI
 
 from . import compat
+from .friction import Friction, edge_values
 from .problem import FACET_VERTICES
 from .quadrature import gauss
 
@@ -121,47 +122,68 @@ class ContactEdges:
         self.opposite = corners[:, :, 0].sum(axis=1) - self.weights.sum(axis=1) if weighted else np.ones(count)
 
     def _operators(self, problem, local):
-        """`V_n`, `S_n` (edges, p + 1, dofs of T): n~ . v and s(v) at the edge's Lagrange points; `B` = V_n - gamma S_n; the gap."""
+        """`V_n`, `S_n` (edges, p + 1, dofs of T): n~ . v and s(v) at the edge's Lagrange points; `B` = V_n - gamma S_n; the gap; and the
+        same across n~ for friction, where s_t is 0 on edges without."""
         count = len(self.cells)
         on_line = [problem.contact[name, a, b] for name, (a, b) in zip(self.names, self.vertices)]
         self.directions = np.array([n for n, _ in on_line]).reshape(count, self.p + 1, 2)
         self.gap = np.array([g for _, g in on_line]).reshape(count, self.p + 1)
+        mu, bounds, self.rough = edge_values([problem.rough.get(name) for name in self.names], self.vertices, problem.plane.points, self.p)
         s = np.linspace(0, 1, self.p + 1)
         tables = [compat.basis(self.p, (1 - s)[:, None] * REFERENCE[i] + s[:, None] * REFERENCE[j]) for i, j in FACET_VERTICES]
         values = np.array([table[0] for table in tables])[local]
         ends = [0, -1]
         gradients = (np.array([table[1] for table in tables])[local] @ np.linalg.inv(self.J)[:, None])[:, ends]
-        n, d = self.n[:, None, None, :], self.directions[:, ends, None, :]
-        S = self._stresses(problem, gradients, n, d)
-        if problem.case.of_revolution:
-            S = S + self._hoop_stresses(problem, self.REFERENCE_ENDS[local])[..., None] * np.sum(n * d, axis=3)[..., None] * [1.0, 0.0]
-        S_n = np.einsum("pa,eaik->epik", edge_basis(1, s), S)
-        V_n = values[..., None] * self.directions[:, :, None, :]
-        functions = values.shape[2]
-        self.S_n, self.V_n = (table.reshape(count, self.p + 1, 2 * functions) for table in (S_n, V_n))
+        functions, n = values.shape[2], self.n[:, None, None, :]
+
+        def along(directions):
+            d = directions[:, ends, None, :]
+            S = self._stresses(problem, gradients, n, d)
+            if problem.case.of_revolution:
+                S = S + self._hoop_stresses(problem, self.REFERENCE_ENDS[local])[..., None] * np.sum(n * d, axis=3)[..., None] * [1.0, 0.0]
+            S = np.einsum("pa,eaik->epik", edge_basis(1, s), S)
+            V = values[..., None] * directions[:, :, None, :]
+            return (table.reshape(count, self.p + 1, 2 * functions) for table in (V, S))
+
+        self.V_n, self.S_n = along(self.directions)
+        self.across = np.stack((-self.directions[..., 1], self.directions[..., 0]), axis=2)
+        V_t, S_t = along(self.across)
+        self.S_t = S_t * self.rough[:, None, None]
+        self._stiffness(problem)
         self.B = self.V_n - self.gamma[:, None, None] * self.S_n
+        self.friction = Friction(self, self.rough, mu, bounds, V_t - self.gamma[:, None, None] * self.S_t, V_t)
         nodes = np.array([problem.V.dofmap.cell_dofs(cell) for cell in self.cells], np.int32).reshape(count, functions)
         self.dofs = (2 * nodes[:, :, None] + np.arange(2, dtype=np.int32)).reshape(count, 2 * functions)
 
     def _stresses(self, problem, gradients, n, d):
-        """d . sigma(phi e_k) n for the gradients of phi; `stiffness` has the constant of |d . sigma n|^2 <= c sigma:eps, where d turns that
-        of the whole traction."""
+        """d . sigma(phi e_k) n for the gradients of phi."""
         if problem.case.is_isotropic:
             lam, mu = (values.reshape(-1, 1, 1, 1) for values in problem.lame(self.cells))
-            self.stiffness = (lam + 2 * mu).ravel()
             along_n, along_d = (np.sum(gradients * v, axis=3, keepdims=True) for v in (n, d))
             # lam (d . n) d_k phi + mu (d_k (n . grad phi) + n_k (d . grad phi))
             return lam * np.sum(d * n, axis=3, keepdims=True) * gradients + mu * (d * along_n + n * along_d)
-        laws = problem.stiffness(self.cells)
-        c11, c12, c16, c22, c26, c66 = (c.reshape(-1, 1, 1) for c in laws.T)
-        # The stress of the strain along d and n has the traction grad phi . sigma.
-        a, b, c = d[..., 0] * n[..., 0], d[..., 1] * n[..., 1], d[..., 0] * n[..., 1] + d[..., 1] * n[..., 0]
-        xx, yy, xy = c11 * a + c12 * b + c16 * c, c12 * a + c22 * b + c26 * c, c16 * a + c26 * b + c66 * c
-        energy = (a * xx + b * yy + c * xy)[:, 0, 0]
-        turns = np.any(d[:, 0, 0] != d[:, -1, 0], axis=1)
-        self.stiffness = np.where(turns, [_largest(law, normal) for law, normal in zip(laws, self.n)], energy)
+        _, (xx, yy, xy) = self._pulled(problem, n, d)
         x, y = gradients[..., 0], gradients[..., 1]
         return np.stack((xx * x + xy * y, xy * x + yy * y), axis=3)
+
+    def _pulled(self, problem, n, d):
+        """The strain along d and n (xx, yy, 2 xy) and its stress, which has the traction grad phi . sigma."""
+        c11, c12, c16, c22, c26, c66 = (c.reshape(-1, 1, 1) for c in problem.stiffness(self.cells).T)
+        a, b, c = d[..., 0] * n[..., 0], d[..., 1] * n[..., 1], d[..., 0] * n[..., 1] + d[..., 1] * n[..., 0]
+        return (a, b, c), (c11 * a + c12 * b + c16 * c, c12 * a + c22 * b + c26 * c, c16 * a + c26 * b + c66 * c)
+
+    def _stiffness(self, problem):
+        """`stiffness`: the c of |d . sigma n|^2 <= c sigma:eps, of the whole traction where d turns or friction acts, too."""
+        if problem.case.is_isotropic:
+            lam, mu = problem.lame(self.cells)
+            self.stiffness = lam + 2 * mu
+            return
+        d = self.directions[:, :1, None, :]
+        strain, stress = self._pulled(problem, self.n[:, None, None, :], d)
+        energy = sum(a * b for a, b in zip(strain, stress))[:, 0, 0]
+        whole = self.rough | np.any(self.directions[:, 0] != self.directions[:, -1], axis=1)
+        laws = problem.stiffness(self.cells)
+        self.stiffness = np.where(whole, [_largest(law, normal) for law, normal in zip(laws, self.n)], energy)
 
     REFERENCE_ENDS = np.array([[REFERENCE[i], REFERENCE[j]] for i, j in FACET_VERTICES])
 
@@ -182,8 +204,9 @@ class ContactEdges:
 
     def stress_blocks(self):
         """One block per edge; s and the weight are affine."""
-        ends = self.S_n[:, [0, -1]]
-        return -np.einsum("e,eid,eij,ejc->edc", self.gamma * self.length, ends, edge_mass(self.weights), ends)
+        mass = edge_mass(self.weights)
+        of = lambda ends: np.einsum("e,eid,eij,ejc->edc", self.gamma * self.length, ends, mass, ends)
+        return -of(self.S_n[:, [0, -1]]) - of(self.S_t[:, [0, -1]])
 
     def stress_functional(self, u):
         total = np.zeros_like(u)
@@ -210,26 +233,30 @@ class ContactEdges:
     def weight(self, s):
         return np.einsum("eqi,ei->eq", edge_basis(1, s), self.weights)
 
+    def basis(self, s):
+        return edge_basis(self.p, s)
+
     def at(self, nodal, s):
-        return np.einsum("eqi,ei->eq", edge_basis(self.p, s), nodal)
+        return np.einsum("eqi,ei->eq", self.basis(s), nodal)
 
     def functional(self, u):
-        """int (1/gamma) [P(u)]+ P0(.) over all dofs that this process sees."""
+        """int (1/gamma) [P(u)]+ P0(.) and friction's beside it, over all dofs that this process sees."""
         P = self.P(u)
         s, w, (active,) = self.rule(P)
         pressure = np.where(active, self.at(P, s), 0) / self.gamma[:, None]
-        loads = np.einsum("eq,eq,eqi,eid->ed", w * self.weight(s), pressure, edge_basis(self.p, s), self.B)
+        loads = np.einsum("eq,eq,eqi,eid->ed", w * self.weight(s), pressure, edge_basis(self.p, s), self.B) + self.friction.functional(u)
         total = np.zeros_like(u)
         np.add.at(total, self.dofs, loads)
         return total
 
     def tangent(self, u, everywhere=False):
-        """(dofs, block) per edge of int (1/gamma) H(P(u)) P0(.) P0(.); with H = 1 in place of H(P(u)) if `everywhere`."""
+        """(dofs, block) per edge of int (1/gamma) H(P(u)) P0(.) P0(.), with friction's beside it; as if all were pressed and stuck if
+        `everywhere`."""
         P = self.P(u)
         s, w, (active,) = self.rule(np.ones_like(P) if everywhere else P)
         N = edge_basis(self.p, s)
         mass = np.einsum("eq,eqi,eqj->eij", w * self.weight(s) * active / self.gamma[:, None], N, N)
-        return zip(self.dofs, np.einsum("eid,eij,ejc->edc", self.B, mass, self.B))
+        return zip(self.dofs, np.einsum("eid,eij,ejc->edc", self.B, mass, self.B) + self.friction.tangent(u, everywhere))
 
     def energy_change(self, u, d, t):
         """1/2 int (1/gamma) ([P(u + t d)]+^2 - [P(u)]+^2) without cancellation: a^2 - b^2 = (a - b)(a + b)."""
@@ -239,15 +266,17 @@ class ContactEdges:
         b, a = np.where(was, self.at(before, s), 0), np.where(is_, self.at(after, s), 0)
         both = was & is_
         difference = np.where(both, t * self.at(D, s), a - b)
-        return self.comm.allreduce(float(np.sum(w * self.weight(s) / (2 * self.gamma[:, None]) * difference * (a + b))))
+        change = float(np.sum(w * self.weight(s) / (2 * self.gamma[:, None]) * difference * (a + b)))
+        return self.comm.allreduce(change + self.friction.energy_change(u, d, t))
 
     # What is reported.
 
     def pressure(self, u):
-        """contact_force = -int lambda^h, contact_resultant = int lambda^h n~, contact_length = the measure of {P > 0}, peak_pressure."""
+        """contact_force = -int lambda^h, contact_resultant = int lambda^h n~ and what friction adds, contact_length = the measure of
+        {P > 0}, peak_pressure."""
         P = self.P(u)
         forces, w, active = self._forces(P)
-        resultant = -np.einsum("ei,eik->k", forces, self.directions)
+        resultant = np.sum(self._vectors(forces, u), axis=(0, 1))
         sums = self.comm.allreduce(np.array([np.sum(forces), *resultant, np.sum(w * active)]))
         peak = self.comm.allreduce(float(np.max(self._largest(P) / self.gamma, initial=0.0)), op=MPI.MAX)
         return {"contact_force": float(sums[0]), "contact_resultant": [float(sums[1]), float(sums[2])],
@@ -259,6 +288,10 @@ class ContactEdges:
         pressure = np.where(active, self.at(P, s), 0) / self.gamma[:, None]
         return np.einsum("eq,eqi->ei", w * self.weight(s) * pressure, edge_basis(self.p, s)), w, active
 
+    def _vectors(self, forces, u):
+        """The forces on the body at each Lagrange point of each edge, friction's among them."""
+        return -forces[..., None] * self.directions - self.friction.forces(u)[0][..., None] * self.across
+
     def boundaries(self, u):
         """For each contact boundary the force, resultant, moment about the origin and length of contact, and the largest recovered
         pressure: at each node the mean of -lambda^h weighted by its hat function, for P2 on half edges where the line is straight
@@ -267,7 +300,7 @@ class ContactEdges:
         forces, w, active = self._forces(P)
         at = np.linspace(0, 1, self.p + 1)
         places = (1 - at)[:, None] * self.ends[:, None, 0] + at[:, None] * self.ends[:, None, 1]
-        vectors = -forces[..., None] * self.directions
+        vectors = self._vectors(forces, u)
         moments = np.sum(places[..., 0] * vectors[..., 1] - places[..., 1] * vectors[..., 0], axis=1)
         s, fine, (pressed, _) = self.rule(P, np.tile(2 * at - 1, (len(P), 1)))  # cut at the middle, too
         pressure = np.where(pressed, self.at(P, s), 0) / self.gamma[:, None]
@@ -280,13 +313,13 @@ class ContactEdges:
         s = np.tile(np.hstack((t, t + 1)) / 2, (len(P), 1))
         weight = np.einsum("e,q,eq,eqi->ei", self.length, np.hstack((half, half)) / 2, self.weight(s), hats(s))
         parts = zip(self.names, self.vertices, forces.sum(axis=1), vectors.sum(axis=1), moments, np.sum(w * active, axis=1), work, weight,
-                    self.directions)
+                    self.directions, self.friction.report(u))
         parts = [part for of in self.comm.allgather(list(parts)) for part in of]
         return [self._boundary(name, [part[1:] for part in parts if part[0] == name]) for name in sorted({part[0] for part in parts})]
 
     def _boundary(self, name, parts):
         nodes = {}  # vertex or edge -> [direction, work, weight] for each direction of contact there
-        for (a, b), *_, work, weight, directions in parts:
+        for (a, b), *_, work, weight, directions, _ in parts:
             keys = [a, b] if self.p == 1 else [a, (a, b), b]
             for key, n, value, size in zip(keys, directions, work, weight):
                 at = nodes.setdefault(key, [])
@@ -296,8 +329,15 @@ class ContactEdges:
                 else:
                     at.append([n, value, size])
         sums = [sum(column) for column in zip(*(part[1:5] for part in parts))]
-        return {"boundary": name, "force": float(sums[0]), "resultant": sums[1].tolist(), "moment": float(sums[2]), "length": float(sums[3]),
-                "peak_pressure": float(max(value / size for at in nodes.values() for _, value, size in at if size > 0))}
+        found = {"boundary": name, "force": float(sums[0]), "resultant": sums[1].tolist(), "moment": float(sums[2]), "length": float(sums[3]),
+                 "peak_pressure": float(max(value / size for at in nodes.values() for _, value, size in at if size > 0))}
+        if name in self.problem.rough:
+            of_edges = np.array([part[-1] for part in parts])
+            shear, sticks, slides, work, open_, most, *_ = of_edges.sum(axis=0).tolist()
+            slip, *at = max(of_edges[:, 6:].tolist())
+            found["friction"] = {"shear": shear, "sticks": sticks, "slides": slides, "slip": slip, "slip_at": at, "dissipated": work,
+                                 "across_gaps": open_ / most if most > 0 else 0.0}
+        return found
 
     def _largest(self, P):
         """The maximum of P on each edge: at an end, or for p = 2 at the vertex of the parabola."""
@@ -313,12 +353,13 @@ class ContactEdges:
     def coercivity(self):
         """(C_h, the edge that sets it): kappa = gamma0 C_h, C_h = max_T h_T C c_p sum_{E in T} |E| / |T|, with C = lambda + 2 mu in
         plane strain and 4 mu (lambda + mu) / (lambda + 2 mu) in plane stress (of a tensor as in `_stresses`), c_1 = 1, c_2 = 3. An edge along which n~ turns by theta
-        counts 2 - cos(theta) times for P2. With the weight r: docs/theory.md, 11.2. Of equal edges, the first by its ends."""
+        counts 2 - cos(theta) times for P2, with friction x + sqrt(x^2 - 1) times, x = (4 - cos(theta)) / 3. With the weight r: docs/theory.md, 11.2. Of equal edges, the first by its ends."""
         cosine = np.sum(self.directions[:, 0] * self.directions[:, -1], axis=1)
         mass = edge_mass(self.weights)
         rho = mass[:, 0, 1] / np.sqrt(mass[:, 0, 0] * mass[:, 1, 1])
         turns = (self.p == 2) & np.any(self.directions[:, 0] != self.directions[:, -1], axis=1)
-        turning = np.where(turns, 1 + (1 - cosine) * rho / (1 - rho), 1.0)
+        x = np.maximum((4 - cosine) / 3, 1)
+        turning = np.where(turns, np.where(self.rough, x + np.sqrt(x * x - 1), 1 + (1 - cosine) * rho / (1 - rho)), 1.0)
         constants = trace_constants(self.p, self.weights, self.opposite) * turning * self.length / self.area
         per_cell = {}
         for cell, constant in zip(self.cells, constants):

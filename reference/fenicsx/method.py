@@ -8,6 +8,11 @@
 With { gauss = n } the integral of [.]+ takes n Gauss points per edge, here in UFL; with "exact" it is taken edge by edge between
 the roots of P, in edges.py. The integrals in A are polynomials' and exact in both. Where n turns along the line of contact or belongs to
 an obstacle, n~ and s(v) = n~ . sigma(v) n take the places of n and sigma_n: all integrals on Gamma_C are then those of edges.py.
+
+On boundaries with friction (docs/theory.md, 13), t being n turned left,
+
+    A also has  - int gamma sigma_t(u) sigma_t(v),    and the equations  + int (1/gamma) clip(P_t(u); m) P0_t(v),
+    P_t(v) = P0_t(v) = v_t - gamma sigma_t(v),    m = gamma s for Tresca's slip bound s,    m = mu [P(u)]+ for Coulomb's coefficient mu.
 """
 
 import numpy as np
@@ -17,6 +22,7 @@ from petsc4py import PETSc
 from ufl import dot, dx, grad, inner, sym, tr
 
 from .edges import ContactEdges
+from .friction import GLUED
 
 
 def positive_part(a):
@@ -27,6 +33,16 @@ def positive_part(a):
 def slope(a):
     """The derivative of [a]+ that Newton uses: 1 for a > 0, else 0 (a choice at 0)."""
     return ufl.conditional(ufl.gt(a, 0), 1, 0)
+
+
+def clip(a, m):
+    """a, cut off at -m and m."""
+    return ufl.conditional(ufl.gt(a, m), m, ufl.conditional(ufl.lt(a, -m), -m, a))
+
+
+def side(a, m):
+    """1 and -1 where a is cut off, else 0."""
+    return ufl.conditional(ufl.gt(a, m), 1, ufl.conditional(ufl.lt(a, -m), -1, 0))
 
 
 class Method:
@@ -43,11 +59,14 @@ class Method:
             self.law = list(map(problem.on_triangles, moduli))
         self.contact_in_ufl = bool(self.case.gauss) and problem.straight
         self.n = ufl.FacetNormal(problem.mesh)
+        self.t = ufl.as_vector((-self.n[1], self.n[0]))
         self.u = fem.Function(problem.V)
+        # Coulomb's bound is that of u itself, or while it is frozen that of another displacement, and so much more.
+        self.u_of_bound, self.live, self.more = fem.Function(problem.V), fem.Constant(problem.mesh, 1.0), fem.Constant(problem.mesh, 0.0)
         self.edges = ContactEdges(problem, gamma0)
         v, w = ufl.TestFunction(problem.V), ufl.TrialFunction(problem.V)
         residual, tangent = self.A(self.u, v), self.A(w, v)
-        self.linear_part = fem.form(residual)
+        self.linear_part, self.linear_tangent = fem.form(residual), fem.form(tangent)
         if self.contact_in_ufl:
             residual += self.contact(self.u, v)
             tangent += self.contact_slope(self.u, w, v)
@@ -88,6 +107,15 @@ class Method:
     def sigma_n(self, v):
         return dot(self.n, dot(self.sigma(v), self.n))
 
+    def v_t(self, v):
+        return dot(v, self.t)
+
+    def sigma_t(self, v):
+        return dot(self.t, dot(self.sigma(v), self.n))
+
+    def P_t(self, v):
+        return self.v_t(v) - self.gamma() * self.sigma_t(v)
+
     def gamma(self):
         h_T = ufl.CellDiameter(self.problem.mesh)
         return self.gamma0 * h_T
@@ -103,13 +131,30 @@ class Method:
 
     def A(self, u, v):
         exact = 2 * (self.case.degree - 1)
-        return self.a(u, v) - sum(self.gamma() * self.sigma_n(u) * self.sigma_n(v) * ds for ds, g in self.Gamma_C(exact))
+        pulls = sum(self.gamma() * self.sigma_n(u) * self.sigma_n(v) * ds for ds, g in self.Gamma_C(exact))
+        shears = sum(self.gamma() * self.sigma_t(u) * self.sigma_t(v) * ds for ds, *_ in self.with_friction(exact))
+        return self.a(u, v) - pulls - shears
 
     def contact(self, u, v):
-        return sum(1 / self.gamma() * positive_part(self.P(u, g)) * self.P0(v) * ds for ds, g in self.Gamma_C(self.gauss_degree))
+        pressure = sum(1 / self.gamma() * positive_part(self.P(u, g)) * self.P0(v) * ds for ds, g in self.Gamma_C(self.gauss_degree))
+        friction = sum(1 / self.gamma() * clip(self.P_t(u), self.bound(u, *law)) * self.P_t(v) * ds
+                       for ds, *law in self.with_friction(self.gauss_degree))
+        return pressure + friction
+
+    def bound(self, u, g, mu, s):
+        """m"""
+        given = positive_part(self.P(self.u_of_bound, g)) + self.more
+        return self.gamma() * s + mu * ufl.conditional(ufl.gt(self.live, 0), positive_part(self.P(u, g)), given)
 
     def contact_slope(self, u, w, v):
-        return sum(1 / self.gamma() * slope(self.P(u, g)) * self.P0(w) * self.P0(v) * ds for ds, g in self.Gamma_C(self.gauss_degree))
+        pressure = sum(1 / self.gamma() * slope(self.P(u, g)) * self.P0(w) * self.P0(v) * ds for ds, g in self.Gamma_C(self.gauss_degree))
+        return pressure + sum(1 / self.gamma() * self.friction_slope(u, w, *law) * self.P_t(v) * ds
+                              for ds, *law in self.with_friction(self.gauss_degree))
+
+    def friction_slope(self, u, w, g, mu, s):
+        """P_t(w) where it sticks; where it slides the bound's own slope."""
+        slides = side(self.P_t(u), self.bound(u, g, mu, s))
+        return (1 - slides**2) * self.P_t(w) + slides * mu * self.live * slope(self.P(u, g)) * self.P0(w)
 
     @property
     def gauss_degree(self):
@@ -121,7 +166,30 @@ class Method:
         return [(self.problem.ds(self.problem.number[name], metadata={"quadrature_degree": degree}), gap)
                 for name, gap in self.problem.gaps.items()]
 
+    def with_friction(self, degree):
+        """(measure, gap, coefficient, slip bound) of each boundary with friction; none where edges.py integrates."""
+        zero = fem.Constant(self.problem.mesh, 0.0)
+        return [(self.problem.ds(self.problem.number[name], metadata={"quadrature_degree": degree}), self.problem.gaps[name],
+                 zero if name in self.problem.slip_bounds else law, self.problem.slip_bounds.get(name, zero))
+                for name, law in self.problem.rough.items() if name in self.problem.gaps]
+
     # What Newton's method asks for.
+
+    @property
+    def has_coulomb(self):
+        return any(isinstance(law, float) for law in self.problem.rough.values())
+
+    def freeze(self, owned=None):
+        """Makes the bound of Coulomb's friction that of this displacement, or without one a bound that nothing reaches."""
+        self.set(self.u.x.array[: self.problem.owned_dofs].copy() if owned is None else owned)
+        self.live.value, self.more.value = 0.0, GLUED if owned is None else 0.0
+        self.u_of_bound.x.array[:] = self.u.x.array
+        self.edges.friction.freeze(self.edges.P(self.u.x.array), glued=owned is None)
+
+    def release(self):
+        """Makes the bound that of the iterate itself again."""
+        self.live.value, self.more.value = 1.0, 0.0
+        self.edges.friction.release()
 
     def set(self, owned):
         """Makes `owned` the current iterate."""
@@ -140,8 +208,9 @@ class Method:
 
     def tangent(self, everywhere=False):
         """The derivative of (8) at u on all dofs, or with contact everywhere; its caller treats the prescribed ones and destroys it."""
-        matrix = fem.petsc.assemble_matrix(self.tangent_form)
-        if not self.contact_in_ufl:
+        in_ufl = self.contact_in_ufl and not everywhere
+        matrix = fem.petsc.assemble_matrix(self.tangent_form if in_ufl else self.linear_tangent)
+        if not in_ufl:
             for dofs, block in self.edges.tangent(self.u.x.array, everywhere):
                 matrix.setValuesLocal(dofs, dofs, block, addv=PETSc.InsertMode.ADD)
         if not self.problem.straight:

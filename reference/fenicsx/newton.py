@@ -5,6 +5,10 @@
 so each step goes along a descent direction and is halved until J_h falls enough (Armijo). Differences of J_h are summed term by term,
 because near the solution the values themselves agree to rounding. Steps go on after the tolerance is met for as long as each divides
 the residual by ten or more: the result is then exact to rounding, which comparisons between codes need.
+
+Coulomb's friction has no energy. Problems with a given bound have: the first one's is never reached, that of each other one is mu times
+the pressure of the one before. After each of them full Newton steps on the equations themselves are tried, with LU, as long as
+they go down.
 """
 
 from dataclasses import dataclass, field
@@ -12,6 +16,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from petsc4py import PETSc
 
+MOST_BOUNDS = 60  # problems with a given bound
+FALLS = 0.9  # the share to which a full step takes the residual at least
 ARMIJO = 1e-4  # required decrease, as a share of the linear model's
 NEGLIGIBLE = 1e-10  # a step of this size relative to u is at the rounding level: no line search, and if it gains nothing, the end
 INDEFINITE = (PETSc.KSP.ConvergedReason.DIVERGED_INDEFINITE_MAT, PETSc.KSP.ConvergedReason.DIVERGED_INDEFINITE_PC)  # as CG finds it
@@ -35,7 +41,8 @@ class History:
 
 
 class Solver:
-    """Newton's method for one Method. `iterative`: CG with algebraic multigrid in place of the sparse Cholesky factorisation."""
+    """Newton's method for one Method. `iterative`: CG with algebraic multigrid in place of the sparse Cholesky factorisation, or GMRES
+    where Coulomb's friction makes the matrix not symmetric."""
 
     def __init__(self, method, iterative):
         self.method, self.problem, self.iterative = method, method.problem, iterative
@@ -60,11 +67,58 @@ class Solver:
 
     def solve(self):
         """(u, history): the solution on the owned dofs. It starts from the prescribed data, zero at all other nodes."""
-        tolerance, most = self.problem.case.tolerance, self.problem.case.max_iterations
-        u = self.data.copy()
+        return self.coulomb() if self.method.has_coulomb else self.minimum(self.data)
+
+    def coulomb(self):
+        """The solution with Coulomb's friction."""
+        self.method.set(self.data)
+        self.method.freeze()
+        u, history = self.minimum(self.data)
+        stages = [history]
+        for _ in range(MOST_BOUNDS):
+            self.method.freeze(u)
+            u, history = self.minimum(u)
+            stages.append(history)
+            self.method.release()
+            found = self.full_steps(u, stages)
+            if found is not None:
+                history = stages[-1]
+                history.factorizations = sum(stage.factorizations for stage in stages)
+                return self.end(found, history.outcome, history)
+        raise NotSolved(f"Coulomb's friction: relative residual {stages[-1].residuals[-1] / stages[-1].reference:.3e} after {MOST_BOUNDS} problems "
+                        "with a given bound")
+
+    def full_steps(self, u, stages):
+        """The solution that full steps from u lead to, or None where one does not go down."""
+        r, history = self.start(u)
+        stages.append(history)
+        while history.iterations < self.problem.case.max_iterations:
+            before = history.residuals[-1]
+            met = before <= self.problem.case.tolerance * history.reference
+            candidate = u + self.direction(r, history)
+            new = self.residual(candidate)
+            after = self.norm(new)
+            if met and not after < before / 10:
+                history.outcome = "converged"
+                return candidate if after < before else u
+            if not after < FALLS * before:
+                return None
+            history.residuals.append(after)
+            u, r = candidate, new
+        return None
+
+    def start(self, u):
+        """(the residual at u, a history that begins there)"""
         r = self.residual(u)
         history = History(self.norm(self.free(self.problem.load)) + self.norm(r + self.free(self.problem.load)))
         history.residuals.append(self.norm(r))
+        return r, history
+
+    def minimum(self, u):
+        """(u, history): the least J_h, from u."""
+        tolerance, most = self.problem.case.tolerance, self.problem.case.max_iterations
+        u = u.copy()
+        r, history = self.start(u)
         if history.residuals[0] == 0:
             return self.end(u, "converged", history)
         while history.iterations < most:
@@ -125,10 +179,11 @@ class Solver:
         b.array[:] = -self.problem.holds.into_frames(r)
         ksp = PETSc.KSP().create(self.problem.comm)
         ksp.setOperators(matrix)
-        self._configure_cg(ksp, matrix) if self.iterative else self._configure_cholesky(ksp, matrix)
+        symmetric = not self.method.has_coulomb or self.method.live.value == 0
+        self._configure_krylov(ksp, matrix, symmetric) if self.iterative else self._configure_direct(ksp, matrix, symmetric)
         ksp.solve(b, x)
         reason = ksp.getConvergedReason()
-        if reason in INDEFINITE or (not self.iterative and self._negative_pivots(ksp)):
+        if symmetric and (reason in INDEFINITE or (not self.iterative and self._negative_pivots(ksp))):
             raise NotSolved("the tangent is not positive definite")
         if reason <= 0:
             raise NotSolved(f"the linear solver failed (PETSc's reason {reason})")
@@ -170,16 +225,16 @@ class Solver:
         turn.assemble()
         return turn
 
-    def _configure_cholesky(self, ksp, matrix):
-        matrix.setOption(PETSc.Mat.Option.SYMMETRIC, True)
+    def _configure_direct(self, ksp, matrix, symmetric):
+        matrix.setOption(PETSc.Mat.Option.SYMMETRIC, symmetric)
         ksp.setType("preonly")
-        ksp.getPC().setType("cholesky")
+        ksp.getPC().setType("cholesky" if symmetric else "lu")
         ksp.getPC().setFactorSolverType("mumps")
 
     def _negative_pivots(self, ksp):
         return ksp.getPC().getFactorMatrix().getMumpsInfog(12) > 0
 
-    def _configure_cg(self, ksp, matrix):
+    def _configure_krylov(self, ksp, matrix, symmetric):
         matrix.setBlockSize(2)
         motions = []
         for motion in self.problem.rigid_motions():
@@ -188,7 +243,7 @@ class Solver:
             motions.append(vector)
         _orthonormalise(motions)
         matrix.setNearNullSpace(PETSc.NullSpace().create(vectors=motions, comm=self.problem.comm))
-        ksp.setType("cg")
+        ksp.setType("cg" if symmetric else "fgmres")
         ksp.setNormType(PETSc.KSP.NormType.UNPRECONDITIONED)
         ksp.setTolerances(rtol=1e-10, max_it=1000)
         ksp.getPC().setType("gamg")

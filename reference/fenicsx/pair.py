@@ -9,7 +9,10 @@ The bodies are the two surfaces of one mesh, and each has a displacement of its 
     Gamma = gamma_1 + gamma_2,   s = (gamma_1 s_1 + gamma_2 s_2) / Gamma,   P(v) = jump v - g - Gamma s(v),
     J(v) = 1/2 a(v, v) - 1/2 int Gamma s(v)^2 + 1/2 int q(P(v))^2 / Gamma - L(v),
 
-where q is [.]+ in contact; bonded bodies have vectors in place of d . and q(p) = p.
+where q is [.]+ in contact; bonded bodies have vectors in place of d . and q(p) = p. Friction has P_t likewise with t, d turned left, in
+place of d ., and no gap: with the bound m it adds to the derivative of J, from which int Gamma s_t^2 / 2 is taken as well,
+
+    int clip(P_t; m) P_t(v) / Gamma,   m = Gamma s for a slip bound s,   m = mu [P]+ for a coefficient mu.
 
 `Joined`: on a mesh that matches a node of the common line has two displacements, as if it were doubled, and UFL has both sides of the line
 as sides of one facet. `Apart`: each body has nodes of its own on a straight line, and the integrals there are those of numpy over the
@@ -31,7 +34,7 @@ import ufl
 from dolfinx import fem, mesh
 from mpi4py import MPI
 
-from . import compat, gmsh
+from . import compat, gmsh, method
 from .edges import edge_basis, roots
 from .expression import Expression
 from .quadrature import gauss
@@ -44,6 +47,7 @@ COMMAND = "PYTHONPATH=reference python3 -m fenicsx.pair"
 TOLERANCE = 1e-11
 KAPPA = 0.5
 BODIES = ("lower", "upper")
+SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 
 
 class Pair:
@@ -61,10 +65,19 @@ class Pair:
         self.V = compat.space_of_two(self.mesh, self.degree)
         self._held()
         self.u = fem.Function(self.V)
+        self._friction()
         clearance = Expression(self.case["pair"][0]["clearance"])
         self.gap = lambda x: clearance.values(x[0], x[1])
         self._body()
         self._contact(kappa)
+
+    def _friction(self):
+        """Coefficient and slip bound, one of them 0; `rough` says that there is friction, `share` the part of it that counts: Newton's
+        method goes by SHARES."""
+        of = self.case["pair"][0].get("friction", {})
+        self.rough, self.share = bool(of), fem.Constant(self.mesh, 1.0)
+        self.mu, bound = float(of.get("coulomb", 0)), Expression(str(of.get("tresca", 0)))
+        self.slip_bound = lambda x: bound.values(x[0], x[1])
 
     @staticmethod
     def _lame(material):
@@ -153,9 +166,11 @@ class Pair:
         self.loaded = self.chi[0] * ufl.dot(body, u[0]) * dx
         self.energy, self.work = fem.form(2 * self.elastic), fem.form(self.loaded)
 
-    def _differentiate(self, J):
+    def _differentiate(self, J, friction=None):
         # q' is 1 or 0, and UFL differentiates its square as that.
         first = ufl.derivative(J, self.u, ufl.TestFunction(self.V))
+        if friction is not None:
+            first += friction
         self.first, self.second = fem.form(first), fem.form(ufl.derivative(first, self.u))
 
     def _residual(self):
@@ -169,17 +184,28 @@ class Pair:
 
     def solve(self):
         """The result, to be stored."""
-        u = self.u.x.array
-        u[:] = self.data
-        before = np.inf
+        self.u.x.array[:] = self.data
+        for share in SHARES if self.rough else [1.0]:
+            self.share.value = share
+            r = self._newton()
+        return self._result(r)
+
+    def _newton(self):
+        """The residual where it is rounding."""
+        u, before = self.u.x.array, np.inf
         for _ in range(60):
             r = self._residual()
             size = np.linalg.norm(r[self.free])
             if size < 1e-16 or (size < 1e-12 and not size < before / 2):
-                return self._result(r)
-            before = size
+                return r
+            before, start = size, u[self.free]
             tangent = self._tangent()[self.free][:, self.free]
-            u[self.free] -= scipy.sparse.linalg.spsolve(tangent.tocsc(), r[self.free])
+            step = scipy.sparse.linalg.spsolve(tangent.tocsc(), r[self.free])
+            # Whole steps may go to and fro over a kink of friction.
+            for share in (1.0, 0.5, 0.25, 0.125) if self.rough and size > 1e-10 else (1.0,):
+                u[self.free] = start - share * step
+                if np.linalg.norm(self._residual()[self.free]) < size:
+                    break
         raise SystemExit("Newton's method does not converge")
 
     def _result(self, r):
@@ -190,9 +216,10 @@ class Pair:
             # In an order that does not depend on rounding.
             displacement[name] = rows[np.lexsort(rows[:, 1::-1].round(9).T)].tolist()
         reactions = {name: [float(np.sum(r[self.support[name, c]])) for c in (0, 1)] for name in ("base", "top")}
-        force, resultant, moment = self._forces()
-        return {"a_uu": number(self.energy), "work": number(self.work), "force": force, "resultant": resultant, "moment": moment,
-                "reactions": reactions, "displacement": displacement}
+        force, resultant, moment, *friction = self._forces()
+        found = {"a_uu": number(self.energy), "work": number(self.work), "force": force, "resultant": resultant, "moment": moment,
+                 "reactions": reactions, "displacement": displacement}
+        return found | {"friction": dict(zip(("sticks", "slides"), friction))} if self.rough else found
 
 
 class Joined(Pair):
@@ -217,20 +244,33 @@ class Joined(Pair):
         # The gap at the nodes, linear or quadratic between them.
         gap = fem.Function(compat.scalar_space(self.mesh, "Lagrange", self.degree))
         gap.interpolate(self.gap)
-        if self.case["pair"][0]["law"] == "contact":
+        friction, measures = None, []
+        if self.case["pair"][0].get("law", "contact") == "contact":
             P = ufl.dot(jump, d) - gap("+") - both * ufl.dot(stress, d)
             q = ufl.conditional(ufl.gt(P, 0), P, 0) * d
-            pulls = ufl.dot(stress, d) * d
+            pulls = stress if self.rough else ufl.dot(stress, d) * d
         else:
             q, pulls = jump - gap("+") * d - both * stress, stress
-        self._differentiate(self.elastic - both * ufl.dot(pulls, pulls) / 2 * dS + ufl.dot(q, q) / (2 * both) * dS - self.loaded)
+        J = self.elastic - both * ufl.dot(pulls, pulls) / 2 * dS + ufl.dot(q, q) / (2 * both) * dS - self.loaded
+        if self.rough:
+            t = ufl.as_vector((-d[1], d[0]))
+            P_t = ufl.dot(jump, t) - both * ufl.dot(stress, t)
+            bound = fem.Function(compat.scalar_space(self.mesh, "Lagrange", 1))
+            bound.interpolate(self.slip_bound)
+            m = self.share * (both * bound("+") + self.mu * ufl.dot(q, d))
+            clipped = method.clip(P_t, m)
+            friction = clipped / both * ufl.derivative(P_t, self.u, ufl.TestFunction(self.V)) * dS
+            slides = ufl.conditional(ufl.gt(m, 0), method.side(P_t, m) ** 2, 0)
+            measures = ufl.conditional(ufl.gt(m, 0), 1, 0) - slides, slides
+            q += clipped * t
+        self._differentiate(J, friction)
         force = -q / both
-        parts = ufl.dot(q, d) / both, force[0], force[1], x("+")[0] * force[1] - x("+")[1] * force[0]
+        parts = ufl.dot(q, d) / both, force[0], force[1], x("+")[0] * force[1] - x("+")[1] * force[0], *measures
         self.parts = [fem.form(part * dS) for part in parts]
 
     def _forces(self):
-        force, x, y, moment = (float(fem.assemble_scalar(part)) for part in self.parts)
-        return force, [x, y], moment
+        force, x, y, moment, *measures = (float(fem.assemble_scalar(part)) for part in self.parts)
+        return force, [x, y], moment, *measures
 
 
 class Apart(Pair):
@@ -250,6 +290,7 @@ class Apart(Pair):
         along = ends[0].reshape(-1, 2)[np.argmax(ends[0].reshape(-1, 2)[:, 0])] - foot
         along /= np.linalg.norm(along)
         self.d = np.array([-along[1], along[0]])  # from the lower body to the upper one
+        self.t = -along
         sides = [np.sort((line - foot) @ along, axis=1) for line in ends]
         low, high = max(side.min() for side in sides), min(side.max() for side in sides)
         nodes = np.sort(np.concatenate([side.ravel() for side in (sides if self.merged else sides[:1])] + [[low, high]]))
@@ -261,7 +302,8 @@ class Apart(Pair):
         self.x = foot + (start[:, None] + self.lengths[:, None] * self.at)[:, :, None] * along
         gamma = self._gamma(kappa, np.concatenate([self.curve[name] for name in names])).x.array
         shape = (len(start) * (p + 1), len(self.u.x.array))
-        value, stresses, gammas = sparse.lil_matrix(shape), [sparse.lil_matrix(shape) for _ in BODIES], []
+        directions = [self.d, self.t]
+        values, stresses, gammas = [sparse.lil_matrix(shape) for _ in directions], [[sparse.lil_matrix(shape) for _ in BODIES] for _ in directions], []
         for i, name in enumerate(names):
             of = np.array([self.of.links(f)[0] for f in self.curve[name]])
             own = [np.flatnonzero((side[0] < m) & (m < side[1]))[0] for m in (start + end) / 2 for side in [sides[i].T]]
@@ -276,52 +318,70 @@ class Apart(Pair):
                 rows = e * (p + 1) + np.arange(p + 1)
                 for c, (space, parent) in enumerate(spaces):
                     dofs = np.array(parent)[space.dofmap.cell_dofs(cell)]
-                    # d . sigma d of a displacement along axis c with this gradient
-                    s = lam * gradients[:, :, c] + 2 * mu * self.d[c] * (gradients @ self.d)
-                    # Affine between the ends.
-                    s = (1 - self.at)[:, None] * s[0] + self.at[:, None] * s[-1]
-                    for k, dof in enumerate(dofs):
-                        value[rows, dof] = (1, -1)[i] * self.d[c] * phi[:, k]
-                        stresses[i][rows, dof] = s[:, k]
+                    for direction, value, stress in zip(directions, values, stresses):
+                        # direction . sigma d of a displacement along axis c with this gradient
+                        s = lam * (direction @ self.d) * gradients[:, :, c]
+                        s = s + mu * (direction[c] * (gradients @ self.d) + self.d[c] * (gradients @ direction))
+                        # Affine between the ends.
+                        s = (1 - self.at)[:, None] * s[0] + self.at[:, None] * s[-1]
+                        for k, dof in enumerate(dofs):
+                            value[rows, dof] = (1, -1)[i] * direction[c] * phi[:, k]
+                            stress[i][rows, dof] = s[:, k]
         self.both = gammas[0] + gammas[1]
         spread = lambda numbers: sparse.diags(np.repeat(numbers, p + 1))
-        stress = sum(spread(g / self.both) @ s.tocsr() for g, s in zip(gammas, stresses))
-        self.P0 = value.tocsr() - spread(self.both) @ stress
+        weighted = [sum(spread(g / self.both) @ s.tocsr() for g, s in zip(gammas, stress)) for stress in stresses]
+        self.P0, self.P0_t = (value.tocsr() - spread(self.both) @ stress for value, stress in zip(values, weighted))
+        ends = self.slip_bound(np.moveaxis(self.x[:, [0, -1]], 2, 0)) * np.ones((len(start), 2))
+        self.s = ends @ [1 - self.at, self.at]
         # int Gamma s s, by Gauss points that are enough for affine s.
         points, weights = gauss(p + 1)
         basis = edge_basis(p, points)
         mass = np.einsum("g,ga,gb->ab", weights, basis, basis)
         blocks = sparse.block_diag([mass * factor for factor in self.both * self.lengths])
-        self.pulls = stress.T @ blocks @ stress
+        self.pulls = sum(stress.T @ blocks @ stress for stress in (weighted if self.rough else weighted[:1]))
 
     def _sections(self):
-        """Points (stretch, section, point) between the roots of P, their weights, the basis and P there."""
-        p = self.degree
-        nodal = (self.P0 @ self.u.x.array).reshape(-1, p + 1) - self.gap(np.moveaxis(self.x, 2, 0))
-        cuts = np.sort(np.column_stack((np.zeros(len(nodal)), roots(nodal), np.ones(len(nodal)))), axis=1)
+        """Points (stretch, section, point) between the roots of P, and with friction of m and P_t -+ m, their weights, the basis; there P,
+        clip(P_t; [m]+), where it sticks, and 1 and -1 where it slides."""
+        p, u = self.degree, self.u.x.array
+        nodal = (self.P0 @ u).reshape(-1, p + 1) - self.gap(np.moveaxis(self.x, 2, 0))
+        across = (self.P0_t @ u).reshape(-1, p + 1)
+        bound = float(self.share.value) * (self.both[:, None] * self.s + self.mu * nodal)
+        cut_at = [nodal, bound, across - bound, across + bound] if self.rough else [nodal]
+        cuts = np.sort(np.column_stack((np.zeros(len(nodal)), *map(roots, cut_at), np.ones(len(nodal)))), axis=1)
         points, weights = gauss(p + 1)
         width = np.diff(cuts, axis=1)[:, :, None]
         s = cuts[:, :-1, None] + width * points
         basis = edge_basis(p, s)
-        return s, weights * width * self.lengths[:, None, None], basis, np.einsum("esgk,ek->esg", basis, nodal)
+        P, P_t, m = (np.einsum("esgk,ek->esg", basis, values) for values in (nodal, across, bound))
+        if not self.rough:
+            m = 0 * m
+        slides = np.where(m > 0, np.sign(P_t) * (np.abs(P_t) > m), 0)
+        sticks = (m > 0) & (slides == 0)
+        return s, weights * width * self.lengths[:, None, None], basis, P, np.where(sticks, P_t, slides * m), sticks, slides
 
     def _residual(self):
-        _, w, basis, P = self._sections()
-        q = np.einsum("esg,esg,esgk->ek", w, np.maximum(P, 0), basis) / self.both[:, None]
-        return super()._residual() - self.pulls @ self.u.x.array + self.P0.T @ q.ravel()
+        _, w, basis, P, clipped, *_ = self._sections()
+        q, f = (np.einsum("esg,esg,esgk->ek", w, values, basis) / self.both[:, None] for values in (np.maximum(P, 0), clipped))
+        return super()._residual() - self.pulls @ self.u.x.array + self.P0.T @ q.ravel() + self.P0_t.T @ f.ravel()
 
     def _tangent(self):
-        _, w, basis, P = self._sections()
-        blocks = np.einsum("esg,esg,esgk,esgl->ekl", w, (P > 0).astype(float), basis, basis) / self.both[:, None, None]
-        return super()._tangent() - self.pulls + self.P0.T @ sparse.block_diag(blocks) @ self.P0
+        _, w, basis, P, _, sticks, slides = self._sections()
+        mass = lambda where: sparse.block_diag(np.einsum("esg,esg,esgk,esgl->ekl", w, where, basis, basis) / self.both[:, None, None])
+        found = super()._tangent() - self.pulls + self.P0.T @ mass((P > 0).astype(float)) @ self.P0
+        if self.rough:
+            mu = float(self.share.value) * self.mu
+            found = found + self.P0_t.T @ (mass(sticks.astype(float)) @ self.P0_t + mass(mu * slides) @ self.P0)
+        return found
 
     def _forces(self):
-        s, w, _, P = self._sections()
-        pressure = w * np.maximum(P, 0) / self.both[:, None, None]
-        force = -self.d * pressure.sum()
+        s, w, _, P, clipped, sticks, slides = self._sections()
+        pressure, shear = (w * values / self.both[:, None, None] for values in (np.maximum(P, 0), clipped))
+        vectors = -pressure[..., None] * self.d - shear[..., None] * self.t
         x = self.x[:, 0, None, None] + s[..., None] * (self.x[:, -1] - self.x[:, 0])[:, None, None]
-        moment = np.sum(pressure * (x[..., 1] * self.d[0] - x[..., 0] * self.d[1]))
-        return float(pressure.sum()), force.tolist(), float(moment)
+        moment = np.sum(x[..., 0] * vectors[..., 1] - x[..., 1] * vectors[..., 0])
+        force = vectors.sum(axis=(0, 1, 2))
+        return float(pressure.sum()), force.tolist(), float(moment), float(np.sum(w * sticks)), float(np.sum(w * np.abs(slides)))
 
 
 def model(file):
@@ -341,14 +401,18 @@ def fresh(file):
 
 
 def difference(a, b):
-    """The largest difference of two results, forces relative to the force, displacements to the largest one, energies to a(u, u)."""
+    """The largest difference of two results, forces relative to the force, displacements to the largest one, energies to a(u, u), lengths
+    that stick or slide to their sum."""
     u, v = (np.concatenate([np.array(result["displacement"][name]) for name in BODIES]) for result in (a, b))
     if u.shape != v.shape:
         return float("inf")
     forces = [np.array([result["force"], *result["resultant"], result["moment"], *result["reactions"]["base"], *result["reactions"]["top"]])
               for result in (a, b)]
+    if ("friction" in a) != ("friction" in b):
+        return float("inf")
+    lengths = [np.array([result["friction"][key] for key in ("sticks", "slides")] if "friction" in a else [1.0]) for result in (a, b)]
     energies = [np.array([result["a_uu"], result["work"]]) for result in (a, b)]
-    return float(max(np.max(np.abs(forces[0] - forces[1])) / np.max(np.abs(forces[0])),
+    return float(max(np.max(np.abs(forces[0] - forces[1])) / np.max(np.abs(forces[0])), np.max(np.abs(lengths[0] - lengths[1])) / lengths[0].sum(),
                      np.max(np.abs(energies[0] - energies[1])) / energies[0][0], np.max(np.abs(u - v)) / np.max(np.abs(u[:, 2:]))))
 
 

@@ -12,6 +12,7 @@ from petsc4py import PETSc
 from . import compat
 from .case import CaseError
 from .constraints import Constraints, Demand
+from .friction import slip_bounds
 from .load import exact_load
 from .mesh import plane_mesh
 from .obstacle import NoDistance
@@ -57,11 +58,13 @@ class Problem:
         self.holds = self._constraints()
         self.prescribed = self.holds.held.ravel()
         self.data = self.holds.from_frames(self.holds.data.ravel())
+        self.rough = self._friction()
         self.contact = self._contact()
         # The paper's lines of contact: straight, with a gap along the normal.
         curved = [name for name in case.of_kind("contact") if any(self.smooth.oriented(*e) in self.smooth.ends for e in plane.boundaries[name].tolist())]
         self.straight = not case.of_revolution and not curved and not any(hasattr(data, "closest") for data in case.of_kind("contact").values())
         self.gaps = {name: self._gap(name, gap) for name, gap in case.of_kind("contact").items()} if self.straight else {}
+        self.slip_bounds = {name: self._slip_bound(name, law) for name, law in self.rough.items() if not isinstance(law, float)}
         self.load = self._load()
         self.free, self.slides = self._free_motions()
 
@@ -225,6 +228,36 @@ class Problem:
         self.refuse(message)
         return found
 
+    def _friction(self):
+        """{name: coefficient or slip bound} of the boundaries with friction; one whose bound is 0 all along has none."""
+        found, message = {}, None
+        for name in self.case.of_kind("contact"):
+            law = self.case.boundaries[name].friction
+            if law is None or isinstance(law, float):
+                found.update({name: law} if law else {})
+                continue
+            places = self.plane.points[np.unique(self.plane.boundaries[name])]
+            place, values = f"boundary.{name}.contact.friction.tresca", slip_bounds(law, places)
+            message = message or self._not_finite(place, values, *places.T)
+            if np.any(values < 0):
+                worst = np.argmax(values < 0)
+                x, y = places[worst]
+                message = message or (f"{place}: found {float(values[worst])!r} at ({float(x)!r}, {float(y)!r}), "
+                                      "expected a stress that is not negative at every point of the boundary")
+            found.update({name: law} if np.any(values > 0) else {})
+        self.refuse(message)
+        return found
+
+    def _slip_bound(self, name, law):
+        """The slip bound at the vertices of the contact boundary `name`, affine between them."""
+        space = compat.scalar_space(self.mesh, "Lagrange", 1)
+        nodes = fem.locate_dofs_topological(space, 1, self.boundaries[name].facets)
+        function = fem.Function(space)
+        places = space.tabulate_dof_coordinates()[nodes, :2]
+        # DOLFINx's coordinates carry rounding.
+        function.x.array[nodes] = np.maximum(slip_bounds(law, places), 0)
+        return function
+
     def _free_motions(self):
         """(the motions that supports leave free, those of them that slide along all obstacles), as fields over the owned dofs. One dof
         per slide is then held where it is. Refuses a body that neither supports nor contact can hold."""
@@ -258,15 +291,18 @@ class Problem:
         return free, slides
 
     def _normal_motion(self, motions):
-        """n~ . r at the nodes of the contact edges of owned triangles, a column for each: (motions, points)."""
+        """n~ . r at the nodes of the contact edges of owned triangles, a column for each, and across n~ where there is friction:
+        (motions, points)."""
         keys = {key for _, a, b in self.contact for key in self._keys(a, b)}
         node_of = self._nodes_at(keys)
         columns = []
-        for (_, a, b), (directions, _) in self.contact.items():
+        for (name, a, b), (directions, _) in self.contact.items():
             for key, n in zip(self._keys(a, b), directions[[0, -1, 1]]):
                 node = node_of[key]
                 if 2 * node < self.owned_dofs:
                     columns.append(motions[:, 2 * node : 2 * node + 2] @ n)
+                    if name in self.rough:
+                        columns.append(motions[:, 2 * node : 2 * node + 2] @ [-n[1], n[0]])
         return np.array(columns).reshape(-1, len(motions)).T
 
     def least_norm(self, u):

@@ -17,7 +17,8 @@ def command(*arguments):
 
 class Ranks(TestCase):
     def test_1_2_and_4_processes_give_the_same_numbers(self):
-        runs = (("cantilever-p2-gauss4-n8", []), ("gap-p1-exact-n8", []), ("smooth-p2-exact-n8", ["--iterative"]))
+        runs = (("cantilever-p2-gauss4-n8", []), ("gap-p1-exact-n8", []), ("smooth-p2-exact-n8", ["--iterative"]), ("friction-stay-p1-exact", []),
+                ("friction-drag-p2-gauss11", []))
         for name, option in runs:
             results = {}
             for ranks in (1, 2, 4):

@@ -125,9 +125,12 @@ impl Ladder {
 }
 
 impl Ladder {
-    /// [`interpolation::bound`] for the solution of `problem`, where it holds.
+    /// [`interpolation::bound`] for the solution of `problem`, where it holds: without friction.
     fn bound(&self, problem: &Problem, solution: &Solution) -> Option<f64> {
-        if self.method.degree != Degree::One || self.method.quadrature != ContactQuadrature::Exact {
+        if self.method.degree != Degree::One
+            || self.method.quadrature != ContactQuadrature::Exact
+            || self.solution.slip_bound().is_some()
+        {
             return None;
         }
         let space = Space::new(&problem.mesh, Degree::One);
