@@ -123,26 +123,25 @@ fn evaluate_on<T: Number>(
     instructions: &[Instruction],
     [x, y]: [T; 2],
 ) -> T {
+    let take = |place: usize, values: &mut [Option<T>]| {
+        values[place].take().unwrap_or_else(|| T::from_double(f64::NAN))
+    };
     let mut count = 0;
     for instruction in instructions {
-        let mut pop = || {
-            count -= 1;
-            values[count].take().unwrap_or_else(|| T::from_double(f64::NAN))
-        };
-        let value = match *instruction {
-            Instruction::Number(value) => T::from_double(value),
-            Instruction::X => x.clone(),
-            Instruction::Y => y.clone(),
-            Instruction::Unary(f) => T::unary(f, pop()),
+        let (value, taken) = match *instruction {
+            Instruction::Number(value) => (T::from_double(value), 0),
+            Instruction::X => (x.clone(), 0),
+            Instruction::Y => (y.clone(), 0),
+            Instruction::Unary(f) => (T::unary(f, take(count - 1, values)), 1),
             Instruction::Binary(f) => {
-                let b = pop();
-                T::binary(f, pop(), b)
+                let [a, b] = [count - 2, count - 1].map(|place| take(place, values));
+                (T::binary(f, a, b), 2)
             }
         };
-        values[count] = Some(value);
-        count += 1;
+        values[count - taken] = Some(value);
+        count = count + 1 - taken;
     }
-    values[0].take().unwrap_or_else(|| T::from_double(f64::NAN))
+    take(0, values)
 }
 
 /// The value of the instructions, if neither x nor y is among them.
