@@ -1,6 +1,7 @@
 //! One solve in a process of its own, for its peak memory.
 
 use std::fs;
+use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
@@ -121,18 +122,53 @@ fn solve(task: Task, degree: usize, body: &str) -> Option<Report> {
     })
 }
 
-/// The instructions of a linear solve, and of the contact solve with its proof, as valgrind counts them; `None` without valgrind.
+/// The instructions of a program with these arguments, as valgrind counts them; `None` without valgrind.
+fn counted(program: &Path, arguments: &[&str]) -> Option<f64> {
+    let output = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg(program)
+        .args(arguments)
+        .output()
+        .ok()?;
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    let count = text.lines().find_map(|line| line.split_once("Collected : "))?.1.trim();
+    count.parse().ok()
+}
+
+/// A run of the command.
+pub struct OfCommand {
+    instructions: f64,
+    pub unknowns: u64,
+    pub factorizations: u64,
+}
+
+impl OfCommand {
+    /// The instructions for each unknown.
+    pub fn each(&self) -> f64 {
+        self.instructions / self.unknowns as f64
+    }
+}
+
+/// `signorini solve` of a case in `cases`; `None` without valgrind.
+pub fn of_command(case: &str) -> Option<OfCommand> {
+    let file = format!("{}/cases/{case}.toml", env!("CARGO_MANIFEST_DIR"));
+    let folder = std::env::temp_dir().join(format!("signorini-{case}-{}", std::process::id()));
+    let out = folder.to_str()?;
+    let program = Path::new(env!("CARGO_BIN_EXE_signorini"));
+    let instructions = counted(program, &["solve", &file, "--out", out])?;
+    let result = fs::read_to_string(folder.join("result.json")).expect("the case has a result");
+    let result: serde_json::Value = serde_json::from_str(&result).expect("JSON");
+    fs::remove_dir_all(&folder).expect("the folder made above");
+    let number = |key: &str| result.pointer(key).and_then(|n| n.as_u64()).expect("a number");
+    let (unknowns, factorizations) = (number("/mesh/dofs"), number("/newton/factorizations"));
+    Some(OfCommand { instructions, unknowns, factorizations })
+}
+
+/// The instructions of a linear solve, and of the contact solve with its proof; `None` without valgrind.
 pub fn instructions(degree: usize, body: &str) -> Option<[f64; 2]> {
-    let of = |task| -> Option<f64> {
-        let output = Command::new("valgrind")
-            .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
-            .arg(std::env::current_exe().ok()?)
-            .args([FLAG, name(task), &degree.to_string(), body])
-            .output()
-            .ok()?;
-        let text = String::from_utf8_lossy(&output.stderr).into_owned();
-        let count = text.lines().find_map(|line| line.split_once("Collected : "))?.1.trim();
-        count.parse().ok()
+    let of = |task| {
+        let program = std::env::current_exe().ok()?;
+        counted(&program, &[FLAG, name(task), &degree.to_string(), body])
     };
     let mesh = of(Task::Mesh)?;
     Some([of(Task::Linear)? - mesh, of(Task::Proved)? - mesh])

@@ -85,21 +85,14 @@ pub fn table_of_limits(n: usize, repetitions: usize, own: &[Measured]) -> String
             ]
         })
         .collect();
-    let head = [
-        "",
-        "operations (10^9)",
-        "factorisation",
-        "10^9 per second",
-        "of the dense peak",
-        "factor, bytes per unknown",
-        "peak of the contact solve, bytes per unknown",
-        "peak / factor",
-    ];
+    let head =
+        ["", "10^9 operations", "time", "10^9 / s", "of the peak", "L", "solve", "solve / L"];
     format!(
         "## Distance to the limit
 
 The sparse factorisation at n = {n}, analysis included, against faer's dense product of matrices of order 1024:
-{} x 10^9 operations per second on one thread. Operations are the sum of the squared column counts of L.
+{} x 10^9 operations per second on one thread. Operations are the sum of the squared column counts of L; L and the contact solve at its peak
+in bytes for each unknown.
 
 {}",
         three(peak / 1e9),
@@ -110,13 +103,11 @@ The sparse factorisation at n = {n}, analysis included, against faer's dense pro
 /// What was measured and not built.
 pub const LEFT_OUT: &str = "## Tried, and left out
 
-Each measured beside the code as it was, on a quiet machine, P1 on squares, 2026-11-22:
-
-- Two threads in the sparse factorisation (faer's own, by rayon): n = 128 takes 2.2 times as long, n = 256 1.5 times,
-  n = 512 1.3 times: supernodes of two-dimensional bodies are too small to share. So there is no option for threads.
+- Two threads in the sparse factorisation (rayon): n = 128 takes 2.2 times as long, n = 512 1.3 times: supernodes of plane bodies are too
+  small to share. So there is no option for threads.
 - faer's minimum degree in place of nested dissection: at n = 256 order, analysis and factorisation take 1.8 times as long.
-- No correction where the first pass is accurate enough: the solve takes 4 to 8 % less, but forces balance to 1e-12 and not to 1e-15, and
-  their enclosures are ten times as wide.
+- No correction where the first pass is accurate enough: 4 to 8 % less time, but forces balance to 1e-12 and not to 1e-15, and
+  enclosures are ten times as wide.
 ";
 
 fn least_factor(matrix: &LowerTriangle, repetitions: usize) -> (Duration, Factor) {

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! cargo bench --bench speed                         our own tables
-//! cargo bench --bench speed -- --peers --large      all of docs/speed.md
+//! cargo bench --bench speed -- --peers              all of docs/speed.md
+//! cargo bench --bench speed -- --large              squares with up to 2 10^6 unknowns, too
 //! cargo bench --bench speed -- --huge               a square with 10^7 unknowns alone, printed: some 20 GB
 //! cargo bench --bench speed -- --bodies             the table of bodies alone, printed
 //! cargo bench --bench speed -- --quick              small sizes, nothing written: does it run?
@@ -117,6 +118,7 @@ fn main() {
         Some(rivals) => peers::tables(rivals),
         None => "## Other codes\n\nNot measured in this run: `--peers` does.\n".to_owned(),
     });
+    text.push(own::two_bodies());
     text.push(if plan.large { own::large(&LARGE) } else { own::NOT_LARGE.to_owned() });
     text.insert(0, provenance::head(&arguments, others.share()));
     let text = text.join("\n");

@@ -33,11 +33,11 @@ const fn peer(
 }
 
 const PEERS: [Peer; 5] = [
-    peer("DOLFINx, MUMPS", SYSTEM, "dolfinx_petsc.py", "mumps"),
-    peer("DOLFINx, CHOLMOD", SYSTEM, "dolfinx_petsc.py", "cholmod"),
-    peer("scikit-fem, CHOLMOD", OWN, "scikit_fem.py", "cholmod"),
-    peer("NGSolve, sparsecholesky", OWN, "ngsolve_direct.py", "sparsecholesky"),
-    peer("GetFEM, MUMPS", SYSTEM, "getfem_mumps.py", "mumps"),
+    peer("DOLFINx MUMPS", SYSTEM, "dolfinx_petsc.py", "mumps"),
+    peer("DOLFINx CHOLMOD", SYSTEM, "dolfinx_petsc.py", "cholmod"),
+    peer("scikit-fem", OWN, "scikit_fem.py", "cholmod"),
+    peer("NGSolve", OWN, "ngsolve_direct.py", "sparsecholesky"),
+    peer("GetFEM", SYSTEM, "getfem_mumps.py", "mumps"),
 ];
 
 /// The line that a script prints.
@@ -99,8 +99,8 @@ const OURS: &str = "signorini";
 /// Beyond this many seconds for a contact solve, one run is enough.
 const SLOW: f64 = 3.0;
 
-/// All energies are the same up to this, relative.
-const AGREEMENT: f64 = 1e-9;
+/// All energies are the same up to this, relative: on the graded square the others get no nearer than 1e-9.
+const AGREEMENT: f64 = 1e-8;
 
 /// The codes whose script has P2, too: the first ones.
 const QUADRATIC: usize = 2;
@@ -233,15 +233,14 @@ fn run(
 
 /// (ii)
 pub fn tables(all: &[OnBody]) -> String {
-    let mut head = vec!["body", "", "unknowns", "ours, with the proof"];
+    let mut head = vec!["body", "", "ours"];
     head.extend(PEERS.iter().map(|peer| peer.name));
-    head.extend(["contact", "without our proof", "linear", "memory"]);
+    head.extend(["contact", "unproved", "linear", "memory"]);
     let row = |on: &OnBody| {
         let ours = &on.ours;
         let mut row = vec![
             ours.body.clone(),
             format!("P{}", ours.degree),
-            ours.unknowns.to_string(),
             format!("{} ({})", seconds(ours.proved()), ours.steps),
         ];
         let cell = |k: usize| match on.others.get(k) {
@@ -269,10 +268,10 @@ pub fn tables(all: &[OnBody]) -> String {
         "## Other codes
 
 The same mesh, method (4 Gauss points per contact edge), gamma0 and single thread; the scripts are in `reference/peers/`. The others start from 0
-and stop at a relative residual of 1e-10, with every part that is constant assembled once and the analysis of the pattern kept where the
-code can keep it; ours starts from the linear solution, goes on to the rounding level and proves its solution. Times are those of the contact solve, with its
-Newton steps in brackets; the last columns are the least of the others over ours. All energies a(u, u) agree to 1e-9; a code without
-a result does not reach the tolerance, or another energy. The memory is that of the whole process.
+and stop at a relative residual of 1e-7, which all of them reach; what is constant is assembled once, and the analysis of the pattern kept where the
+code can. Ours starts from the linear solution and goes on to the rounding level. Times of the contact solve, ours with its proof, and
+Newton steps in brackets; the last columns are the least of the others over ours. All energies a(u, u) agree to 1e-8; a code without
+a result does not reach the tolerance, or another energy.
 
 {}
 Versions:

@@ -98,7 +98,7 @@ fn disk() -> Problem {
 
 /// A problem in the words of the scripts for other codes (`reference/peers/common.py`).
 pub struct Posed {
-    /// What it is.
+    /// Its name in tables.
     pub title: String,
     /// The problem.
     pub problem: Problem,
@@ -123,18 +123,15 @@ pub fn posed(name: &str) -> Posed {
     match name.split_once('-').map_or((name, ""), |parts| parts) {
         ("square", n) => {
             let n: usize = n.parse().expect("a number of cells");
-            posed(&format!("square, {n} x {n} cells"), block(n), "top", [-4.0, 10.0], 0.0)
+            posed(&format!("square {n}"), block(n), "top", [-4.0, 10.0], 0.0)
         }
-        ("strip", _) => posed("strip 500 : 1, 1000 x 2 cells", strip(), "top", [-4.0, 0.02], 0.0),
-        ("beam", _) => posed("beam 20 : 1, 320 x 16 cells", beam(), "left", [-1e-4, 0.0], -0.01),
-        ("graded", _) => {
-            let title = "square, 96 x 96 cells, graded to the floor by y^3";
-            posed(title, graded(), "top", [-4.0, 10.0], 0.0)
-        }
+        ("strip", _) => posed("strip", strip(), "top", [-4.0, 0.02], 0.0),
+        ("beam", _) => posed("beam", beam(), "left", [-1e-4, 0.0], -0.01),
+        ("graded", _) => posed("graded", graded(), "top", [-4.0, 10.0], 0.0),
         ("disk", _) => Posed {
             floor: "contact",
             prescribed: [0.0, -0.015],
-            ..posed("half disk", disk(), "top", [0.0; 2], 0.0)
+            ..posed("disk", disk(), "top", [0.0; 2], 0.0)
         },
         _ => panic!("expected square-N, strip, beam, graded or disk; found {name}"),
     }

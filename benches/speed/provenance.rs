@@ -48,15 +48,13 @@ pub fn head(arguments: &[String], others: f64) -> String {
 
 Written by `cargo bench --bench speed{tail}` on {date}, at commit {commit}.
 
-- Machine: {cpu}, {cores} cores. One thread in every code. Other processes took {others:.1} % of one core meanwhile:
-  the machine was {idle}.
+- {cpu}, {cores} cores, one thread in every code; other processes took {others:.1} % of one core: the machine was {idle}.
 - signorini {version}, faer {faer}, {rustc}.
-- The case, if nothing else is said: the unit square in n x n cells cut by diagonals from the lower left to the upper right, lambda = mu = 1
-  (plane strain), body force (0, -4 + 10 x), the top clamped, contact below, gamma0 at half the coercivity limit.
-- Times are minima of runs that take turns. Ratios within this page are its claims; the times belong to this machine.
-- Memory is the peak resident memory of a process that does nothing else.
-- Clocks start with the mesh in memory and stop at the displacements (of the contact solve: with their residual in
-  the full system). The proof of how far these are from the exact solution is a phase of its own.
+- Square n: the unit square in n x n cells cut by diagonals, lambda = mu = 1 (plane strain), body force (0, -4 + 10 x), the top clamped, contact
+  below, gamma0 at half the coercivity limit. Graded: square 96, crossed, with the heights y^3. Strip: 500 : 1, 1000 x 2 crossed cells, force -4 + x/50.
+  Beam: 20 : 1, 320 x 16 crossed cells, clamped at the left, a floor 0.01 below. Disk: the half disk of `cases/disk.toml`.
+- Times are minima of runs that take turns, from the mesh in memory to displacements (of a contact solve: with their residual in the full system); memory
+  is the peak of a process that does nothing else.
 
 ![Time and memory against unknowns](speed.svg)
 ",

@@ -211,6 +211,10 @@ impl EdgeRule {
     where
         E: ExactEdge<f64, N, M>,
     {
+        if is_open(&p) {
+            let (gradient, hessian) = ([0.0; M], [[0.0; M]; M]);
+            return EdgeIntegrals { energy: 0.0, gradient, hessian, active: 0.0 };
+        }
         match (self, radii) {
             (EdgeRule::Exact, None) => E::exact(p.map(DoubleDouble::head)),
             (EdgeRule::Exact, Some(radii)) => {
@@ -259,6 +263,9 @@ impl EdgeRule {
     where
         E: Element<N, M>,
     {
+        if is_open(&p) && is_open(&q) {
+            return 0.0;
+        }
         match self {
             EdgeRule::Exact => {
                 let [p, q] = [p, q].map(|values| values.map(DoubleDouble::head));
@@ -282,6 +289,15 @@ impl EdgeRule {
     }
 }
 
+/// Returns whether P with these values at the nodes is positive nowhere on an edge, certainly: none of its Bernstein coefficients is.
+/// There every integral is zero, whatever the rule.
+fn is_open<const M: usize>(p: &[DoubleDouble; M]) -> bool {
+    let heads = p.map(DoubleDouble::head);
+    let size: f64 = heads.iter().map(|p| p.abs()).sum();
+    let middle = |p: &f64| 2.0 * p - (heads[0] + heads[1]) / 2.0 + 4.0 * f64::EPSILON * size;
+    heads[..2].iter().all(|p| *p <= 0.0) && heads[2..].iter().all(|p| middle(p) <= 0.0)
+}
+
 /// Points and weights, exactly.
 pub(super) fn in_double_doubles(
     rule: &[(f64, f64)],
@@ -292,6 +308,7 @@ pub(super) fn in_double_doubles(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernel::P2;
 
     const LAWS: [Law; 4] =
         [Law::Contact, Law::Sliding, Law::Bonded, Law::Friction(Bound::Tresca([0.4, 0.7]))];
@@ -325,6 +342,17 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn an_edge_is_open_where_no_point_of_it_presses() {
+        let of = |p: [f64; 3]| is_open(&p.map(DoubleDouble::from));
+        assert!(of([-1.0, -1.0, -1.0]) && of([-1.0, 0.0, -0.5]) && of([-0.0, -2.0, -0.6]));
+        // It presses at an end, in the middle, between the nodes, or may: 0.
+        assert!(!of([1e-300, -1.0, -1.0]) && !of([-1.0, -1.0, 1e-9]) && !of([-2.0, 0.0, -0.2]));
+        assert!(!of([f64::NAN, -1.0, -1.0]) && !of([-1.0, -1.0, f64::NAN]));
+        let at = |s: f64| edge_integral::value_at::<P2, f64, _, _>([-2.0, 0.0, -0.2], s);
+        assert!((1..100).any(|k| at(f64::from(k) / 100.0) > 0.0), "control");
     }
 
     #[test]

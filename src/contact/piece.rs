@@ -737,16 +737,20 @@ impl Piece {
         p: &[T],
     ) -> Contribution {
         let of = (self.degree, self.gamma / stiffness);
-        let Integrals { energy, gradient, hessian, active, friction } =
+        let Integrals { energy, mut gradient, mut hessian, active, friction } =
             self.geometry.law.integrals(rule, of, self.radii, p);
         let weight = self.weight();
-        let along = &gradient[..self.degree.nodes_per_edge()];
+        // The shape functions add up to one.
+        let whole = gradient[..self.degree.nodes_per_edge()].iter().sum::<f64>();
+        // In place: this is done for every piece in every step.
+        for entry in gradient.iter_mut().chain(&mut hessian) {
+            *entry = stiffness * (weight * *entry);
+        }
         Contribution {
             energy: stiffness * (weight * energy),
-            // The shape functions add up to one.
-            resultant: stiffness * (weight * along.iter().sum::<f64>()),
-            force: gradient.iter().map(|g| stiffness * (weight * g)).collect(),
-            tangent: stiffness * (weight * hessian),
+            resultant: stiffness * (weight * whole),
+            force: gradient,
+            tangent: hessian,
             active: self.length * active,
             friction: friction.map(|measure| self.length * measure),
         }

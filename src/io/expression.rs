@@ -105,24 +105,43 @@ pub trait Number: Clone {
     fn binary(f: Binary, a: Self, b: Self) -> Self;
 }
 
+/// The number of instructions that are worked off without memory from the heap, which would take longer than they do.
+const SHORT: usize = 16;
+
 /// The value of the instructions at (x, y).
-fn evaluate<T: Number>(instructions: &[Instruction], [x, y]: [T; 2]) -> T {
-    let mut values: Vec<T> = Vec::with_capacity(8);
-    let pop = |values: &mut Vec<T>| values.remove(values.len() - 1);
+fn evaluate<T: Number>(instructions: &[Instruction], at: [T; 2]) -> T {
+    if instructions.len() <= SHORT {
+        evaluate_on(&mut [const { None }; SHORT], instructions, at)
+    } else {
+        evaluate_on(&mut vec![None; instructions.len()], instructions, at)
+    }
+}
+
+/// [`evaluate`] with room for as many values as there are instructions. These find as many values as they take.
+fn evaluate_on<T: Number>(
+    values: &mut [Option<T>],
+    instructions: &[Instruction],
+    [x, y]: [T; 2],
+) -> T {
+    let take = |place: usize, values: &mut [Option<T>]| {
+        values[place].take().unwrap_or_else(|| T::from_double(f64::NAN))
+    };
+    let mut count = 0;
     for instruction in instructions {
-        let value = match *instruction {
-            Instruction::Number(value) => T::from_double(value),
-            Instruction::X => x.clone(),
-            Instruction::Y => y.clone(),
-            Instruction::Unary(f) => T::unary(f, pop(&mut values)),
+        let (value, taken) = match *instruction {
+            Instruction::Number(value) => (T::from_double(value), 0),
+            Instruction::X => (x.clone(), 0),
+            Instruction::Y => (y.clone(), 0),
+            Instruction::Unary(f) => (T::unary(f, take(count - 1, values)), 1),
             Instruction::Binary(f) => {
-                let b = pop(&mut values);
-                T::binary(f, pop(&mut values), b)
+                let [a, b] = [count - 2, count - 1].map(|place| take(place, values));
+                (T::binary(f, a, b), 2)
             }
         };
-        values.push(value);
+        values[count - taken] = Some(value);
+        count = count + 1 - taken;
     }
-    pop(&mut values)
+    take(0, values)
 }
 
 /// The value of the instructions, if neither x nor y is among them.

@@ -1,6 +1,26 @@
 //! Singular values and projections for few columns, as accurate as their data: a part of the body has three rigid motions. faer
 //! has both, at seven seconds of compiling (bidiagonal forms, divide and conquer, QR), a twentieth of a release build.
 
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
+use faer::{MatMut, Par};
+
+use crate::solve::SolveError;
+
+/// The lower triangle of a matrix becomes its Cholesky factor, by faer.
+///
+/// # Errors
+/// [`SolveError::NotPositiveDefinite`], as far as doubles tell, and [`SolveError::OutOfMemory`].
+pub(crate) fn cholesky(matrix: MatMut<'_, f64>) -> Result<(), SolveError> {
+    let scratch = cholesky_in_place_scratch::<f64>(matrix.nrows(), Par::Seq, Default::default());
+    let out_of_memory = SolveError::OutOfMemory { bytes: scratch.size_bytes() as u64 };
+    let mut memory = MemBuffer::try_new(scratch).map_err(|_| out_of_memory)?;
+    let stack = MemStack::new(&mut memory);
+    cholesky_in_place(matrix, Default::default(), Par::Seq, stack, Default::default())
+        .map(|_| ())
+        .map_err(|_| SolveError::NotPositiveDefinite)
+}
+
 /// The sum of the products of two lists.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()

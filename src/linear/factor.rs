@@ -115,6 +115,7 @@ impl Structure {
 const BESIDE: usize = 320;
 
 /// L of H = L L^T.
+#[derive(Clone)]
 pub struct Factor {
     structure: Arc<Structure>,
     values: Vec<f64>,
@@ -142,8 +143,33 @@ impl Factor {
         let entries = structure.stored_entries();
         memory::check((8 * entries + scratch + BESIDE * structure.size()) as u64)?;
         let mut values = vec![0.0; entries];
-        numeric::factorise(structure, matrix, &mut values)?;
+        numeric::factorise(structure, matrix, &mut values, |_| true)?;
         Ok(Factor { structure: Arc::clone(structure), values })
+    }
+
+    /// The factor of a matrix that differs from the one of this factor in the columns of these `unknowns` alone, to the last bit what
+    /// [`Factor::with`] gives: a supernode depends on those below it in the elimination tree alone. Nothing is copied if no one else
+    /// has this factor.
+    ///
+    /// # Errors
+    /// As [`Factor::with`].
+    pub(crate) fn changed(
+        mut self: Arc<Self>,
+        matrix: &LowerTriangle,
+        unknowns: impl Iterator<Item = usize>,
+    ) -> Result<Arc<Self>, SolveError> {
+        let structure = Arc::clone(&self.structure);
+        let mut stale = vec![false; structure.supernodes()];
+        unknowns.for_each(|unknown| stale[structure.supernode_of(unknown)] = true);
+        for s in 0..stale.len() {
+            if let (true, Some(&row)) = (stale[s], structure.rows_below(s).first()) {
+                stale[structure.supernode_of(row)] = true;
+            }
+        }
+        memory::check(8 * structure.stored_entries() as u64)?;
+        let values = &mut Arc::make_mut(&mut self).values;
+        numeric::factorise(&structure, matrix, values, |s| stale[s])?;
+        Ok(self)
     }
 
     /// Its structure.

@@ -3,8 +3,6 @@
 //! instructions that the processor has; large ones by faer. faer's own supernodal factorisation calls its packed products for each:
 //! on a strip, where a product has a hundred terms, that takes several times as many instructions.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
@@ -12,6 +10,7 @@ use faer::{Accum, MatMut, MatRef, Par};
 use pulp::{Arch, NullaryFnOnce};
 
 use super::factor::Structure;
+use crate::linear::dense;
 use crate::linear::matrix::LowerTriangle;
 use crate::solve::SolveError;
 
@@ -33,7 +32,7 @@ pub(super) fn scratch_bytes(structure: &Structure) -> usize {
     8 * (structure.size() + 4 * structure.supernodes() + widest.max().unwrap_or(0))
 }
 
-/// Writes L into `values`, the blocks of its supernodes one after the other, each column by column.
+/// Writes L into `values`, the blocks of its supernodes one after the other, each column by column; those that are not `stale` are there.
 ///
 /// # Errors
 /// [`SolveError::NotPositiveDefinite`] as far as doubles tell, and [`SolveError::OutOfMemory`].
@@ -41,8 +40,9 @@ pub(super) fn factorise(
     structure: &Structure,
     matrix: &LowerTriangle,
     values: &mut [f64],
+    stale: impl Fn(usize) -> bool,
 ) -> Result<(), SolveError> {
-    Arch::new().dispatch(Factorisation { structure, matrix, values })
+    Arch::new().dispatch(Factorisation { structure, matrix, values, stale })
 }
 
 /// x <- L^-1 x
@@ -55,18 +55,20 @@ pub(super) fn backward(structure: &Structure, values: &[f64], x: &mut [f64]) {
     Arch::new().dispatch(Backward { structure, values, x });
 }
 
-struct Factorisation<'a> {
+struct Factorisation<'a, F> {
     structure: &'a Structure,
     matrix: &'a LowerTriangle,
     values: &'a mut [f64],
+    /// Whether a supernode is to be computed.
+    stale: F,
 }
 
-impl NullaryFnOnce for Factorisation<'_> {
+impl<F: Fn(usize) -> bool> NullaryFnOnce for Factorisation<'_, F> {
     type Output = Result<(), SolveError>;
 
     #[inline(always)]
     fn call(self) -> Self::Output {
-        let Factorisation { structure, matrix, values } = self;
+        let Factorisation { structure, matrix, values, stale } = self;
         let count = structure.supernodes();
         // The place of each row in the block at hand.
         let mut places = vec![0; structure.size()];
@@ -77,18 +79,21 @@ impl NullaryFnOnce for Factorisation<'_> {
         for s in 0..count {
             let (columns, below) = (structure.columns(s), structure.rows_below(s));
             let [rows, width] = structure.shape(s);
-            for (place, row) in columns.clone().enumerate() {
-                places[row] = place;
-            }
-            for (place, &row) in below.iter().enumerate() {
-                places[row] = width + place;
-            }
             let (left, rest) = values.split_at_mut(structure.start(s));
             let block = &mut rest[..rows * width];
-            block.fill(0.0);
-            for (j, column) in columns.clone().zip(block.chunks_exact_mut(rows)) {
-                for k in matrix.starts[j]..matrix.starts[j + 1] {
-                    column[places[matrix.rows[k]]] = matrix.values[k];
+            let is_stale = stale(s);
+            if is_stale {
+                for (place, row) in columns.clone().enumerate() {
+                    places[row] = place;
+                }
+                for (place, &row) in below.iter().enumerate() {
+                    places[row] = width + place;
+                }
+                block.fill(0.0);
+                for (j, column) in columns.clone().zip(block.chunks_exact_mut(rows)) {
+                    for k in matrix.starts[j]..matrix.starts[j + 1] {
+                        column[places[matrix.rows[k]]] = matrix.values[k];
+                    }
                 }
             }
             let mut d = first[s];
@@ -96,15 +101,17 @@ impl NullaryFnOnce for Factorisation<'_> {
                 let following = next[d];
                 let pattern = &structure.rows_below(d)[used[d]..];
                 let inside = pattern.partition_point(|&row| row < columns.end);
-                local.clear();
-                local.extend(pattern.iter().map(|&row| places[row]));
-                let [of_d, width] = structure.shape(d);
-                let source = Block {
-                    values: &left[structure.start(d)..structure.start(d) + of_d * width],
-                    rows: of_d,
-                    from: width + used[d],
-                };
-                source.subtract_square(inside, &local, (&mut *block, rows), &mut sums);
+                if is_stale {
+                    local.clear();
+                    local.extend(pattern.iter().map(|&row| places[row]));
+                    let [of_d, width] = structure.shape(d);
+                    let source = Block {
+                        values: &left[structure.start(d)..structure.start(d) + of_d * width],
+                        rows: of_d,
+                        from: width + used[d],
+                    };
+                    source.subtract_square(inside, &local, (&mut *block, rows), &mut sums);
+                }
                 used[d] += inside;
                 if let Some(&row) = pattern.get(inside) {
                     let ancestor = structure.supernode_of(row);
@@ -112,7 +119,9 @@ impl NullaryFnOnce for Factorisation<'_> {
                 }
                 d = following;
             }
-            cholesky(block, rows, width)?;
+            if is_stale {
+                cholesky(block, rows, width)?;
+            }
             if let Some(&row) = below.first() {
                 let parent = structure.supernode_of(row);
                 (next[s], first[parent]) = (first[parent], s);
@@ -244,19 +253,9 @@ fn cholesky(block: &mut [f64], rows: usize, width: usize) -> Result<(), SolveErr
 }
 
 fn wide_cholesky(block: &mut [f64], rows: usize, width: usize) -> Result<(), SolveError> {
-    let scratch = cholesky_in_place_scratch::<f64>(width, Par::Seq, Default::default());
-    let out_of_memory = SolveError::OutOfMemory { bytes: scratch.size_bytes() as u64 };
-    let mut memory = MemBuffer::try_new(scratch).map_err(|_| out_of_memory)?;
     let block = MatMut::from_column_major_slice_mut(block, rows, width);
     let (mut top, below) = block.split_at_row_mut(width);
-    cholesky_in_place(
-        top.as_mut(),
-        Default::default(),
-        Par::Seq,
-        MemStack::new(&mut memory),
-        Default::default(),
-    )
-    .map_err(|_| SolveError::NotPositiveDefinite)?;
+    dense::cholesky(top.as_mut())?;
     solve_lower_triangular_in_place(top.as_ref(), below.transpose_mut(), Par::Seq);
     Ok(())
 }
@@ -350,7 +349,10 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use approx::assert_abs_diff_eq;
+    use nalgebra::DMatrix;
 
     use super::*;
     use crate::contact::{Discretization, EdgeRule};
@@ -431,6 +433,54 @@ mod tests {
                 assert!(!is_the_factor(system, &other), "control");
             });
         }
+    }
+
+    #[test]
+    fn where_some_columns_change_the_factor_is_to_the_last_bit_what_a_new_one_is() {
+        for (degree, n) in [(Degree::One, 5), (Degree::One, 48), (Degree::Two, 24)] {
+            with_system(degree, n, |system| {
+                let values = |factor: &Factor| {
+                    let blocks = (0..system.structure.supernodes()).map(|s| factor.block(s));
+                    let entries = |block: faer::MatRef<f64>| {
+                        let columns = (0..block.ncols()).map(|k| block.col(k).iter().copied());
+                        columns.flatten().collect::<Vec<f64>>()
+                    };
+                    blocks.flat_map(entries).collect::<Vec<f64>>()
+                };
+                let before = Arc::new(Factor::with(&system.structure, &system.matrix).unwrap());
+                let (mut other, changed) = (system.matrix.clone(), [3, system.numbering.count / 2]);
+                changed.iter().for_each(|&j| other.values[other.starts[j]] *= 1.5);
+                let anew = values(&Factor::with(&system.structure, &other).unwrap());
+                let after = |columns: &[usize]| {
+                    let factor = Arc::clone(&before).changed(&other, columns.iter().copied());
+                    values(&factor.unwrap())
+                };
+                assert_eq!(after(&changed), anew);
+                assert_ne!(after(&changed[..1]), anew, "control");
+                assert_ne!(values(&before), anew, "the factor before is kept by who has it");
+            });
+        }
+    }
+
+    #[test]
+    fn a_tangent_after_another_has_to_the_last_bit_the_factor_that_it_has_by_itself() {
+        with_system(Degree::Two, 24, |system| {
+            let springs = |stiff: &dyn Fn(usize) -> bool| {
+                let pieces = 0..system.d.contact.len();
+                let of = |e: usize| DMatrix::identity(3, 3) * if stiff(e) { 2.0 } else { 0.0 };
+                pieces.map(of).collect::<Vec<DMatrix<f64>>>()
+            };
+            let (old, new) = (springs(&|e| e < 9), springs(&|e| e < 11));
+            let solved = |factor: Arc<Factor>| {
+                let mut x = vec![1.0; system.numbering.count];
+                factor.solve(&mut x);
+                x
+            };
+            let before = system.factor(&old).unwrap();
+            let (own, kept) = (solved(system.factor(&new).unwrap()), solved(Arc::clone(&before)));
+            assert_eq!(solved(system.factor_after((before, &old), &new).unwrap()), own);
+            assert_ne!(kept, own, "control");
+        });
     }
 
     #[test]

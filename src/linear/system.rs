@@ -15,7 +15,7 @@ use crate::contact::{Piece, residual};
 use crate::kernel::DoubleDouble;
 use crate::kernel::ball::larger;
 use crate::linear::matrix;
-use crate::linear::matrix::{LowerTriangle, Neighbours, Numbering};
+use crate::linear::matrix::{LowerTriangle, Neighbours, Numbering, OutsidePattern};
 use crate::model::material::least_eigenvalue;
 use crate::solve::SolveError;
 use crate::solve::course::{Course, Phase};
@@ -148,11 +148,31 @@ impl<'d, 'p> System<'d, 'p> {
     /// # Errors
     /// As [`Factor::with`].
     pub(crate) fn factor(&self, springs: &[DMatrix<f64>]) -> Result<Arc<Factor>, SolveError> {
+        Factor::with(&self.structure, &self.tangent(springs)?).map(Arc::new)
+    }
+
+    /// [`System::factor`] from the `last` one, with the springs of that: where springs have not changed, neither has L.
+    ///
+    /// # Errors
+    /// As [`Factor::with`].
+    pub(crate) fn factor_after(
+        &self,
+        (last, old): (Arc<Factor>, &[DMatrix<f64>]),
+        springs: &[DMatrix<f64>],
+    ) -> Result<Arc<Factor>, SolveError> {
+        let changed = (0..springs.len()).filter(|&e| old[e] != springs[e]);
+        last.changed(&self.tangent(springs)?, changed.flat_map(|e| self.unknowns(e)))
+    }
+
+    /// A + B^T h B
+    fn tangent(&self, springs: &[DMatrix<f64>]) -> Result<LowerTriangle, OutsidePattern> {
         let mut tangent = self.matrix.clone();
         for (piece, h) in self.d.contact.iter().zip(springs) {
-            tangent.add_contact_springs(&self.numbering, piece, h)?;
+            if h.iter().any(|h| *h != 0.0) {
+                tangent.add_contact_springs(&self.numbering, piece, h)?;
+            }
         }
-        Factor::with(&self.structure, &tangent).map(Arc::new)
+        Ok(tangent)
     }
 
     /// B: calls `f` with the unknown, the number of the functional and the entry.

@@ -79,12 +79,15 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
         self.used_at = residual;
         let (factor, hessian) = match self.factored.take() {
             Some((factor, old)) if does_again(&old, &at.hessian, residuals) => (factor, old),
-            _ => {
+            last => {
                 let coercive = self.system.d.kappa() < 1.0;
                 let mut hessian = at.hessian.clone();
                 let mut factored = Err(SolveError::NotPositiveDefinite);
                 if !(coercive && self.is_loose(at)) {
-                    factored = self.system.factor(&at.hessian);
+                    factored = match last {
+                        Some((factor, old)) => self.system.factor_after((factor, &old), &hessian),
+                        None => self.system.factor(&hessian),
+                    };
                     self.factorizations += 1;
                 }
                 if coercive && matches!(factored, Err(SolveError::NotPositiveDefinite)) {

@@ -218,3 +218,23 @@ pub(super) fn blocks(
         (start..end, h)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tangent_is_kept_where_springs_hardly_change_and_the_residual_falls() {
+        let springs = |factor: f64| vec![DMatrix::identity(2, 2), DMatrix::identity(3, 3) * factor];
+        let (old, near, far) = (springs(1.0), springs(1.0 + SAME / 2.0), springs(1.0 + 2.0 * SAME));
+        let [falls, stays] = [[1.0, FALLS / 2.0], [1.0, 2.0 * FALLS]];
+        assert!(does_again(&old, &near, falls));
+        assert!(!does_again(&old, &near, stays), "the residual stays");
+        assert!(!does_again(&old, &far, falls), "a piece has changed");
+        // The same tangent would be factored again to the same numbers.
+        assert!(does_again(&old, &old, stays));
+        assert!(
+            !does_again(&old, &near, [f64::NAN; 2]) && !does_again(&old, &springs(f64::NAN), falls)
+        );
+    }
+}

@@ -135,22 +135,22 @@ fn line_search(
     step: &Step,
 ) -> Option<f64> {
     let stiffness = at.stiffness;
-    let point = |e: usize, t: f64| -> Vec<DoubleDouble> {
+    let put = |e: usize, t: f64, point: &mut Vec<DoubleDouble>| {
         let values = edges.values(e);
-        y[values.clone()]
-            .iter()
-            .zip(&step.dy[values])
-            .map(|(&p, d)| p + DoubleDouble::from(t * d))
-            .collect()
+        let along = y[values.clone()].iter().zip(&step.dy[values]);
+        point.clear();
+        point.extend(along.map(|(&p, d)| p + DoubleDouble::from(t * d)));
     };
     // The first and the second derivative of J_h along the step.
     let derivatives = |t: f64| {
+        let mut point = Vec::new();
         let mut first = step.slope + t * step.curvature;
         let mut second = step.curvature;
         for e in 0..edges.count() {
             let values = edges.values(e);
             let (d, before) = (&step.dy[values.clone()], &at.gradient[values]);
-            let (g, h) = edges.derivatives(e, stiffness, &point(e, t));
+            put(e, t, &mut point);
+            let (g, h) = edges.derivatives(e, stiffness, &point);
             for a in 0..d.len() {
                 first += (g[a] - before[a]) * d[a];
                 for b in 0..d.len() {
@@ -161,9 +161,12 @@ fn line_search(
         (first, second)
     };
     let falls = |t: f64| {
-        let distance: f64 = (0..edges.count())
-            .map(|e| edges.bregman(e, stiffness, &y[edges.values(e)], &point(e, t)))
-            .sum();
+        let mut point = Vec::new();
+        let mut distance = 0.0;
+        for e in 0..edges.count() {
+            put(e, t, &mut point);
+            distance += edges.bregman(e, stiffness, &y[edges.values(e)], &point);
+        }
         t * t / 2.0 * step.curvature + distance <= (SLIGHT - 1.0) * t * step.slope
     };
     let flat = SLIGHT * step.slope.abs();
