@@ -9,11 +9,12 @@ use nalgebra::Vector2;
 
 use super::SWEEPS_FOR_FORCES;
 use super::build::{Built, build};
-use super::certificate::{Certificate, Cut, Role, is_oblique};
+use super::certificate::{Certificate, Cut, Role, is_oblique, turned};
 use super::field::Field;
 use super::forces::{ForceTarget, Lifting, Motion};
 use super::parts::{Boundary, OnLine, ProblemParts};
 use super::sweeps::improve;
+use crate::contact::law::Law;
 use crate::contact::residual::add_internal_forces;
 use crate::held::rigid::{Parts, free_motions, pins};
 use crate::linear::dense::inner;
@@ -29,16 +30,40 @@ use crate::solve::SolveError;
 struct Prescription {
     direction: Vector2<f64>,
     boundary: usize,
-    contact: bool,
-    /// The side of the contact: 1 on the second of two bodies.
-    side: usize,
+    what: What,
+}
+
+/// What asks for a displacement; of contact the side, 1 on the second of two bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum What {
+    /// A support.
+    Support,
+    /// Two bodies that may not open.
+    Tied(usize),
+    /// Contact, along its direction.
+    Along(usize),
+    /// Friction, across the direction of contact: it yields to all others, at a price.
+    Across(usize),
+}
+
+impl What {
+    fn side(self) -> Option<usize> {
+        match self {
+            What::Support => None,
+            What::Tied(side) | What::Along(side) | What::Across(side) => Some(side),
+        }
+    }
+
+    fn yields(self) -> bool {
+        matches!(self, What::Across(_))
+    }
 }
 
 /// An edge of Gamma_C.
 struct OnContact {
     edge: BoundaryEdge,
     boundary: usize,
-    /// As [`Prescription::side`].
+    /// 1 on the second of two bodies.
     side: usize,
     /// The direction of contact at its start, its end and in its middle.
     directions: [Vector2<f64>; 3],
@@ -113,12 +138,12 @@ impl<'a> Lifter<'a> {
         let mut demands: BTreeMap<usize, Vec<Prescription>> = BTreeMap::new();
         let mut add = |edge: BoundaryEdge,
                        boundary: usize,
-                       (contact, side),
+                       what: What,
                        of: &dyn Fn(usize) -> Vec<Vector2<f64>>| {
             for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
                 let at_node = demands.entry(node).or_default();
                 for direction in of(a) {
-                    let demand = Prescription { direction, boundary, contact, side };
+                    let demand = Prescription { direction, boundary, what };
                     if !at_node.contains(&demand) {
                         at_node.push(demand);
                     }
@@ -132,18 +157,35 @@ impl<'a> Lifter<'a> {
                     Some(&Boundary::Held(held, _)) => {
                         let axes = [Vector2::x(), Vector2::y()];
                         let held: Vec<_> = (0..2).filter(|&c| held[c]).map(|c| axes[c]).collect();
-                        add(edge, boundary, (false, 0), &|_| held.clone());
+                        add(edge, boundary, What::Support, &|_| held.clone());
                     }
                     Some(&Boundary::Supported(d, ..)) => {
-                        add(edge, boundary, (false, 0), &|_| vec![d.into()]);
+                        add(edge, boundary, What::Support, &|_| vec![d.into()]);
                     }
                     _ => {}
                 }
             }
         }
-        for OnContact { edge, boundary, side, directions } in on_contact(parts, names, |k| !open[k])
+        let law = |k: usize| parts.contact[k].law;
+        let is_closed = |k: usize| !parts.contact[k].is_tied() && !open[k];
+        let has_friction = |k: usize| parts.contact[k].has_friction();
+        for OnContact { edge, boundary, side, .. } in
+            on_contact(parts, names, |k| law(k) == Law::Bonded)
         {
-            add(edge, boundary, (true, side), &|a| vec![directions[a]]);
+            add(edge, boundary, What::Tied(side), &|_| vec![Vector2::x(), Vector2::y()]);
+        }
+        for OnContact { edge, boundary, side, directions } in
+            on_contact(parts, names, |k| law(k) == Law::Sliding)
+        {
+            add(edge, boundary, What::Tied(side), &|a| vec![directions[a]]);
+        }
+        for OnContact { edge, boundary, side, directions } in on_contact(parts, names, is_closed) {
+            add(edge, boundary, What::Along(side), &|a| vec![directions[a]]);
+        }
+        // Open or not, as friction with a given bound acts across gaps.
+        for OnContact { edge, boundary, side, directions } in on_contact(parts, names, has_friction)
+        {
+            add(edge, boundary, What::Across(side), &|a| vec![turned(directions[a])]);
         }
         let mut prescribed = vec![[None; 2]; space.nodes().len()];
         let mut frames = BTreeMap::new();
@@ -212,14 +254,21 @@ impl<'a> Lifter<'a> {
     /// error.
     fn value(&self, node: usize, demand: &Prescription, target: ForceTarget) -> f64 {
         let x = self.space.nodes()[node];
-        if target.boundary.is_some_and(|boundary| boundary != demand.boundary) {
+        let is_meant = match target.boundary {
+            Some(boundary) => boundary == demand.boundary,
+            // w0 is 0 between tied bodies.
+            None => !matches!(demand.what, What::Tied(_)),
+        };
+        if !is_meant {
             return 0.0;
         }
-        let whole = match target.motion {
-            Motion::Along(ramp) if demand.contact => ramp.map_or(1.0, |ramp| ramp.at(x[ramp.axis])),
-            motion => motion.at(Vector2::from(x)).map_or(0.0, |r| r.dot(&demand.direction)),
+        let whole = match (target.motion, demand.what) {
+            (Motion::Along(ramp), What::Along(_) | What::Tied(_)) => {
+                ramp.map_or(1.0, |ramp| ramp.at(x[ramp.axis]))
+            }
+            (motion, _) => motion.at(Vector2::from(x)).map_or(0.0, |r| r.dot(&demand.direction)),
         };
-        if demand.contact { whole * self.shares[demand.boundary][demand.side] } else { whole }
+        demand.what.side().map_or(whole, |side| whole * self.shares[demand.boundary][side])
     }
 
     /// w at the nodes, of least energy.
@@ -234,7 +283,7 @@ impl<'a> Lifter<'a> {
                 match independent(demands) {
                     (Some(a), Some(b)) => {
                         let (d, e) = (a.direction, b.direction);
-                        let turned = |d: Vector2<f64>| Vector2::new(d[1], -d[0]);
+                        let right = |d: Vector2<f64>| Vector2::new(d[1], -d[0]);
                         let axes = |d: Vector2<f64>| !is_oblique(d.into());
                         if axes(d) && axes(e) {
                             // d or e has component c alone.
@@ -242,7 +291,7 @@ impl<'a> Lifter<'a> {
                                 if d[c] != 0.0 { d[c] * value(&a) } else { e[c] * value(&b) }
                             }))
                         } else {
-                            (turned(e) * value(&a) - turned(d) * value(&b)) / d.perp(&e)
+                            (right(e) * value(&a) - right(d) * value(&b)) / d.perp(&e)
                         }
                     }
                     (Some(a), None) => a.direction * (value(&a) / a.direction.dot(&a.direction)),
@@ -251,7 +300,8 @@ impl<'a> Lifter<'a> {
             // All contact boundaries together yield to what holds.
             if target.boundary.is_some() {
                 let off = |demand: &&Prescription| {
-                    (w.dot(&demand.direction) - value(demand)).abs() > AGREEMENT * (1.0 + length(w))
+                    let by = w.dot(&demand.direction) - value(demand);
+                    !demand.what.yields() && by.abs() > AGREEMENT * (1.0 + length(w))
                 };
                 if let Some(other) = demands.iter().find(off) {
                     return Err(self.contradiction(node, demands, other));
@@ -279,16 +329,19 @@ impl<'a> Lifter<'a> {
         // w0 is 1 where w is free, too: it need not have the least energy.
         if target.boundary.is_none() {
             for OnContact { edge, boundary, side, directions } in
-                on_contact(self.parts, self.names, |_| true)
+                on_contact(self.parts, self.names, |k| !self.parts.contact[k].is_tied())
             {
                 let share = self.shares[boundary][side];
                 for (a, node) in self.space.edge_nodes(edge).into_iter().enumerate() {
                     let (d, w) = (directions[a], Vector2::from(field[node]));
                     let along = match self.demands.get(&node) {
                         None => d,
+                        Some(held) if held.iter().all(|demand| demand.what.yields()) => d,
                         // A body that another one holds may be held across contact there, and move the other way.
                         Some(held) if share != 1.0 => match independent(held) {
-                            (Some(one), None) if !held.iter().any(|demand| demand.contact) => {
+                            (Some(one), None)
+                                if held.iter().all(|demand| demand.what == What::Support) =>
+                            {
                                 Vector2::new(-one.direction[1], one.direction[0])
                             }
                             _ => continue,
@@ -318,6 +371,9 @@ impl<'a> Lifter<'a> {
         open: &[bool],
     ) -> Result<Certificate, String> {
         let (parts, mesh) = (self.parts, self.parts.mesh);
+        if parts.contact.iter().any(|contact| contact.has_friction() || contact.is_tied()) {
+            return Err("friction acts, or bodies are tied".to_owned());
+        }
         let field = |w: &[[f64; 2]]| Field::new(mesh, w).map_err(|error| error.to_string());
         let (near, mut w) = (field(&self.field(target)?)?, field(w)?);
         let at_rest = |values: &[Option<f64>; 2]| values.map(|value| value.map(|_| 0.0));
