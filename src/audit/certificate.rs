@@ -203,7 +203,7 @@ impl Law {
     }
 
     /// The law is that of glue.
-    pub(super) fn is_bonded(self) -> bool {
+    pub fn is_bonded(self) -> bool {
         matches!(self, Law::Bonded { .. })
     }
 
@@ -373,7 +373,8 @@ impl Certificate {
     }
 
     /// The edges on which two bodies may not open.
-    pub(super) fn tied(&self) -> impl Iterator<Item = Tied> {
+    #[doc(hidden)]
+    pub fn tied(&self) -> impl Iterator<Item = Tied> {
         self.edges.iter().enumerate().filter_map(|(edge, of)| match of.role {
             Role::Contact { gap, along: Some([d, _]), law, .. } if law.is_tied() => {
                 let other = *self.facing.get(&edge)?;
@@ -423,11 +424,13 @@ impl Certificate {
 }
 
 /// An edge on which two bodies may not open.
-pub(super) struct Tied {
+#[doc(hidden)]
+pub struct Tied {
     /// That of the first body.
     pub edge: usize,
     /// That of the second one.
     pub other: usize,
+    /// How they are tied.
     pub law: Law,
     /// The direction d, the same at both ends.
     pub d: [f64; 2],

@@ -5,17 +5,18 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::Vector2;
+use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::SWEEPS_FOR_FORCES;
 use super::build::{Built, build};
-use super::certificate::{Certificate, Cut, Role, is_oblique, turned};
+use super::certificate::{Certificate, Cut, Role, Tied, is_oblique, turned};
 use super::field::Field;
 use super::forces::{ForceTarget, Lifting, Motion};
 use super::parts::{Boundary, OnLine, ProblemParts};
 use super::sweeps::improve;
 use crate::contact::law::Law;
 use crate::contact::residual::add_internal_forces;
+use crate::contact::{EdgeRule, Pair, Piece};
 use crate::held::rigid::{Parts, free_motions, pins};
 use crate::linear::dense::inner;
 use crate::linear::factor::Factor;
@@ -38,8 +39,6 @@ struct Prescription {
 enum What {
     /// A support.
     Support,
-    /// Two bodies that may not open.
-    Tied(usize),
     /// Contact, along its direction.
     Along(usize),
     /// Friction, across the direction of contact: it yields to all others, at a price.
@@ -50,7 +49,7 @@ impl What {
     fn side(self) -> Option<usize> {
         match self {
             What::Support => None,
-            What::Tied(side) | What::Along(side) | What::Across(side) => Some(side),
+            What::Along(side) | What::Across(side) => Some(side),
         }
     }
 
@@ -65,6 +64,8 @@ struct OnContact {
     boundary: usize,
     /// 1 on the second of two bodies.
     side: usize,
+    /// Its first contact that is wanted.
+    contact: usize,
     /// The direction of contact at its start, its end and in its middle.
     directions: [Vector2<f64>; 3],
 }
@@ -94,7 +95,13 @@ fn on_contact(
                 s => d * (1.0 - s) + e * s,
             }
         };
-        Some(OnContact { edge, boundary, side: i, directions: [0.0, 1.0, 0.5].map(direction) })
+        Some(OnContact {
+            edge,
+            boundary,
+            side: i,
+            contact: k,
+            directions: [0.0, 1.0, 0.5].map(direction),
+        })
     };
     parts.lines.iter().filter_map(of_line).collect()
 }
@@ -123,6 +130,15 @@ fn independent(demands: &[Prescription]) -> (Option<Prescription>, Option<Prescr
     let Some(&first) = demands.first() else { return (None, None) };
     let across = |d: &&Prescription| first.direction.perp(&d.direction).abs() > PARALLEL;
     (Some(first), demands.iter().find(across).copied())
+}
+
+/// How many times as stiff as those of the method springs are: of softer ones w opens, and what ties it costs energy; of ten times stiffer
+/// ones the energy is the same to a thousandth.
+const STIFFNESS: f64 = 30.0;
+
+/// The springs between tied bodies by which the jump of w is nearly the motion: it is made so in the end.
+fn springs(piece: &Piece) -> DMatrix<f64> {
+    piece.contribution(&EdgeRule::Exact, &vec![0.0; piece.p0.len()]).tangent * STIFFNESS
 }
 
 impl<'a> Lifter<'a> {
@@ -166,24 +182,16 @@ impl<'a> Lifter<'a> {
                 }
             }
         }
-        let law = |k: usize| parts.contact[k].law;
         let is_closed = |k: usize| !parts.contact[k].is_tied() && !open[k];
         let has_friction = |k: usize| parts.contact[k].has_friction();
-        for OnContact { edge, boundary, side, .. } in
-            on_contact(parts, names, |k| law(k) == Law::Bonded)
+        for OnContact { edge, boundary, side, directions, .. } in
+            on_contact(parts, names, is_closed)
         {
-            add(edge, boundary, What::Tied(side), &|_| vec![Vector2::x(), Vector2::y()]);
-        }
-        for OnContact { edge, boundary, side, directions } in
-            on_contact(parts, names, |k| law(k) == Law::Sliding)
-        {
-            add(edge, boundary, What::Tied(side), &|a| vec![directions[a]]);
-        }
-        for OnContact { edge, boundary, side, directions } in on_contact(parts, names, is_closed) {
             add(edge, boundary, What::Along(side), &|a| vec![directions[a]]);
         }
         // Open or not, as friction with a given bound acts across gaps.
-        for OnContact { edge, boundary, side, directions } in on_contact(parts, names, has_friction)
+        for OnContact { edge, boundary, side, directions, .. } in
+            on_contact(parts, names, has_friction)
         {
             add(edge, boundary, What::Across(side), &|a| vec![turned(directions[a])]);
         }
@@ -206,19 +214,35 @@ impl<'a> Lifter<'a> {
         }
         // A motion that neither supports nor the directions of contact stop, as a part turns about its pin, changes no force.
         let bodies = Parts::new(parts.mesh);
+        // Tied bodies hold each other: where nothing holds both of them, there is no factor.
+        let mut tied: BTreeMap<usize, Vec<Vector2<f64>>> = BTreeMap::new();
+        let is_tied = |k: usize| parts.contact[k].is_tied();
+        for OnContact { edge, directions, contact, .. } in on_contact(parts, names, is_tied) {
+            let is_glued = parts.contact[contact].law == Law::Bonded;
+            for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
+                let across = is_glued.then(|| turned(directions[a]));
+                tied.entry(node).or_default().extend([directions[a]].into_iter().chain(across));
+            }
+        }
         let held = |node: usize| {
-            demands.get(&node).into_iter().flatten().map(|demand| demand.direction.into())
+            let demanded = demands.get(&node).into_iter().flatten();
+            let tied = tied.get(&node).into_iter().flatten();
+            demanded.map(|demand| demand.direction.into()).chain(tied.map(|&d| d.into()))
         };
         let motions = free_motions(&bodies, &space, held, PARALLEL, false);
         let fields: Vec<_> = motions.iter().map(|motion| motion.field(&bodies, &space)).collect();
         for (node, c) in pins(&fields, |node, _| !demands.contains_key(&node)) {
             prescribed[node][c] = Some(0.0);
         }
-        let neighbours = Neighbours::new(&space);
+        let neighbours = Neighbours::across(&space, &parts.tied);
         let order = nested_dissection(space.nodes(), &neighbours);
         let numbering = Numbering::in_frames(&order, &prescribed, frames);
         let mut matrix = LowerTriangle::zero(&numbering, &neighbours);
-        let assembled = matrix.add_stiffness(&space, &parts.problem.material, &numbering);
+        let mut assembled = matrix.add_stiffness(&space, &parts.problem.material, &numbering);
+        for piece in &parts.tied {
+            assembled = assembled
+                .and_then(|()| matrix.add_contact_springs(&numbering, piece, &springs(piece)));
+        }
         let factor = assembled.map_err(SolveError::from).and_then(|()| Factor::new(&matrix));
         let factor = factor.map_err(|error| {
             format!("no displacement of least energy to prove forces with: {error}")
@@ -226,7 +250,8 @@ impl<'a> Lifter<'a> {
         let shares = vec![[1.0, 0.0]; names.len()];
         let mut lifter = Lifter { parts, names, space, demands, numbering, factor, shares };
         for (boundary, name) in names.iter().enumerate() {
-            if parts.problem.pairs.iter().any(|pair| pair.boundaries[0] == *name) {
+            let opens = |pair: &Pair| matches!(pair.law, Law::Contact | Law::Friction(_));
+            if parts.problem.pairs.iter().any(|pair| pair.boundaries[0] == *name && opens(pair)) {
                 lifter.shares[boundary] = lifter.least(boundary);
             }
         }
@@ -254,21 +279,26 @@ impl<'a> Lifter<'a> {
     /// error.
     fn value(&self, node: usize, demand: &Prescription, target: ForceTarget) -> f64 {
         let x = self.space.nodes()[node];
-        let is_meant = match target.boundary {
-            Some(boundary) => boundary == demand.boundary,
-            // w0 is 0 between tied bodies.
-            None => !matches!(demand.what, What::Tied(_)),
-        };
-        if !is_meant {
+        if target.boundary.is_some_and(|boundary| boundary != demand.boundary) {
             return 0.0;
         }
         let whole = match (target.motion, demand.what) {
-            (Motion::Along(ramp), What::Along(_) | What::Tied(_)) => {
-                ramp.map_or(1.0, |ramp| ramp.at(x[ramp.axis]))
-            }
+            (Motion::Along(ramp), What::Along(_)) => ramp.map_or(1.0, |ramp| ramp.at(x[ramp.axis])),
             (motion, _) => motion.at(Vector2::from(x)).map_or(0.0, |r| r.dot(&demand.direction)),
         };
         demand.what.side().map_or(whole, |side| whole * self.shares[demand.boundary][side])
+    }
+
+    /// The jump along functional `i` of a piece of tied bodies.
+    fn jump(&self, piece: &Piece, i: usize, target: ForceTarget) -> f64 {
+        let meant = target.boundary.is_some_and(|b| *self.names[b] == **piece.boundary());
+        let a = i % piece.geometry.nodes.len();
+        let place = piece.geometry.first().place(self.parts.mesh, a);
+        match target.motion.at(Vector2::from(place)) {
+            _ if !meant => 0.0,
+            Some(motion) => motion.dot(&piece.direction_of(i)),
+            None => 1.0,
+        }
     }
 
     /// w at the nodes, of least energy.
@@ -312,6 +342,16 @@ impl<'a> Lifter<'a> {
         // -K w on the free unknowns.
         let mut right = vec![[0.0; 2]; field.len()];
         add_internal_forces(&self.space, &self.parts.problem.material, &field, &mut right);
+        for piece in &self.parts.tied {
+            let opens: Vec<f64> = piece
+                .jumps(&field)
+                .into_iter()
+                .enumerate()
+                .map(|(i, jump)| jump - self.jump(piece, i, target))
+                .collect();
+            let forces = springs(piece) * DVector::from_vec(opens);
+            piece.add_contact(forces.as_slice(), &mut right);
+        }
         right.as_flattened_mut().iter_mut().for_each(|r| *r = -*r);
         let prescribed = field.clone();
         let mut x = self.numbering.gather(&right);
@@ -328,7 +368,7 @@ impl<'a> Lifter<'a> {
         }
         // w0 is 1 where w is free, too: it need not have the least energy.
         if target.boundary.is_none() {
-            for OnContact { edge, boundary, side, directions } in
+            for OnContact { edge, boundary, side, directions, .. } in
                 on_contact(self.parts, self.names, |k| !self.parts.contact[k].is_tied())
             {
                 let share = self.shares[boundary][side];
@@ -415,6 +455,7 @@ impl<'a> Lifter<'a> {
             mesh,
             contact: Vec::new(),
             lines: Vec::new(),
+            tied: Vec::new(),
             prescribed,
             frames,
             boundary,
@@ -430,6 +471,38 @@ impl<'a> Lifter<'a> {
         Ok(pair)
     }
 
+    /// Gives w on the second of two tied bodies what it must be where it is prescribed on the first one.
+    fn meet(
+        &self,
+        w: &mut [[f64; 2]],
+        target: ForceTarget,
+        (certificate, of): (&Certificate, &[Option<usize>]),
+    ) -> Result<(), String> {
+        for Tied { edge, other, law, d, .. } in certificate.tied() {
+            let meant = target.boundary.is_some() && of[edge] == target.boundary;
+            for (k, p) in certificate.edges[edge].ends.into_iter().enumerate() {
+                let q = certificate.edges[other].ends[1 - k];
+                let (Some(&own), Some(&there)) = (w.get(p), w.get(q)) else { continue };
+                let [own_data, data] =
+                    [p, q].map(|p| certificate.at_own(p).map_or([None; 2], |(_, given)| given));
+                let motion = target.motion.at(Vector2::from(certificate.vertices[p]));
+                let motion = motion.unwrap_or(Vector2::from(d));
+                let moves = |c: usize| law.is_bonded() || d[c] != 0.0;
+                for c in (0..2).filter(|&c| own_data[c].is_some() && moves(c)) {
+                    let value = if meant { own[c] - motion[c] } else { own[c] };
+                    if data[c].is_some() && there[c] != value {
+                        let [x, y] = certificate.vertices[p];
+                        return Err(format!(
+                            "at ({x}, {y}), where tied bodies and supports of both meet, the force of one alone has no bound in the energy norm"
+                        ));
+                    }
+                    w[q][c] = value;
+                }
+            }
+        }
+        Ok(())
+    }
+
     fn contradiction(&self, node: usize, demands: &[Prescription], other: &Prescription) -> String {
         let [x, y] = self.space.nodes()[node];
         let names = |demand: &Prescription| format!("'{}'", self.names[demand.boundary]);
@@ -442,13 +515,19 @@ impl<'a> Lifter<'a> {
     }
 
     /// w on the triangles of a certificate, what is exact on the boundary made so.
-    pub fn lifting(&self, target: ForceTarget, built: &Built) -> Result<Lifting, String> {
+    pub fn lifting(
+        &self,
+        target: ForceTarget,
+        built: &Built,
+        of: &[Option<usize>],
+    ) -> Result<Lifting, String> {
         let field = self.field(target)?;
         let certificate = &built.certificate;
         let mesh = self.parts.mesh;
         let shape = built.shape::<f64>(mesh, &field);
-        let vertices: Vec<[f64; 2]> =
+        let mut vertices: Vec<[f64; 2]> =
             shape.points[..mesh.vertices().len()].iter().map(|&w| w.into()).collect();
+        self.meet(&mut vertices, target, (certificate, of))?;
         let Some(bulges) = shape.bulges else { return Ok(Lifting { vertices, beyond: None }) };
         let mean = |cut: &Cut| {
             let [a, b] = cut.ends.map(|end| Vector2::from(vertices[end]));

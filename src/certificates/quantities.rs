@@ -564,12 +564,13 @@ fn list(
         }
     };
     let all = ForceTarget { boundary: None, motion: Motion::Along(None) };
-    let mut evidence = Evidence { cover: lifter.lifting(all, built).ok(), ..Evidence::default() };
+    let mut evidence =
+        Evidence { cover: lifter.lifting(all, built, forces.of).ok(), ..Evidence::default() };
     let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
     let mut refused = Vec::with_capacity(asked.len());
     for &(name, boundary, weight) in &asked {
         let target = ForceTarget { boundary: Some(boundary), motion: name.motion(weight) };
-        refused.push(match lifter.lifting(target, built) {
+        refused.push(match lifter.lifting(target, built, forces.of) {
             Ok(w) => {
                 evidence.liftings.push((target, w));
                 None

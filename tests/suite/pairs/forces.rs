@@ -54,6 +54,7 @@ fn near_each_other(
             assert!(low - off <= value && value <= high + off, "{name:?}");
             assert!((high - low) * rate <= *last, "{name:?} {}", high - low);
             *last = high - low;
+            let width = high - low;
             // What holds the second body below has the same forces, but for the place of the moment.
             let same = match name {
                 Name::ContactComponent(k) => interval(&c, Name::Reaction(k), SECOND),
@@ -61,6 +62,15 @@ fn near_each_other(
                 _ => continue,
             };
             assert!(same[0] - off <= value && value <= same[1] + off, "{name:?} {same:?}");
+            // Glue moves with what it holds.
+            let is_tied = c
+                .certificate
+                .edges
+                .iter()
+                .any(|edge| matches!(edge.role, Role::Contact { law, .. } if law.is_tied()));
+            let wider = (same[1] - same[0]) / width;
+            println!("    at the floor {wider} times as wide");
+            assert!(!is_tied || wider <= 1.5, "{name:?}: {wider}");
         }
         let [low, high] = interval(&c, Name::ContactComponent(1), FIRST);
         let half = (high - low) / 2.0 / true_ones[2].1.abs();
@@ -184,15 +194,21 @@ fn a_point_that_is_held_and_tied_has_one_w() {
             .with("upper.right", wall())
             .with("upper.top", Condition::displacement(|_| 0.0, |_| 0.05));
         let c = certified(&problem, degree);
-        // The force of the glue alone has none: the wall and the glue hold one point.
-        let of_glue = c.quantities.list.iter().filter(|q| q.boundary == FIRST);
-        for quantity in of_glue {
+        // The lower body moves where the upper one is held.
+        let [low, high] = interval(&c, Name::ContactComponent(1), FIRST);
+        assert!(low < high && high.is_finite());
+        // With walls that hold both, no force of the glue alone is bounded.
+        let both = |name: &str| ["left", "right"].map(|side| format!("{name}.{side}"));
+        let held = both("lower").iter().fold(problem.clone(), |problem, name| {
+            problem.with(name, Condition::displacement(|_| 0.0, |_| 0.0))
+        });
+        let c_held = certified(&held, degree);
+        for quantity in c_held.quantities.list.iter().filter(|q| q.boundary == FIRST) {
             let why = quantity.interval.clone().unwrap_err();
             assert!(why.contains("the force of one alone has no bound"), "{why}");
         }
-        // That of the floor has.
         let [low, high] = interval(&c, Name::Reaction(1), SECOND);
-        assert!(low < high);
+        assert!(low < high && high.is_finite());
         let evidence = &c.quantities.evidence;
         let corner = c.certificate.vertices.iter().enumerate().filter(|(_, x)| **x == [0.0, 0.0]);
         let second = corner.map(|(p, _)| p).max().unwrap();
