@@ -93,8 +93,9 @@ def first(rows, role):
     return next(row for row in rows if row[2] == role and row[3:].any())
 
 
-def shifted(row):
-    """Moves the interval of a force by three times its width and twice its end."""
+def shifted(rows):
+    """Moves the widest interval of a force by three times its width and twice its end."""
+    row = max(rows, key=lambda row: np.ptp(row[6:8].view("<f8")))
     low, high = row[6:8].view("<f8").tolist()
     for k in (6, 7):
         number(row, k, lambda end: end + 3 * (high - low) + 2 * abs(high))
@@ -127,7 +128,7 @@ TAMPERINGS = {
     "a triangle with another edge": lambda h, a: a("triangles")[0, 3:4].__iadd__(np.uint64(1)),
     "a lift that is negative": lambda h, a: number(a("lifts")[0], 3, lambda z: -1),
     "a force between nearer numbers": lambda h, a: number(a("forces")[1], 6, lambda low: low + 0.05 * abs(low) + 1e-9),
-    "a force that is far larger": lambda h, a: shifted(a("forces")[1]),
+    "a force that is far larger": lambda h, a: shifted(a("forces")[1:]),
     "a force whose first end is the larger": lambda h, a: a("forces")[1, 6:].__setitem__(slice(None), a("forces")[1, :5:-1].copy()),
     "another statement": lambda h, a: h.update(statement="the body is safe"),
     "a tensor that is stiffer": lambda h, a: number(a("tensors")[0], 0, lambda c: 2 * c),
