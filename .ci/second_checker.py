@@ -93,6 +93,14 @@ def first(rows, role):
     return next(row for row in rows if row[2] == role and row[3:].any())
 
 
+def shifted(rows):
+    """Moves the widest interval of a force by three times its width, twice its end and 0.001: all are 0 to rounding where symmetry says so."""
+    row = max(rows, key=lambda row: np.ptp(row[6:8].view("<f8")))
+    low, high = row[6:8].view("<f8").tolist()
+    for k in (6, 7):
+        number(row, k, lambda end: end + 3 * (high - low) + 2 * abs(high) + 1e-3)
+
+
 def pushed(force):
     """Pushes the first triangle along x: what balances a motion that nothing stops is left there."""
     return lambda h, a: [number(a("triangles")[0], k, lambda f: f + force) for k in (8, 10, 12)]
@@ -120,7 +128,7 @@ TAMPERINGS = {
     "a triangle with another edge": lambda h, a: a("triangles")[0, 3:4].__iadd__(np.uint64(1)),
     "a lift that is negative": lambda h, a: number(a("lifts")[0], 3, lambda z: -1),
     "a force between nearer numbers": lambda h, a: number(a("forces")[1], 6, lambda low: low + 0.05 * abs(low) + 1e-9),
-    "a force three times as large": lambda h, a: [number(a("forces")[1], k, lambda end: 3 * end) for k in (6, 7)],
+    "a force that is far larger": lambda h, a: shifted(a("forces")[1:]),
     "a force whose first end is the larger": lambda h, a: a("forces")[1, 6:].__setitem__(slice(None), a("forces")[1, :5:-1].copy()),
     "another statement": lambda h, a: h.update(statement="the body is safe"),
     "a tensor that is stiffer": lambda h, a: number(a("tensors")[0], 0, lambda c: 2 * c),
@@ -151,7 +159,7 @@ def tampered(folder, out, change):
         change(header, lambda name: array(header, words, name))
     except (IndexError, KeyError, StopIteration):
         return False
-    # Twice the stiffness of a triangle that has a tensor, or three times a force that is 0, is no change.
+    # Twice the stiffness of a triangle that has a tensor, or a larger force that is 0, is no change.
     if before == (json.dumps(header), words.tobytes()):
         return False
     header["hash"] = check_bound.hash_of(words.tobytes())

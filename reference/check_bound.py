@@ -136,6 +136,14 @@ def friction(w, shear, bound):
     return found
 
 
+def tied(own, other, d, glued, jump):
+    """A displacement on the first of two tied bodies, from that on the second one and what it is to be beyond that."""
+    axis = ((np.abs(d) == 1) & (d[:, ::-1] == 0)).any(1)
+    along = np.where((d != 0) & axis[:, None], other + d * jump[:, :1], own)
+    slides = np.where(axis[:, None], along, nearest(own - other, d, jump[:, 0]) + other)
+    return np.where(glued[:, None], other + jump, slides)
+
+
 class Body:
     """What a certificate is of, by its arrays."""
 
@@ -216,12 +224,6 @@ class Body:
         least = np.where(glued[:, None], jump, jump[:, :1])
         exact = (glued | axis.any(1))[:, None] & (~moved | (least == 0)) & (~moved | ~self.frame[other].any(1)[:, None])
         demand((exact | ~self.given[own]).all(1), "a tied point at a place that is prescribed")
-
-        def tied(own, other, d, glued, jump):
-            axis = ((np.abs(d) == 1) & (d[:, ::-1] == 0)).any(1)
-            along = np.where((d != 0) & axis[:, None], other + d * jump[:, :1], own)
-            slides = np.where(axis[:, None], along, nearest(own - other, d, jump[:, 0]) + other)
-            return np.where(glued[:, None], other + jump, slides)
 
         demand(~moved | ~self.given[own] | (self.v[other] == self.value[own]), "a tied point off what is prescribed: point")
         self.v = v = self.v.copy()
@@ -648,16 +650,26 @@ class Forces:
         self.of_v = stresses.of(body, body.v, body.bulge)
         all_w = list(self.displacements("w", len(forces)))
         points, bulge = all_w[0]
-        points = self.check_supports(points, bulge, np.zeros((edges, 2, 2)))
+        still = np.zeros((edges, 2, 2))
+        points, bulge = self.tie(self.check_supports(points, bulge, still), bulge, still, np.zeros((edges, 2)))
+        self.check_supports(points, bulge, still)
         w0 = self.on_contact(points, bulge)
-        demand(w0 >= -NEAR * np.abs(points).max(), "w0 pulls on Gamma_C: number")
-        self.cover, self.cover_force = np.maximum(w0, 0), 0.0
-        of_w0 = self.enclose(points, bulge, np.zeros((2, 2)))
+        may_open = ~body.tied[body.contact]
+        demand((w0 >= -NEAR * np.abs(points).max()) | ~may_open[:, None], "w0 pulls on Gamma_C: number")
+        self.cover, self.cover_force = np.maximum(w0, 0) * may_open[:, None], 0.0
+        of_w0 = self.enclose(points, bulge, np.zeros((2, 2)), self.dragged(points, bulge, still))
         self.cover_force = of_w0[1]
         self.found = []
         for force, (points, bulge) in enumerate(all_w[1:]):
-            points = self.check_supports(points, bulge, self.rigid(force))
-            self.found.append(self.enclose(points, bulge, self.missed(force, points, bulge)))
+            rigid, meant = self.rigid(force), self.on == self.of[force]
+            glued = meant & (body.law == 2)
+            demand(~(meant & body.tied) | (self.motion[force] > 0) | (~glued & (self.axis[force] == 0)),
+                   "a force along the direction where bodies are tied: edge")
+            along = dot(rigid, body.direction) if self.motion[force] else np.ones((edges, 2)) * meant[:, None]
+            points, bulge = self.tie(self.check_supports(points, bulge, rigid), bulge, rigid, along)
+            self.check_supports(points, bulge, rigid)
+            dragged = self.dragged(points, bulge, rigid)
+            self.found.append(self.enclose(points, bulge, self.missed(force, points, bulge), dragged))
         self.pairs()
         self.found.insert(0, of_w0)
 
@@ -680,6 +692,31 @@ class Forces:
                 between = own if name == "dual w" else between + own
                 bulge = real[f"{name} bulges"][k * edges:(k + 1) * edges]
             yield np.concatenate([v, between]), bulge
+
+    def tie(self, points, bulge, rigid, along):
+        """w on the first bodies of tied pairs, from w on the second ones and the motion at both ends of the edges."""
+        body = self.body
+        on = np.flatnonzero(body.tied)
+        points, bulge = points.copy(), bulge.copy()
+        for k in range(2):
+            own, other = body.ends[on, k], body.ends[body.facing[on], 1 - k]
+            glued = body.law[on] == 2
+            jump = np.where(glued[:, None], rigid[on, k], np.stack([along[on, k], 0 * along[on, k]], 1))
+            points[own] = tied(points[own], points[other], body.direction[on, k], glued, jump)
+        bulge[on] = tied(bulge[on], bulge[body.facing[on]], body.direction[on, 0], body.law[on] == 2, np.zeros((len(on), 2)))
+        return points, bulge
+
+    def dragged(self, points, bulge, rigid):
+        """int s |chi|, chi being what w misses across the direction of contact where there is friction."""
+        body = self.body
+        rough = body.law[body.contact] == 3
+        on, e = body.contact[rough], turned(body.contact_d[rough])
+        w, b = body.jump(on, points, bulge)
+        off = rigid[on] - w
+        across = along(np.stack([off[:, 0], off.mean(1) - 2 * b, off[:, 1]], 1), e)
+        side = body.x[body.ends[on, 1]] - body.x[body.ends[on, 0]]
+        works = [friction(c, np.zeros(2), s) for c, s in zip(across, body.beside[on])]
+        return (np.sqrt(dot(side, side)) * works).sum() if works else 0.0
 
     def rigid(self, force):
         """The motion at both ends of the edges where it is meant, 0 on others."""
@@ -753,6 +790,8 @@ class Forces:
         omega = phi - self.on_contact(points, bulge)
         off = np.stack([-(omega + beyond[0][:, None]), omega + beyond[1][:, None]])
         off[off <= NEAR * max(np.abs(phi).max(initial=0), np.abs(points).max())] = 0
+        # Between tied bodies w is exact.
+        off[:, body.tied[on]] = 0
         # By multiples of the gap, and of w0, for each side; the cheaper one on each edge.
         found = np.zeros((2, 2))
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -788,7 +827,7 @@ class Forces:
         works = works[self.body.role > 0]
         return works.sum(), np.abs(works).sum()
 
-    def enclose(self, points, bulge, missed):
+    def enclose(self, points, bulge, missed, dragged):
         """Between what the force lies by L(w) - int m : eps(w), and the size of the terms."""
         inner, loads, size = self.loads(points, bulge)
         of_w = self.stresses.of(self.body, points, bulge)
@@ -797,7 +836,7 @@ class Forces:
         energy = self.of_v * of_w
         middle = loads - (energy.sum() + inner + work) / 2
         size += of_work + np.abs(energy).sum()
-        away = [reach(norm, missed[0, side], self.m) + missed[1, side] * self.cover_force + self.loose * norm for side in range(2)]
+        away = [reach(norm, missed[0, side], self.m) + missed[1, side] * self.cover_force + dragged + self.loose * norm for side in range(2)]
         return np.array([middle - away[0], middle + away[1], size])
 
     def pairs(self):
@@ -816,6 +855,7 @@ class Forces:
         """The pair as a body of its own: without loads, held where the body is held, and on parts of Gamma_C along an axis in which contact acts."""
         body, whole, real = self.body, dict(self.whole), dict(self.real)
         on = np.isin(np.arange(len(roles)), body.contact)
+        demand(body.law == 0, "a dual pair beside friction, or bodies that do not open: edge")
         along_axis = np.zeros((len(roles), 2), bool)
         start, end = body.contact_d[:, 0], body.contact_d[:, 1]
         along_axis[body.contact] = (np.abs(start) == 1) & (start == end).all(1)[:, None]
@@ -915,7 +955,6 @@ def check(path):
     of = f"; of the problem with {' and '.join(problem)}" if problem else ""
     count = len(whole["forces"])
     if count:
-        demand((body.law == 0).all(), "forces beside friction, or bodies that do not open")
         Forces(header, whole, real, body, stresses).check()
     return f"bound {bound:.6g}, {bound / header['bound']:.4f} of the claimed one; {count} forces; reservations: {words}{of}"
 

@@ -21,6 +21,20 @@ pub struct Topology {
     pub(crate) tree: SpanningTree,
 }
 
+/// An upper bound of 2 int s |x| + q x over an edge, for x with these Bernstein coefficients times its length: |x| is at most the function
+/// with the absolute values of them.
+pub(super) fn friction<S: Enclosing>(across: [S; 4], shear: [f64; 2], bound: [f64; 2]) -> S {
+    let mut sum = S::from(0);
+    for (i, slip) in across.into_iter().enumerate() {
+        let size = S::exactly(slip.upper().max(-slip.lower()));
+        for (k, weight) in [4 - i as i32, 1 + i as i32].into_iter().enumerate() {
+            let both = size * S::exactly(bound[k]) + slip * S::exactly(shear[k]);
+            sum += both * S::from(weight);
+        }
+    }
+    sum / S::from(10)
+}
+
 /// A certificate whose triangles are in equilibrium, in the numbers `S`.
 pub struct Balanced<S> {
     /// Vertices and cuts.
@@ -86,8 +100,8 @@ impl Certificate {
                     if let Some(owner) = topology.owners[e][0] {
                         on_contact[owner.piece] += contact.term;
                         if let Law::Friction { shear, bound } = law {
-                            on_contact[owner.piece] +=
-                                self.friction(e, &v, &points, (shear, bound));
+                            let slip = self.across(e, self.jump(e, &v), &points);
+                            on_contact[owner.piece] += friction(slip, shear, bound);
                         }
                     }
                     self.traction(e, &points)
@@ -173,27 +187,15 @@ impl Certificate {
         }
     }
 
-    /// An upper bound of 2 int s |v . e| + q v . e on edge `e`, e being d turned to the left: |v . e| is at most the function whose
-    /// Bernstein coefficients are the absolute values of its own.
-    fn friction<S: Enclosing>(
+    /// |E| w . e on edge `e` of Gamma_C, e being d turned to the left, of a displacement with this jump: its Bernstein coefficients.
+    pub(super) fn across<S: Enclosing>(
         &self,
         e: usize,
-        v: &Shape<S>,
+        (w, bulge): ([Vector2<S>; 2], Option<Vector2<S>>),
         points: &[Vector2<S>],
-        (shear, bound): ([f64; 2], [f64; 2]),
-    ) -> S {
-        let (v, bulge) = self.jump(e, v);
+    ) -> [S; 4] {
         let bulge = bulge.unwrap_or_else(Vector2::zeros);
-        let across = along(v, bulge, self.units(e, points).map(turned));
-        let mut sum = S::from(0);
-        for (i, slip) in across.into_iter().enumerate() {
-            let size = S::exactly(slip.upper().max(-slip.lower()));
-            for (k, weight) in [4 - i as i32, 1 + i as i32].into_iter().enumerate() {
-                let both = size * S::exactly(bound[k]) + slip * S::exactly(shear[k]);
-                sum += both * S::from(weight);
-            }
-        }
-        sum / S::from(10)
+        along(w, bulge, self.units(e, points).map(turned))
     }
 
     /// The edges of Gamma_C on which v can't be shown to be outside the obstacle, each with how far it may be inside.

@@ -203,7 +203,7 @@ impl Law {
     }
 
     /// The law is that of glue.
-    pub(super) fn is_bonded(self) -> bool {
+    pub fn is_bonded(self) -> bool {
         matches!(self, Law::Bonded { .. })
     }
 
@@ -212,23 +212,25 @@ impl Law {
         matches!(self, Law::Sliding | Law::Bonded { .. })
     }
 
-    /// v on the first body, from the vector `own` and from v on the second one: its jump is [g, h] along d and across, or, where the
-    /// bodies slide, nearest to its own with g along d.
-    fn tie<S: Enclosing>(
+    /// A displacement on the first body, from the vector `own` and from that on the second one: its jump is [g, h] along d and across,
+    /// or, where the bodies slide, nearest to its own with g along d.
+    pub(super) fn tie<S: Enclosing>(
         self,
         own: Vector2<S>,
         other: Vector2<S>,
         d: [f64; 2],
-        [g, h]: [f64; 2],
+        [g, h]: [S; 2],
     ) -> Vector2<S> {
-        let beyond = |c: usize, g: f64| if g == 0.0 { other[c] } else { other[c] + S::exactly(g) };
+        let is_zero = |x: S| x.lower() == 0.0 && x.upper() == 0.0;
+        let beyond = |c: usize, g: S| if is_zero(g) { other[c] } else { other[c] + g };
+        let along = |c: usize| if d[c] > 0.0 { g } else { -g };
         match (self, axis(d)) {
             (Law::Bonded { .. }, _) => Vector2::new(beyond(0, g), beyond(1, h)),
-            (_, Some(0)) => Vector2::new(beyond(0, g * d[0]), own[1]),
-            (_, Some(_)) => Vector2::new(own[0], beyond(1, g * d[1])),
+            (_, Some(0)) => Vector2::new(beyond(0, along(0)), own[1]),
+            (_, Some(_)) => Vector2::new(own[0], beyond(1, along(1))),
             (_, None) => {
                 let d = exactly::<S>(d);
-                own - d * (((own - other).dot(&d) - S::exactly(g)) / d.dot(&d))
+                own - d * (((own - other).dot(&d) - g) / d.dot(&d))
             }
         }
     }
@@ -370,6 +372,18 @@ impl Certificate {
         }
     }
 
+    /// The edges on which two bodies may not open.
+    #[doc(hidden)]
+    pub fn tied(&self) -> impl Iterator<Item = Tied> {
+        self.edges.iter().enumerate().filter_map(|(edge, of)| match of.role {
+            Role::Contact { gap, along: Some([d, _]), law, .. } if law.is_tied() => {
+                let other = *self.facing.get(&edge)?;
+                Some(Tied { edge, other, law, d, gap })
+            }
+            _ => None,
+        })
+    }
+
     /// v.
     #[doc(hidden)]
     pub fn shape<S: Enclosing>(&self) -> Shape<S> {
@@ -396,19 +410,32 @@ impl Certificate {
             {
                 bulges[e] = nearest(curved.bulges[e], along, curved.data[e][0]);
             }
-            if let Role::Contact { gap, along: Some([d, _]), law, .. } = edge.role
-                && law.is_tied()
-                && let Some(&other) = self.facing.get(&e)
-            {
-                for (k, p) in edge.ends.into_iter().enumerate() {
-                    let there = points[self.edges[other].ends[1 - k]];
-                    points[p] = law.tie(points[p], there, d, [gap[k], law.offset()[k]]);
-                }
-                bulges[e] = law.tie(bulges[e], bulges[other], d, curved.data[e]);
+        }
+        for Tied { edge: e, other, law, d, gap } in self.tied() {
+            let ends = self.edges[e].ends;
+            for (k, p) in ends.into_iter().enumerate() {
+                let there = points[self.edges[other].ends[1 - k]];
+                points[p] = law.tie(points[p], there, d, [gap[k], law.offset()[k]].map(S::exactly));
             }
+            bulges[e] = law.tie(bulges[e], bulges[other], d, curved.data[e].map(S::exactly));
         }
         Shape { points, bulges: Some(bulges) }
     }
+}
+
+/// An edge on which two bodies may not open.
+#[doc(hidden)]
+pub struct Tied {
+    /// That of the first body.
+    pub edge: usize,
+    /// That of the second one.
+    pub other: usize,
+    /// How they are tied.
+    pub law: Law,
+    /// The direction d, the same at both ends.
+    pub d: [f64; 2],
+    /// v . d at both ends.
+    pub gap: [f64; 2],
 }
 
 /// A displacement on the triangles of a certificate.

@@ -17,7 +17,7 @@ use nalgebra::Vector2;
 
 use super::balance::{OnEdges, Stop};
 use super::balanced::{Balanced, Topology, outward};
-use super::certificate::{Certificate, Curved, Edge, Piece, Role, Shape, exactly, is_oblique};
+use super::certificate::{Certificate, Curved, Edge, Law, Piece, Role, Shape, exactly, is_oblique};
 use super::checks::Rejection;
 use super::forces::{Cover, ForceTarget, Forces, WrongLifting, component, energy, ratio, reach};
 use crate::kernel::composite::{Composite, Frame, Loads, Wrench};
@@ -168,9 +168,12 @@ impl Certificate {
                             }
                     }
                     (Role::Loaded(_) | Role::Pressed(_), Role::Loaded(t)) => t == [[0.0; 2]; 2],
-                    (Role::Contact { .. }, Role::Loaded(t)) => t == [[0.0; 2]; 2],
+                    // Of friction and of tied bodies there are none.
+                    (Role::Contact { law: Law::Contact, .. }, Role::Loaded(t)) => {
+                        t == [[0.0; 2]; 2]
+                    }
                     // Along an axis, in which contact acts.
-                    (Role::Contact { .. }, Role::Held(held, _)) => {
+                    (Role::Contact { law: Law::Contact, .. }, Role::Held(held, _)) => {
                         let [d, end] = self.directions::<S>(e, &state.points);
                         let is = |c: usize| held[c] && !held[1 - c] && component(d, d) == one;
                         d == end && (0..2).any(|c| is(c) && d[1 - c] == zero)

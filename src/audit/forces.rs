@@ -8,13 +8,16 @@
 //! is meant is R(w) + int |sigma_n| omega, and with -beta' (g - v_n) - e' w0_n <= omega <= beta (g - v_n) + e w0_n that
 //! integral is at most beta A + e R(w0), by \[Q2\] with A <= M^2 - |sigma - m|^2. So w may leave its target where the body is
 //! off the obstacle; w0 is 1 on Gamma_C and covers rounding. Between two bodies w . d is that of the jump.
+//!
+//! Where friction acts, with the bound s, w may miss its target across d, too, by chi: that is worth int s |chi| at most. Where two bodies
+//! are tied the jump of w is the motion exactly, for no bound of the traction is known there: w on the first body is made so.
 
 use std::fmt::Display;
 
 use nalgebra::Vector2;
 
-use super::balanced::Balanced;
-use super::certificate::{Certificate, Edge, Law, Piece, Role, Shape, exactly, is_oblique};
+use super::balanced::{Balanced, friction};
+use super::certificate::{Certificate, Edge, Law, Piece, Role, Shape, Tied, exactly, is_oblique};
 use super::checks::Rejection;
 use super::dual::WrongPair;
 use super::proof::Proof;
@@ -286,6 +289,10 @@ pub enum WrongLifting {
         "edge {edge}: w along the direction of contact is up to {off} from what it should be, where the body may touch the obstacle"
     )]
     OnContact { edge: usize, off: f64 },
+    #[error(
+        "edge {edge}: two bodies are tied there, and a force along the direction of contact is not known; expected a force along an axis or a moment"
+    )]
+    Tied { edge: usize },
     #[error("the force is not a finite number")]
     NotFinite,
 }
@@ -312,11 +319,12 @@ impl Cover {
     }
 }
 
-/// Bounds of omega from above and below: times g - v_n, and times w0_n.
+/// Bounds of omega from above and below: times g - v_n, and times w0_n; and of int s |chi|.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Missed {
     pub open: [f64; 2],
     pub covered: [f64; 2],
+    pub dragged: f64,
 }
 
 /// A certificate whose triangles are in equilibrium, with what its data and its bound are worth for forces.
@@ -426,13 +434,6 @@ impl Certificate {
         unbalanced: Imbalance<Ball>,
     ) -> Result<(), Rejection> {
         let Some(claimed) = &evidence.between else { return Ok(()) };
-        let has_law =
-            |edge: &Edge| matches!(edge.role, Role::Contact { law, .. } if law != Law::Contact);
-        if let Some(edge) = self.edges.iter().position(has_law) {
-            let problem =
-                format!("a force beside edge {edge}, which slides, is glued or has friction");
-            return Err(Rejection::Force { force: 0, problem });
-        }
         let wrong = |force: usize, problem: &dyn Display| {
             Err(Rejection::Force { force, problem: problem.to_string() })
         };
@@ -548,20 +549,77 @@ impl<'a, S: Enclosing> Forces<'a, S> {
             }
         }
         points = certificate.with_cuts(points, &w.vertices, |p| !frames.contains_key(&p));
-        let Some([at_cuts, bulges]) = &w.beyond else { return Ok(Shape { points, bulges: None }) };
-        length(at_cuts.len(), cuts)?;
-        length(bulges.len(), certificate.edges.len())?;
-        for (point, &beyond) in points[vertices..].iter_mut().zip(at_cuts) {
-            *point += exactly::<S>(beyond);
+        let mut bulges = None;
+        if let Some([at_cuts, beyond]) = &w.beyond {
+            length(at_cuts.len(), cuts)?;
+            length(beyond.len(), certificate.edges.len())?;
+            for (point, &beyond) in points[vertices..].iter_mut().zip(at_cuts) {
+                *point += exactly::<S>(beyond);
+            }
+            bulges = Some(beyond.iter().map(|&bulge| exactly(bulge)).collect());
         }
-        let bulges = bulges.iter().map(|&bulge| exactly(bulge)).collect();
-        Ok(Shape { points, bulges: Some(bulges) })
+        let mut shape = Shape { points, bulges };
+        self.tie(&mut shape, target)?;
+        Ok(shape)
     }
 
-    /// The edges of Gamma_C.
+    /// Gives w on the first of two tied bodies what it is on the second one and, where the target is meant, the motion: where w is
+    /// prescribed, that must be what it was.
+    fn tie(&self, w: &mut Shape<S>, target: ForceTarget) -> Result<(), WrongLifting> {
+        let certificate = self.certificate;
+        let (zero, one) = (S::from(0), S::from(1));
+        for Tied { edge, other, law, d, .. } in certificate.tied() {
+            // w0 is 0 between tied bodies.
+            let is_meant = target.boundary.is_some() && self.is_meant(edge, target);
+            for (k, p) in certificate.edges[edge].ends.into_iter().enumerate() {
+                let jump = match target.motion.at(self.state.points[p]) {
+                    _ if !is_meant => [zero; 2],
+                    Some(motion) if law.is_bonded() => motion.into(),
+                    Some(motion) => [component(motion, exactly(d)), zero],
+                    None if !law.is_bonded() && target.motion == Motion::Along(None) => [one, zero],
+                    None => return Err(WrongLifting::Tied { edge }),
+                };
+                let (own, there) = (w.points[p], w.points[certificate.edges[other].ends[1 - k]]);
+                let tied = law.tie(own, there, d, jump);
+                let given = certificate.at_own(p).map_or([None; 2], |(_, given)| given);
+                let same = |c: usize| {
+                    tied[c].lower() == own[c].lower() && tied[c].upper() == own[c].upper()
+                };
+                if (0..2).any(|c| given[c].is_some() && !same(c)) {
+                    return Err(WrongLifting::OnSupport { edge });
+                }
+                w.points[p] = tied;
+            }
+            if let Some(bulges) = &mut w.bulges {
+                bulges[edge] = law.tie(bulges[edge], bulges[other], d, [zero; 2]);
+            }
+        }
+        Ok(())
+    }
+
+    /// The edges of Gamma_C but those of tied bodies.
     pub(crate) fn contact(&self) -> impl Iterator<Item = usize> {
         let edges = self.certificate.edges.iter().enumerate();
-        edges.filter(|(_, edge)| matches!(edge.role, Role::Contact { .. })).map(|(e, _)| e)
+        let opens = |edge: &Edge| matches!(edge.role, Role::Contact { law, .. } if !law.is_tied());
+        edges.filter(move |(_, edge)| opens(edge)).map(|(e, _)| e)
+    }
+
+    /// int s |chi| from above, chi being what w misses across the direction of contact on an edge with friction.
+    fn dragged(&self, e: usize, w: &Shape<S>, target: ForceTarget) -> S {
+        let certificate = self.certificate;
+        let Role::Contact { law: Law::Friction { bound, .. }, .. } = certificate.edges[e].role
+        else {
+            return S::from(0);
+        };
+        let ([a, b], bulge) = certificate.jump(e, w);
+        let motion = |p: usize| {
+            let motion = || target.motion.at(self.state.points[p]);
+            self.is_meant(e, target).then(motion).flatten().unwrap_or_else(Vector2::zeros)
+        };
+        let [r, s] = certificate.edges[e].ends.map(motion);
+        let missed = ([r - a, s - b], bulge.map(|bulge| -bulge));
+        let across = certificate.across(e, missed, &self.state.points);
+        friction(across, [0.0; 2], bound) / S::from(2)
     }
 
     /// The vertices that a point lies between, or it itself.
@@ -697,6 +755,12 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         })
     }
 
+    /// int s |chi| over all of Gamma_C, from above.
+    fn all_dragged(&self, w: &Shape<S>, target: ForceTarget) -> f64 {
+        let zero = S::from(0);
+        self.contact().fold(zero, |sum, e| sum + self.dragged(e, w, target)).upper().max(0.0)
+    }
+
     /// By what phi - w . d is bounded on Gamma_C.
     pub(crate) fn all_missed(
         &self,
@@ -704,7 +768,7 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         target: ForceTarget,
         cover: Option<&Cover>,
     ) -> Result<Missed, WrongLifting> {
-        let mut missed = Missed::default();
+        let mut missed = Missed { dragged: self.all_dragged(w, target), ..Missed::default() };
         for edge in self.contact() {
             let off = self.missed(edge, w, target);
             if off == [[0.0; 2]; 4] {
@@ -755,7 +819,8 @@ impl<'a, S: Enclosing> Forces<'a, S> {
             }
         }
         let values = self.values(std::slice::from_ref(&shape));
-        let between = self.enclose(values[0], Missed::default(), None);
+        let missed = Missed { dragged: self.all_dragged(&shape, target), ..Missed::default() };
+        let between = self.enclose(values[0], missed, None);
         Ok(Cover { along: along_all, between })
     }
 
@@ -767,7 +832,9 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         let away = |side: usize| {
             let covered = point(missed.covered[side]) * force;
             let loose = point(self.loose) * norm;
-            (reach(norm, point(missed.open[side]), self.mean) + covered + loose).upper()
+            let of_friction = point(missed.dragged);
+            (reach(norm, point(missed.open[side]), self.mean) + covered + of_friction + loose)
+                .upper()
         };
         let below = point(value.middle.lower()) - point(away(0));
         let above = point(value.middle.upper()) + point(away(1));

@@ -111,18 +111,23 @@ impl Audit {
         forces.liftings.iter().zip(between).map(|((target, _), &ends)| {
             let [low, high] = forces.nearest(*target, ends, pairs);
             let edges = self.certificate.edges.iter().zip(&forces.of);
-            let is_contact = |(edge, of): (&Edge, &Option<usize>)| {
-                *of == target.boundary && matches!(edge.role, Role::Contact { .. })
-            };
-            let kind = if edges.into_iter().any(is_contact) { "contact" } else { "reaction" };
+            let laws = edges.filter_map(|(edge, of)| match edge.role {
+                Role::Contact { law, .. } if *of == target.boundary => Some(law),
+                _ => None,
+            });
+            let laws: Vec<Law> = laws.collect();
+            let kind = if laws.is_empty() { "reaction" } else { "contact" };
+            // Bodies that are tied pull, too.
+            let pulls = laws.into_iter().any(Law::is_tied);
+            let low_along = if pulls { low } else { low.max(0.0) };
             let name = target.boundary.and_then(|k| forces.names.get(k));
             let name = name.map_or("", String::as_str);
             let (what, ends) = match target.motion {
-                Motion::Along(None) => ("force".to_owned(), [low.max(0.0), high]),
+                Motion::Along(None) => ("force".to_owned(), [low_along, high]),
                 Motion::Along(Some(Ramp { axis, between: [from, to], width })) => {
                     let along = ["x", "y"][axis];
                     let words = format!("force {along} {from} {to} ramp {width}");
-                    (words, [low.max(0.0), high])
+                    (words, [low_along, high])
                 }
                 Motion::Axis(c) => (["force x", "force y"][c].to_owned(), [-high, -low]),
                 Motion::Turn => ("moment".to_owned(), [-high, -low]),

@@ -5,16 +5,18 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::Vector2;
+use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::SWEEPS_FOR_FORCES;
 use super::build::{Built, build};
-use super::certificate::{Certificate, Cut, Role, is_oblique};
+use super::certificate::{Certificate, Cut, Role, Tied, is_oblique, turned};
 use super::field::Field;
 use super::forces::{ForceTarget, Lifting, Motion};
 use super::parts::{Boundary, OnLine, ProblemParts};
 use super::sweeps::improve;
+use crate::contact::law::Law;
 use crate::contact::residual::add_internal_forces;
+use crate::contact::{EdgeRule, Pair, Piece};
 use crate::held::rigid::{Parts, free_motions, pins};
 use crate::linear::dense::inner;
 use crate::linear::factor::Factor;
@@ -29,17 +31,41 @@ use crate::solve::SolveError;
 struct Prescription {
     direction: Vector2<f64>,
     boundary: usize,
-    contact: bool,
-    /// The side of the contact: 1 on the second of two bodies.
-    side: usize,
+    what: What,
+}
+
+/// What asks for a displacement; of contact the side, 1 on the second of two bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum What {
+    /// A support.
+    Support,
+    /// Contact, along its direction.
+    Along(usize),
+    /// Friction, across the direction of contact: it yields to all others, at a price.
+    Across(usize),
+}
+
+impl What {
+    fn side(self) -> Option<usize> {
+        match self {
+            What::Support => None,
+            What::Along(side) | What::Across(side) => Some(side),
+        }
+    }
+
+    fn yields(self) -> bool {
+        matches!(self, What::Across(_))
+    }
 }
 
 /// An edge of Gamma_C.
 struct OnContact {
     edge: BoundaryEdge,
     boundary: usize,
-    /// As [`Prescription::side`].
+    /// 1 on the second of two bodies.
     side: usize,
+    /// Its first contact that is wanted.
+    contact: usize,
     /// The direction of contact at its start, its end and in its middle.
     directions: [Vector2<f64>; 3],
 }
@@ -69,7 +95,13 @@ fn on_contact(
                 s => d * (1.0 - s) + e * s,
             }
         };
-        Some(OnContact { edge, boundary, side: i, directions: [0.0, 1.0, 0.5].map(direction) })
+        Some(OnContact {
+            edge,
+            boundary,
+            side: i,
+            contact: k,
+            directions: [0.0, 1.0, 0.5].map(direction),
+        })
     };
     parts.lines.iter().filter_map(of_line).collect()
 }
@@ -100,6 +132,15 @@ fn independent(demands: &[Prescription]) -> (Option<Prescription>, Option<Prescr
     (Some(first), demands.iter().find(across).copied())
 }
 
+/// How many times as stiff as those of the method springs are: of softer ones w opens, and what ties it costs energy; of ten times stiffer
+/// ones the energy is the same to a thousandth.
+const STIFFNESS: f64 = 30.0;
+
+/// The springs between tied bodies by which the jump of w is nearly the motion: it is made so in the end.
+fn springs(piece: &Piece) -> DMatrix<f64> {
+    piece.contribution(&EdgeRule::Exact, &vec![0.0; piece.p0.len()]).tangent * STIFFNESS
+}
+
 impl<'a> Lifter<'a> {
     /// For the boundaries with these `names`; `open` tells of the edges of Gamma_C, by their place in `parts.contact`, where
     /// w is free.
@@ -113,12 +154,12 @@ impl<'a> Lifter<'a> {
         let mut demands: BTreeMap<usize, Vec<Prescription>> = BTreeMap::new();
         let mut add = |edge: BoundaryEdge,
                        boundary: usize,
-                       (contact, side),
+                       what: What,
                        of: &dyn Fn(usize) -> Vec<Vector2<f64>>| {
             for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
                 let at_node = demands.entry(node).or_default();
                 for direction in of(a) {
-                    let demand = Prescription { direction, boundary, contact, side };
+                    let demand = Prescription { direction, boundary, what };
                     if !at_node.contains(&demand) {
                         at_node.push(demand);
                     }
@@ -132,18 +173,27 @@ impl<'a> Lifter<'a> {
                     Some(&Boundary::Held(held, _)) => {
                         let axes = [Vector2::x(), Vector2::y()];
                         let held: Vec<_> = (0..2).filter(|&c| held[c]).map(|c| axes[c]).collect();
-                        add(edge, boundary, (false, 0), &|_| held.clone());
+                        add(edge, boundary, What::Support, &|_| held.clone());
                     }
                     Some(&Boundary::Supported(d, ..)) => {
-                        add(edge, boundary, (false, 0), &|_| vec![d.into()]);
+                        add(edge, boundary, What::Support, &|_| vec![d.into()]);
                     }
                     _ => {}
                 }
             }
         }
-        for OnContact { edge, boundary, side, directions } in on_contact(parts, names, |k| !open[k])
+        let is_closed = |k: usize| !parts.contact[k].is_tied() && !open[k];
+        let has_friction = |k: usize| parts.contact[k].has_friction();
+        for OnContact { edge, boundary, side, directions, .. } in
+            on_contact(parts, names, is_closed)
         {
-            add(edge, boundary, (true, side), &|a| vec![directions[a]]);
+            add(edge, boundary, What::Along(side), &|a| vec![directions[a]]);
+        }
+        // Open or not, as friction with a given bound acts across gaps.
+        for OnContact { edge, boundary, side, directions, .. } in
+            on_contact(parts, names, has_friction)
+        {
+            add(edge, boundary, What::Across(side), &|a| vec![turned(directions[a])]);
         }
         let mut prescribed = vec![[None; 2]; space.nodes().len()];
         let mut frames = BTreeMap::new();
@@ -164,19 +214,35 @@ impl<'a> Lifter<'a> {
         }
         // A motion that neither supports nor the directions of contact stop, as a part turns about its pin, changes no force.
         let bodies = Parts::new(parts.mesh);
+        // Tied bodies hold each other: where nothing holds both of them, there is no factor.
+        let mut tied: BTreeMap<usize, Vec<Vector2<f64>>> = BTreeMap::new();
+        let is_tied = |k: usize| parts.contact[k].is_tied();
+        for OnContact { edge, directions, contact, .. } in on_contact(parts, names, is_tied) {
+            let is_glued = parts.contact[contact].law == Law::Bonded;
+            for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
+                let across = is_glued.then(|| turned(directions[a]));
+                tied.entry(node).or_default().extend([directions[a]].into_iter().chain(across));
+            }
+        }
         let held = |node: usize| {
-            demands.get(&node).into_iter().flatten().map(|demand| demand.direction.into())
+            let demanded = demands.get(&node).into_iter().flatten();
+            let tied = tied.get(&node).into_iter().flatten();
+            demanded.map(|demand| demand.direction.into()).chain(tied.map(|&d| d.into()))
         };
         let motions = free_motions(&bodies, &space, held, PARALLEL, false);
         let fields: Vec<_> = motions.iter().map(|motion| motion.field(&bodies, &space)).collect();
         for (node, c) in pins(&fields, |node, _| !demands.contains_key(&node)) {
             prescribed[node][c] = Some(0.0);
         }
-        let neighbours = Neighbours::new(&space);
+        let neighbours = Neighbours::across(&space, &parts.tied);
         let order = nested_dissection(space.nodes(), &neighbours);
         let numbering = Numbering::in_frames(&order, &prescribed, frames);
         let mut matrix = LowerTriangle::zero(&numbering, &neighbours);
-        let assembled = matrix.add_stiffness(&space, &parts.problem.material, &numbering);
+        let mut assembled = matrix.add_stiffness(&space, &parts.problem.material, &numbering);
+        for piece in &parts.tied {
+            assembled = assembled
+                .and_then(|()| matrix.add_contact_springs(&numbering, piece, &springs(piece)));
+        }
         let factor = assembled.map_err(SolveError::from).and_then(|()| Factor::new(&matrix));
         let factor = factor.map_err(|error| {
             format!("no displacement of least energy to prove forces with: {error}")
@@ -184,7 +250,8 @@ impl<'a> Lifter<'a> {
         let shares = vec![[1.0, 0.0]; names.len()];
         let mut lifter = Lifter { parts, names, space, demands, numbering, factor, shares };
         for (boundary, name) in names.iter().enumerate() {
-            if parts.problem.pairs.iter().any(|pair| pair.boundaries[0] == *name) {
+            let opens = |pair: &Pair| matches!(pair.law, Law::Contact | Law::Friction(_));
+            if parts.problem.pairs.iter().any(|pair| pair.boundaries[0] == *name && opens(pair)) {
                 lifter.shares[boundary] = lifter.least(boundary);
             }
         }
@@ -215,11 +282,23 @@ impl<'a> Lifter<'a> {
         if target.boundary.is_some_and(|boundary| boundary != demand.boundary) {
             return 0.0;
         }
-        let whole = match target.motion {
-            Motion::Along(ramp) if demand.contact => ramp.map_or(1.0, |ramp| ramp.at(x[ramp.axis])),
-            motion => motion.at(Vector2::from(x)).map_or(0.0, |r| r.dot(&demand.direction)),
+        let whole = match (target.motion, demand.what) {
+            (Motion::Along(ramp), What::Along(_)) => ramp.map_or(1.0, |ramp| ramp.at(x[ramp.axis])),
+            (motion, _) => motion.at(Vector2::from(x)).map_or(0.0, |r| r.dot(&demand.direction)),
         };
-        if demand.contact { whole * self.shares[demand.boundary][demand.side] } else { whole }
+        demand.what.side().map_or(whole, |side| whole * self.shares[demand.boundary][side])
+    }
+
+    /// The jump along functional `i` of a piece of tied bodies.
+    fn jump(&self, piece: &Piece, i: usize, target: ForceTarget) -> f64 {
+        let meant = target.boundary.is_some_and(|b| *self.names[b] == **piece.boundary());
+        let a = i % piece.geometry.nodes.len();
+        let place = piece.geometry.first().place(self.parts.mesh, a);
+        match target.motion.at(Vector2::from(place)) {
+            _ if !meant => 0.0,
+            Some(motion) => motion.dot(&piece.direction_of(i)),
+            None => 1.0,
+        }
     }
 
     /// w at the nodes, of least energy.
@@ -234,7 +313,7 @@ impl<'a> Lifter<'a> {
                 match independent(demands) {
                     (Some(a), Some(b)) => {
                         let (d, e) = (a.direction, b.direction);
-                        let turned = |d: Vector2<f64>| Vector2::new(d[1], -d[0]);
+                        let right = |d: Vector2<f64>| Vector2::new(d[1], -d[0]);
                         let axes = |d: Vector2<f64>| !is_oblique(d.into());
                         if axes(d) && axes(e) {
                             // d or e has component c alone.
@@ -242,7 +321,7 @@ impl<'a> Lifter<'a> {
                                 if d[c] != 0.0 { d[c] * value(&a) } else { e[c] * value(&b) }
                             }))
                         } else {
-                            (turned(e) * value(&a) - turned(d) * value(&b)) / d.perp(&e)
+                            (right(e) * value(&a) - right(d) * value(&b)) / d.perp(&e)
                         }
                     }
                     (Some(a), None) => a.direction * (value(&a) / a.direction.dot(&a.direction)),
@@ -251,7 +330,8 @@ impl<'a> Lifter<'a> {
             // All contact boundaries together yield to what holds.
             if target.boundary.is_some() {
                 let off = |demand: &&Prescription| {
-                    (w.dot(&demand.direction) - value(demand)).abs() > AGREEMENT * (1.0 + length(w))
+                    let by = w.dot(&demand.direction) - value(demand);
+                    !demand.what.yields() && by.abs() > AGREEMENT * (1.0 + length(w))
                 };
                 if let Some(other) = demands.iter().find(off) {
                     return Err(self.contradiction(node, demands, other));
@@ -262,6 +342,16 @@ impl<'a> Lifter<'a> {
         // -K w on the free unknowns.
         let mut right = vec![[0.0; 2]; field.len()];
         add_internal_forces(&self.space, &self.parts.problem.material, &field, &mut right);
+        for piece in &self.parts.tied {
+            let opens: Vec<f64> = piece
+                .jumps(&field)
+                .into_iter()
+                .enumerate()
+                .map(|(i, jump)| jump - self.jump(piece, i, target))
+                .collect();
+            let forces = springs(piece) * DVector::from_vec(opens);
+            piece.add_contact(forces.as_slice(), &mut right);
+        }
         right.as_flattened_mut().iter_mut().for_each(|r| *r = -*r);
         let prescribed = field.clone();
         let mut x = self.numbering.gather(&right);
@@ -278,17 +368,20 @@ impl<'a> Lifter<'a> {
         }
         // w0 is 1 where w is free, too: it need not have the least energy.
         if target.boundary.is_none() {
-            for OnContact { edge, boundary, side, directions } in
-                on_contact(self.parts, self.names, |_| true)
+            for OnContact { edge, boundary, side, directions, .. } in
+                on_contact(self.parts, self.names, |k| !self.parts.contact[k].is_tied())
             {
                 let share = self.shares[boundary][side];
                 for (a, node) in self.space.edge_nodes(edge).into_iter().enumerate() {
                     let (d, w) = (directions[a], Vector2::from(field[node]));
                     let along = match self.demands.get(&node) {
                         None => d,
+                        Some(held) if held.iter().all(|demand| demand.what.yields()) => d,
                         // A body that another one holds may be held across contact there, and move the other way.
                         Some(held) if share != 1.0 => match independent(held) {
-                            (Some(one), None) if !held.iter().any(|demand| demand.contact) => {
+                            (Some(one), None)
+                                if held.iter().all(|demand| demand.what == What::Support) =>
+                            {
                                 Vector2::new(-one.direction[1], one.direction[0])
                             }
                             _ => continue,
@@ -318,6 +411,9 @@ impl<'a> Lifter<'a> {
         open: &[bool],
     ) -> Result<Certificate, String> {
         let (parts, mesh) = (self.parts, self.parts.mesh);
+        if parts.contact.iter().any(|contact| contact.has_friction() || contact.is_tied()) {
+            return Err("friction acts, or bodies are tied".to_owned());
+        }
         let field = |w: &[[f64; 2]]| Field::new(mesh, w).map_err(|error| error.to_string());
         let (near, mut w) = (field(&self.field(target)?)?, field(w)?);
         let at_rest = |values: &[Option<f64>; 2]| values.map(|value| value.map(|_| 0.0));
@@ -359,6 +455,7 @@ impl<'a> Lifter<'a> {
             mesh,
             contact: Vec::new(),
             lines: Vec::new(),
+            tied: Vec::new(),
             prescribed,
             frames,
             boundary,
@@ -374,6 +471,38 @@ impl<'a> Lifter<'a> {
         Ok(pair)
     }
 
+    /// Gives w on the second of two tied bodies what it must be where it is prescribed on the first one.
+    fn meet(
+        &self,
+        w: &mut [[f64; 2]],
+        target: ForceTarget,
+        (certificate, of): (&Certificate, &[Option<usize>]),
+    ) -> Result<(), String> {
+        for Tied { edge, other, law, d, .. } in certificate.tied() {
+            let meant = target.boundary.is_some() && of[edge] == target.boundary;
+            for (k, p) in certificate.edges[edge].ends.into_iter().enumerate() {
+                let q = certificate.edges[other].ends[1 - k];
+                let (Some(&own), Some(&there)) = (w.get(p), w.get(q)) else { continue };
+                let [own_data, data] =
+                    [p, q].map(|p| certificate.at_own(p).map_or([None; 2], |(_, given)| given));
+                let motion = target.motion.at(Vector2::from(certificate.vertices[p]));
+                let motion = motion.unwrap_or(Vector2::from(d));
+                let moves = |c: usize| law.is_bonded() || d[c] != 0.0;
+                for c in (0..2).filter(|&c| own_data[c].is_some() && moves(c)) {
+                    let value = if meant { own[c] - motion[c] } else { own[c] };
+                    if data[c].is_some() && there[c] != value {
+                        let [x, y] = certificate.vertices[p];
+                        return Err(format!(
+                            "at ({x}, {y}), where tied bodies and supports of both meet, the force of one alone has no bound in the energy norm"
+                        ));
+                    }
+                    w[q][c] = value;
+                }
+            }
+        }
+        Ok(())
+    }
+
     fn contradiction(&self, node: usize, demands: &[Prescription], other: &Prescription) -> String {
         let [x, y] = self.space.nodes()[node];
         let names = |demand: &Prescription| format!("'{}'", self.names[demand.boundary]);
@@ -386,13 +515,19 @@ impl<'a> Lifter<'a> {
     }
 
     /// w on the triangles of a certificate, what is exact on the boundary made so.
-    pub fn lifting(&self, target: ForceTarget, built: &Built) -> Result<Lifting, String> {
+    pub fn lifting(
+        &self,
+        target: ForceTarget,
+        built: &Built,
+        of: &[Option<usize>],
+    ) -> Result<Lifting, String> {
         let field = self.field(target)?;
         let certificate = &built.certificate;
         let mesh = self.parts.mesh;
         let shape = built.shape::<f64>(mesh, &field);
-        let vertices: Vec<[f64; 2]> =
+        let mut vertices: Vec<[f64; 2]> =
             shape.points[..mesh.vertices().len()].iter().map(|&w| w.into()).collect();
+        self.meet(&mut vertices, target, (certificate, of))?;
         let Some(bulges) = shape.bulges else { return Ok(Lifting { vertices, beyond: None }) };
         let mean = |cut: &Cut| {
             let [a, b] = cut.ends.map(|end| Vector2::from(vertices[end]));

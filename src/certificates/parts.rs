@@ -9,7 +9,7 @@ use super::contact::{Contact, SAME_PLACE, even_out};
 use super::data::{Traction, bulge_of, is_within};
 use super::errors::CertifyError;
 use super::field::Field;
-use crate::contact::{Friction, Pair, Piece};
+use crate::contact::{Friction, Law as ContactLaw, Pair, Piece};
 use crate::kernel::Material;
 use crate::model::boundary_normals::SmoothBoundary;
 use crate::model::constraints::Constraints;
@@ -45,6 +45,8 @@ pub(super) struct ProblemParts<'a> {
     pub contact: Vec<Contact>,
     /// The edges that contacts lie on.
     pub lines: Vec<OnLine>,
+    /// The pieces of tied bodies, with their jumps alone.
+    pub tied: Vec<Piece>,
     /// u_D at the vertices.
     pub prescribed: Vec<[Option<f64>; 2]>,
     /// The vertices that are held along an oblique direction alone, and this: what is prescribed there is along it.
@@ -195,8 +197,21 @@ impl<'a> ProblemParts<'a> {
             }
         }
         let cuts = BTreeMap::new();
-        let parts =
-            ProblemParts { problem, mesh, contact, lines, prescribed, frames, boundary, cuts };
+        let tied = pieces
+            .iter()
+            .filter(|piece| matches!(piece.geometry.law, ContactLaw::Sliding | ContactLaw::Bonded));
+        let tied = tied.map(Piece::of_jumps).collect();
+        let parts = ProblemParts {
+            problem,
+            mesh,
+            contact,
+            lines,
+            tied,
+            prescribed,
+            frames,
+            boundary,
+            cuts,
+        };
         parts.check_overlaps()?;
         parts.check_directions()?;
         Ok(parts)

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use super::Asked;
 use super::balanced::Balanced;
 use super::build::{Built, Line, Station};
-use super::certificate::{Certificate, Law, Role};
+use super::certificate::{self, Certificate, Role};
 use super::contact::Contact;
 use super::dual::ByPair;
 use super::field::Field;
@@ -31,10 +31,10 @@ use super::forces::{Cover, Evidence, ForceTarget, Forces, Mean, Motion, Ramp, Wr
 use super::lifting::Lifter;
 use super::parts::{Boundary, ProblemParts};
 use super::proof::Proof;
+use crate::contact::law::Law;
 use crate::kernel::{Ball, Enclosing};
 use crate::linear::dense::least_squares;
 use crate::model::Degree;
-use crate::quote::quoted;
 use crate::results::Solution;
 
 /// The quantities that a certificate proves beside the bound.
@@ -110,9 +110,10 @@ impl Name {
         }
     }
 
-    /// The forces on the body are minus R(w).
-    fn of_functional(self, [low, high]: [f64; 2]) -> [f64; 2] {
+    /// The forces on the body are minus R(w). Contact does not pull, unless bodies are tied.
+    fn of_functional(self, [low, high]: [f64; 2], pulls: bool) -> [f64; 2] {
         match self {
+            Name::ContactForce | Name::PeakPressure if pulls => [low, high],
             Name::ContactForce | Name::PeakPressure => [low.max(0.0), high],
             _ => [-high, -low],
         }
@@ -181,7 +182,7 @@ pub(super) fn zones<S: Enclosing>(
         };
         // By how much friction could bear more: affine less convex, so that the least is at an end.
         let margin = |s: &Station| match certificate.edges[s.edge].role {
-            Role::Contact { law: Law::Friction { shear, bound }, .. } => {
+            Role::Contact { law: certificate::Law::Friction { shear, bound }, .. } => {
                 let at = |k: usize| (bound[k] - shear[k].abs()).next_down();
                 at(0).min(at(1))
             }
@@ -367,7 +368,8 @@ fn open(parts: &ProblemParts, v: &Field, mean: Mean) -> Vec<bool> {
         .map(|name| (name, (largest(name) / 2.0).max(mean.square / (PRICE * force(name)))))
         .collect();
     let is_open = |(k, &gap): (usize, &f64)| {
-        least.get(&*parts.contact[k].boundary).is_some_and(|&least| gap > 0.0 && gap >= least)
+        !parts.contact[k].is_tied()
+            && least.get(&*parts.contact[k].boundary).is_some_and(|&l| gap > 0.0 && gap >= l)
     };
     gaps.iter().enumerate().map(is_open).collect()
 }
@@ -507,6 +509,8 @@ fn list(
     let mut asked: Vec<(Name, usize, Option<Ramp>)> = Vec::new();
     // The direction of contact of a boundary, if it is along an axis: then the force says all of its components.
     let mut axes = vec![None; names.len()];
+    // Bodies that are tied on it pull, too.
+    let mut pulls = vec![false; names.len()];
     for (boundary, name) in names.iter().enumerate() {
         let edges = parts.mesh.edges_of(name).unwrap_or_default();
         let what: Vec<&Boundary> = edges
@@ -521,16 +525,23 @@ fn list(
             _ => None,
         });
         let contacts = lines.flatten().filter(|&&(_, side)| side == 0);
-        let mut along = contacts.map(|&(k, _)| parts.contact[k].directions);
+        let contacts: Vec<&Contact> = contacts.map(|&(k, _)| &parts.contact[k]).collect();
+        let mut along = contacts.iter().map(|contact| contact.directions);
+        pulls[boundary] = contacts.iter().any(|contact| contact.is_tied());
+        let is_glued = contacts.iter().any(|contact| contact.law == Law::Bonded);
+        let acts_across = is_glued || contacts.iter().any(|contact| contact.has_friction());
         let mut pairs = parts.problem.pairs.iter().filter(|pair| pair.boundaries.contains(name));
         if pairs.clone().count() > 1 && pairs.any(|pair| pair.boundaries[0] != *name) {
             // The jump of w is that of the first bodies, and this one is a first and a second body.
             continue;
         }
         if let Some([d, _]) = along.next() {
-            let constant = along.all(|other| other == [d, d]);
+            let constant = !acts_across && along.all(|other| other == [d, d]);
             axes[boundary] = (0..2).find(|&c| constant && d[1 - c] == 0.0).map(|c| (c, d[c]));
-            asked.push((Name::ContactForce, boundary, None));
+            // Glue has no direction.
+            if !is_glued {
+                asked.push((Name::ContactForce, boundary, None));
+            }
             let own = asked_for.forces.iter().filter(|(of, ramp)| of == name && ramp.is_some());
             asked.extend(own.map(|&(_, ramp)| (Name::ContactForce, boundary, ramp)));
             if axes[boundary].is_none() {
@@ -545,14 +556,6 @@ fn list(
             asked.push((Name::ReactionMoment, boundary, None));
         }
     }
-    let is_other = |contact: &&Contact| contact.is_tied() || contact.has_friction();
-    if let Some(other) = parts.contact.iter().find(is_other) {
-        let of = quoted(&other.boundary, '\'');
-        let why = if other.is_tied() { "does not open" } else { "has friction" };
-        let error = format!("{of} {why}; forces are proved for contact without friction alone");
-        let why = |(name, boundary, weight)| (name, boundary, weight, Err(error.clone()));
-        return (asked.into_iter().map(why).collect(), Evidence::default(), Vec::new());
-    }
     let lifter = match Lifter::new(parts, degree, names, open) {
         Ok(lifter) => lifter,
         Err(error) => {
@@ -561,12 +564,13 @@ fn list(
         }
     };
     let all = ForceTarget { boundary: None, motion: Motion::Along(None) };
-    let mut evidence = Evidence { cover: lifter.lifting(all, built).ok(), ..Evidence::default() };
+    let mut evidence =
+        Evidence { cover: lifter.lifting(all, built, forces.of).ok(), ..Evidence::default() };
     let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
     let mut refused = Vec::with_capacity(asked.len());
     for &(name, boundary, weight) in &asked {
         let target = ForceTarget { boundary: Some(boundary), motion: name.motion(weight) };
-        refused.push(match lifter.lifting(target, built) {
+        refused.push(match lifter.lifting(target, built, forces.of) {
             Ok(w) => {
                 evidence.liftings.push((target, w));
                 None
@@ -623,7 +627,7 @@ fn list(
                 between.next().map_or(Err(String::new()), |ends| ends.map_err(|e| e.to_string()))
             }
         };
-        let interval = interval.map(|ends| name.of_functional(ends));
+        let interval = interval.map(|ends| name.of_functional(ends, pulls[boundary]));
         if let (Name::ContactForce, None, Some((axis, sign))) = (name, weight, axes[boundary]) {
             for c in 0..2 {
                 let along = |[low, high]: [f64; 2]| match (c == axis, sign > 0.0) {
@@ -653,8 +657,9 @@ mod tests {
             (Name::ContactMoment, [-2.0, 1.0]),
             (Name::Reaction(0), [-2.0, 1.0]),
         ] {
-            assert_eq!(name.of_functional([-1.0, 2.0]), expected, "{name:?}");
+            assert_eq!(name.of_functional([-1.0, 2.0], false), expected, "{name:?}");
         }
-        assert_eq!(Name::ContactForce.of_functional([1.0, 2.0]), [1.0, 2.0]);
+        assert_eq!(Name::ContactForce.of_functional([1.0, 2.0], false), [1.0, 2.0]);
+        assert_eq!(Name::ContactForce.of_functional([-1.0, 2.0], true), [-1.0, 2.0]);
     }
 }

@@ -708,6 +708,18 @@ impl Piece {
         (0..self.p0.len()).map(jump).collect()
     }
 
+    /// The piece with the jumps alone for its functionals: P0 without the stress.
+    pub(crate) fn of_jumps(&self) -> Piece {
+        let (count, places) = (self.degree.nodes_per_edge(), self.degree.edge_positions());
+        let row = |(i, p0): (usize, &Vec<Vector2<f64>>)| {
+            let (s, ends) = (places[i % count], 2 * (i / count));
+            let stress = self.sigma_n[ends].iter().zip(&self.sigma_n[ends + 1]);
+            let stress = stress.map(|(a, b)| a * (1.0 - s) + b * s);
+            p0.iter().zip(stress).map(|(p0, stress)| p0 + stress * self.gamma).collect()
+        };
+        Piece { p0: self.p0.iter().enumerate().map(row).collect(), ..self.clone() }
+    }
+
     /// The places on the edges of its sides that functional `i` compares, each with the triangle and the direction that its
     /// displacement is multiplied by.
     pub fn compared(&self, mesh: &Mesh, i: usize) -> Vec<(usize, [f64; 2], Vector2<f64>)> {

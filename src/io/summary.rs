@@ -422,7 +422,8 @@ pub fn audited(audit: &Audit, case: Option<(&AuditedCase, Option<&str>)>) -> Str
     };
     lines.line("problem", problem);
     let relative = 100.0 * header.bound / proof.norm;
-    let size = Some(relative).filter(|r| r.is_finite());
+    // Of a body at rest, whose norm is rounding, it says nothing.
+    let size = Some(relative).filter(|r| *r < 1e8);
     let size = size.map_or(String::new(), |r| format!(", {} % of |v|_a", numbers::short(r, 2)));
     lines.line("bound", format!("{}{size}", short(header.bound)));
     let units = case.and_then(|(case, _)| case.units.clone());

@@ -3,7 +3,7 @@
 
 use signorini::certificates::binding::compare;
 use signorini::certificates::proof::{Claim, Edge, Law, Role};
-use signorini::certificates::quantities::{Limit, Zone};
+use signorini::certificates::quantities::{Limit, Name, Zone};
 use signorini::certificates::{Certificate, Continuous, Rejection, Target, adapt, certify, format};
 use signorini::contact::Friction;
 use signorini::kernel::Ball;
@@ -51,6 +51,33 @@ fn the_bound_is_above_the_error_of_exact_solutions_and_falls_with_the_mesh() {
                 c.quantities.zones
             );
         }
+    }
+}
+
+#[test]
+fn the_shear_of_exact_solutions_lies_between_its_numbers_which_near_each_other() {
+    // int sigma_xy on the floor: of (f) by quadrature of its closed form, of (e) s - b c^4 / 4.
+    for (exact, value, degree, first, rate) in [
+        (stick_slip(), 0.05 - 0.2 / 4.0 / 81.0, Degree::One, 8, 1.5),
+        (stick_slip(), 0.05 - 0.2 / 4.0 / 81.0, Degree::Two, 4, 1.5),
+    ] {
+        let ladder = with_friction(&exact, degree, first);
+        let mut last = f64::INFINITY;
+        for level in 0..3 {
+            let (_, problem, s) = ladder.solve(level).unwrap();
+            let c = certify(&problem, &s).unwrap();
+            let of = |name| c.quantities.list.iter().find(|q| q.name == name).unwrap();
+            // The floor pulls the body back.
+            let [low, high] = of(Name::ContactComponent(0)).interval.clone().unwrap();
+            println!("{degree:?} {level}: {low} <= {} <= {high}", -value);
+            assert!(low <= -value && -value <= high, "{low} {high}");
+            assert!((high - low) * rate <= last, "{low} {high}");
+            last = high - low;
+            // The floor presses where walls hold the body.
+            let why = of(Name::ContactForce).interval.clone().unwrap_err();
+            assert!(why.contains("the force of one alone has no bound"), "{why}");
+        }
+        println!("{last}");
     }
 }
 
@@ -117,7 +144,7 @@ fn a_mesh_is_adapted_to_a_bound_of_a_problem_with_friction() {
 
 #[test]
 fn no_certificate_of_a_block_at_random_is_false_beside_one_on_a_finer_mesh() {
-    let (mut both, mut telling, mut stuck) = (0, 0, 0);
+    let (mut both, mut telling, mut stuck, mut far) = (0, 0, 0, 0);
     for seed in 1..=40 {
         let mut random = Random(seed);
         random.next();
@@ -136,6 +163,22 @@ fn no_certificate_of_a_block_at_random_is_false_beside_one_on_a_finer_mesh() {
             (c, slides)
         };
         let ((coarse, slides), (fine, _)) = (certified(n), certified(4 * n));
+        // Normal force, shear and moment lie between their numbers on both meshes; a fifth of the width is not always enough.
+        for (of, finer) in coarse.quantities.list.iter().zip(&fine.quantities.list) {
+            let [[low, high], [least, most]] = [of, finer].map(|q| q.interval.clone().unwrap());
+            assert!(low <= most && least <= high, "seed {seed}: {:?}", of.name);
+            if most < f64::INFINITY {
+                let off = 0.05 * (high - low);
+                assert!(
+                    low - off <= finer.value && finer.value <= high + off,
+                    "seed {seed}: {:?}: {low} {} {high}",
+                    of.name,
+                    finer.value
+                );
+                let middle = (low + high) / 2.0;
+                far += usize::from((finer.value - middle).abs() > 0.1 * (high - low));
+            }
+        }
         both += usize::from(slides.sticks > 0.05 && slides.slides > 0.05);
         // J(v) - J(u) is at least half the square of the distance and at most half that of the bound.
         let below = |c: &Continuous| energy(c)[0] - c.bound * c.bound / 2.0;
@@ -153,8 +196,11 @@ fn no_certificate_of_a_block_at_random_is_false_beside_one_on_a_finer_mesh() {
         telling += usize::from(half > energy(&fine)[1]);
         assert!(fine.bound < 0.7 * coarse.bound, "seed {seed}: {} {}", fine.bound, coarse.bound);
     }
-    println!("{both} stick and slide, {telling} with half the bound, {stuck} stretches");
+    println!(
+        "{both} stick and slide, {telling} with half the bound, {stuck} stretches, {far} forces"
+    );
     assert!(both >= 5 && telling >= 20 && stuck >= 1, "{both} {telling} {stuck}");
+    assert!(far >= 8, "{far}");
 }
 
 #[test]

@@ -15,6 +15,7 @@ use signorini::solve::{Gamma0, Method, Settings, SolveError, discretize, solve, 
 mod balance;
 mod certified;
 mod curved;
+mod forces;
 mod friction;
 mod limits;
 mod patch;

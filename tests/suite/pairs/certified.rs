@@ -18,14 +18,14 @@ use crate::common::{DEGREES, case, encoded, expression};
 
 /// Two bodies of n x n cells, an upper one on a lower one: their corners, cells and moduli.
 #[derive(Clone, Copy)]
-struct Two {
+pub(super) struct Two {
     corners: [[[f64; 2]; 2]; 2],
     cells: [usize; 2],
     moduli: [f64; 2],
 }
 
 /// Two unit squares.
-fn squares(cells: [usize; 2], moduli: [f64; 2]) -> Two {
+pub(super) fn squares(cells: [usize; 2], moduli: [f64; 2]) -> Two {
     Two { corners: [[[0.0, 0.0], [1.0, 1.0]], [[0.0, -1.0], [1.0, 0.0]]], cells, moduli }
 }
 
@@ -37,7 +37,7 @@ fn narrow(cells: [usize; 2]) -> Two {
 
 impl Two {
     /// The upper body is pressed down and tilted from above, the lower one stands on the floor: the data are affine.
-    fn problem(self) -> Problem {
+    pub(super) fn problem(self) -> Problem {
         let maps = self.corners.map(|[low, high]| rectangle(low, high));
         let block = |name, k: usize| {
             let m = self.moduli[k];
@@ -96,7 +96,7 @@ impl Two {
     }
 }
 
-fn certified(problem: &Problem, degree: Degree) -> Continuous {
+pub(super) fn certified(problem: &Problem, degree: Degree) -> Continuous {
     certify(problem, &proved(problem, &method(degree))).unwrap()
 }
 
@@ -619,7 +619,7 @@ fn a_body_on_two_others_presses_on_each_with_a_force_between_two_numbers() {
 }
 
 /// The upper body is dragged on the lower one; the bound is affine.
-fn rough(problem: Problem) -> Problem {
+pub(super) fn rough(problem: Problem) -> Problem {
     let mut problem = problem;
     problem.pairs[0].friction = Some(Friction::Tresca(expression("0.005 + 0.014*x")));
     let top = ["0.03", "-0.1 + 0.02*x"].map(|u| Some(expression(u)));
@@ -645,7 +645,7 @@ fn energy(c: &Continuous) -> [f64; 2] {
 }
 
 /// Two squares that may not open: pulled up, tilted and dragged.
-fn tied(cells: [usize; 2], moduli: [f64; 2], law: Law) -> Problem {
+pub(super) fn tied(cells: [usize; 2], moduli: [f64; 2], law: Law) -> Problem {
     let mut problem = squares(cells, moduli).problem();
     problem.pairs[0].law = law;
     let top = ["0.05", "0.1 - 0.15*x"].map(|u| Some(expression(u)));
