@@ -306,10 +306,23 @@ fn dragged_cylinders_stick_and_slide_as_cattaneo_and_mindlin_say() {
     }
 }
 
+/// Two unit squares with lambda = mu = 1, the upper one so many times stiffer, clamped below.
+fn squares(cells: [usize; 2], ratio: f64, friction: Friction) -> Problem {
+    let (lower, upper) = (rectangle([0.0, 0.0], [1.0, 1.0]), rectangle([0.0, 1.0], [1.0, 2.0]));
+    let block = |name, n, stiffness, map| Block {
+        name,
+        cells: [n, n],
+        material: Material::lame(stiffness, stiffness, Plane::Strain),
+        map,
+    };
+    let blocks = [block("lower", cells[0], 1.0, &lower), block("upper", cells[1], ratio, &upper)];
+    let pair = Pair::new("lower.top", "upper.bottom").with_friction(friction);
+    bodies(&blocks, &[pair]).with("lower.bottom", Condition::clamped())
+}
+
 #[test]
 fn below_a_coefficient_there_is_one_solution_for_all_loads() {
-    // Squares with lambda = mu = 1, the upper one so many times stiffer, clamped below and above, kappa = 1/2; the two limits by another
-    // program, numpy.
+    // The two limits by another program, numpy, with kappa = 1/2.
     for (cells, ratio, expected) in [
         ([7, 11], 1.0, [0.124, 0.154]),
         ([14, 22], 1.0, [0.086, 0.107]),
@@ -318,19 +331,8 @@ fn below_a_coefficient_there_is_one_solution_for_all_loads() {
         ([14, 22], 10.0, [0.094, 0.030]),
         ([28, 44], 10.0, [0.066, 0.021]),
     ] {
-        let (lower, upper) = (rectangle([0.0, 0.0], [1.0, 1.0]), rectangle([0.0, 1.0], [1.0, 2.0]));
-        let block = |name, n, stiffness, map| Block {
-            name,
-            cells: [n, n],
-            material: Material::lame(stiffness, stiffness, Plane::Strain),
-            map,
-        };
-        let blocks =
-            [block("lower", cells[0], 1.0, &lower), block("upper", cells[1], ratio, &upper)];
         let isolation = |mu: f64| {
-            let pair = Pair::new("lower.top", "upper.bottom").with_friction(Friction::Coulomb(mu));
-            let problem = bodies(&blocks, &[pair])
-                .with("lower.bottom", Condition::clamped())
+            let problem = squares(cells, ratio, Friction::Coulomb(mu))
                 .with("upper.top", Condition::displacement(|_| 0.003, |_| -0.1));
             let s = proved(&problem, &with_kappa(Degree::One, 0.5));
             s.enclosure.as_ref().unwrap().isolation.unwrap()
@@ -413,18 +415,28 @@ fn few_factorisations_lead_to_a_solution_of_fifty_problems() {
     assert!(of_two.iter().all(|&count| count <= 50), "{of_two:?}");
 }
 
-/// The load steps of two blocks: pressed and dragged to the right, dragged further, dragged back.
-fn back_and_forth(friction: &Friction, degree: Degree) -> Vec<Solution> {
+/// Load steps of two blocks: the top of the upper one is pressed by as much in each, and dragged to these places.
+fn in_steps(
+    blocks: &Problem,
+    press: fn([f64; 2]) -> f64,
+    drags: [f64; 3],
+    degree: Degree,
+) -> Vec<Solution> {
     let mut slip = Vec::new();
     let mut solve = |drag: f64| {
-        let mut problem = dragged([7, 11], 2.0, friction, false)
-            .with("upper.top", Condition::displacement(move |_| drag, |_| 0.0));
+        let mut problem =
+            blocks.clone().with("upper.top", Condition::displacement(move |_| drag, press));
         problem.slip = std::mem::take(&mut slip);
         let s = proved(&problem, &method(degree));
         slip = s.slip();
         s
     };
-    [0.05, 0.1, 0.01].map(&mut solve).into_iter().collect()
+    drags.map(&mut solve).into_iter().collect()
+}
+
+/// Two blocks are dragged to the right, further, and back.
+fn back_and_forth(friction: &Friction, degree: Degree) -> Vec<Solution> {
+    in_steps(&dragged([7, 11], 2.0, friction, false), |_| 0.0, [0.05, 0.1, 0.01], degree)
 }
 
 #[test]
@@ -453,6 +465,29 @@ fn friction_turns_round_when_the_drag_does() {
         let at_once = dragged([7, 11], 2.0, &Friction::Coulomb(mu), false).with("upper.top", drag);
         let at_once = proved(&at_once, &method(degree));
         assert!(at_once.boundaries[0].resultant[0] > 0.0);
+    }
+}
+
+#[test]
+fn pressed_dragged_and_dragged_back_the_shear_forces_are_those_of_another_program() {
+    // By numpy, on the lower square. The top that presses tilts, and moves what is below to the side.
+    let press = |[x, _]: [f64; 2]| -0.1 + 0.05 * x;
+    for (friction, expected) in [
+        (Friction::Coulomb(0.1), [0.00940, 0.01017, -0.00848]),
+        (Friction::tresca(|_| 0.004), [0.004, 0.004, -0.004]),
+    ] {
+        let blocks = squares([22, 14], 1.0, friction);
+        let steps = in_steps(&blocks, press, [0.0, 0.1, 0.0], Degree::One);
+        let found: Vec<f64> = steps.iter().map(|s| s.boundaries[0].resultant[0]).collect();
+        // Five digits were printed.
+        let near = |found: f64, expected: f64| (found - expected).abs() <= 1e-5;
+        println!("{found:?}");
+        assert!(found.iter().zip(expected).all(|(f, e)| near(*f, e)), "{found:?} {expected:?}");
+        // The control: the last state without what was before has the force of the first one.
+        let at_once = blocks.with("upper.top", Condition::displacement(|_| 0.0, press));
+        let at_once = proved(&at_once, &method(Degree::One));
+        let at_once = at_once.boundaries[0].resultant[0];
+        assert!(near(at_once, expected[0]) && !near(at_once, expected[2]), "{at_once}");
     }
 }
 
