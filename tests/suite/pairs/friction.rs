@@ -1,8 +1,13 @@
 //! Friction between two bodies: a stiff one is a rough obstacle, the names of the bodies do not matter, what sticks is glued along the
 //! boundary, forces cancel, friction alone holds a body, and Coulomb's law has one solution near.
 
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
 use signorini::contact::Friction;
+use signorini::linear::matrix;
+use signorini::linear::matrix::{Neighbours, Numbering};
 
+use super::balance::{dense, largest_beside};
 use super::*;
 use crate::common::DEGREES;
 
@@ -345,6 +350,64 @@ fn below_a_coefficient_there_is_one_solution_for_all_loads() {
         }
         let most = limits[0].max(limits[1]);
         assert!(isolation(0.99 * most).everywhere && !isolation(1.02 * most).everywhere);
+    }
+}
+
+/// The limits of the coefficient by Theorems 13.3 and 13.3a, for P1: by dense algebra in doubles.
+fn limits(d: &Discretization) -> [f64; 2] {
+    let neighbours = Neighbours::across(&d.space, &d.contact);
+    let order: Vec<usize> = (0..d.space.nodes().len()).collect();
+    let numbering = Numbering::under(&order, &d.constraints);
+    let a = dense(&matrix::assemble(d, &numbering, &neighbours).unwrap());
+    // P0 along the direction of contact at both ends of each piece, then across it; and the inverse of the integrals of N_a N_b / gamma.
+    let count = 2 * d.contact.len();
+    let mut p0 = Mat::<f64>::zeros(numbering.count, 2 * count);
+    let mut inverse = Mat::<f64>::zeros(count, count);
+    for (k, piece) in d.contact.iter().enumerate() {
+        for (i, row) in piece.p0.iter().enumerate() {
+            let column = i / 2 * count + 2 * k + i % 2;
+            for (&node, f) in piece.nodes.iter().zip(row) {
+                for (c, at) in numbering.of[node].iter().enumerate() {
+                    if let Some(at) = *at {
+                        p0[(at, column)] += f[c];
+                    }
+                }
+            }
+        }
+        for (i, j, entry) in [(0, 0, 4.0), (0, 1, -2.0), (1, 0, -2.0), (1, 1, 4.0)] {
+            inverse[(2 * k + i, 2 * k + j)] = entry / piece.weight();
+        }
+    }
+    let g = p0.transpose() * a.llt(Side::Lower).unwrap().solve(&p0);
+    let block = |i: usize, j: usize| {
+        Mat::<f64>::from_fn(count, count, |k, l| g[(i * count + k, j * count + l)])
+    };
+    let largest = largest_beside(&block(1, 1), &inverse);
+    let (along, between, across) = (&block(0, 0) + &inverse, block(0, 1), &block(1, 1) + &inverse);
+    let coupled = between.transpose() * along.llt(Side::Lower).unwrap().solve(&between);
+    let c = largest_beside(&coupled, &across).sqrt();
+    [2.0 / largest.sqrt(), (1.0 - c * c) / (2.0 * c * (1.0 + largest).sqrt())]
+}
+
+#[test]
+fn the_limits_of_round_bodies_are_those_of_dense_algebra() {
+    // About 6 and 5 edges on half the width of contact, and twice as many.
+    for cells in [[22, 18], [44, 33]] {
+        let (problem, method) = (cylinders(cells, 0.0033, 0.3), with_kappa(Degree::One, 0.5));
+        let s = proved(&problem, &method);
+        let found = s.enclosure.as_ref().unwrap().isolation.unwrap().limits;
+        let mut d = discretize(&problem, &method).unwrap();
+        let expected = limits(&d);
+        // The control: of half of the pieces.
+        d.contact.truncate(d.contact.len() / 2);
+        let wrong = limits(&d);
+        println!("{cells:?}: {found:?} {expected:?}, of half of the pieces {wrong:?}");
+        for k in 0..2 {
+            // The limits are proved to a thousandth, of eigenvalues, and from below.
+            let share = found[k] / expected[k];
+            assert!((0.997..1.0 + 1e-9).contains(&share), "{found:?} {expected:?}");
+            assert!((found[k] / wrong[k] - 1.0).abs() > 0.05, "{found:?} {wrong:?}");
+        }
     }
 }
 
