@@ -913,9 +913,12 @@ fn limits(
     [first, second.max(0.0)]
 }
 
-/// An estimate of an eigenvalue from below and a little more, then more: where the next eigenvalue is near, the estimate is off by more.
+/// An estimate of an eigenvalue from below and a thousandth more, then twice as much more each time: an estimate may stop at the next
+/// eigenvalue.
 fn enlarged(estimate: f64) -> impl Iterator<Item = f64> {
-    [1e-3, 1e-2, 0.1].into_iter().map(move |more| estimate * (1.0 + more))
+    [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0]
+        .into_iter()
+        .map(move |more| estimate * (1.0 + 1e-3 * more))
 }
 
 /// An upper bound of c of Theorem 13.3a, if known and below 1.
