@@ -903,10 +903,8 @@ fn limits(
         (0..n).map(|i| (0..n).map(|j| inner[(i, j)] * x[j]).sum()).collect()
     };
     // The largest eigenvalue, and a little more: proved is what the factor says.
-    let largest = power(n, times) * (1.0 + CLOSE);
-    if !(largest > 0.0) || !is_below_one(&inner, off, 1.0 / largest) {
-        return [0.0; 2];
-    }
+    let is_proved = |&most: &f64| most > 0.0 && is_below_one(&inner, off, 1.0 / most);
+    let Some(largest) = enlarged(power(n, times)).find(is_proved) else { return [0.0; 2] };
     let first = 2.0 / largest.sqrt() * (1.0 - 4.0 * f64::EPSILON);
     let second = coupling(d, pieces, compliance).map_or(0.0, |c| {
         let c = c.max(f64::EPSILON);
@@ -915,8 +913,13 @@ fn limits(
     [first, second.max(0.0)]
 }
 
-/// The relative amount by which the limits may be below the best provable ones.
-const CLOSE: f64 = 1e-3;
+/// An estimate of an eigenvalue from below and a thousandth more, then twice as much more each time: an estimate may stop at the next
+/// eigenvalue.
+fn enlarged(estimate: f64) -> impl Iterator<Item = f64> {
+    [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0]
+        .into_iter()
+        .map(move |more| estimate * (1.0 + 1e-3 * more))
+}
 
 /// An upper bound of c of Theorem 13.3a, if known and below 1.
 fn coupling(
@@ -956,18 +959,17 @@ fn coupling(
         let y = n.solve(&between * t.solve(between.transpose() * x));
         (0..y.nrows()).map(|i| y[(i, 0)]).collect()
     };
-    let c = power(normal.len(), times).sqrt() * (1.0 + CLOSE);
-    let c = c.max(f64::EPSILON);
-    if !(c < 1.0) {
-        return None;
-    }
     let count = normal.len();
-    let whole = Mat::from_fn(all.len(), all.len(), |i, j| {
-        let same = (i < count) == (j < count);
-        if same { c * entry(all[i], all[j]) } else { compliance.g[(all[i].0, all[j].0)] }
-    });
     let off = up(2.0 * compliance.off + rounding);
-    is_positive_definite(&whole, off).then_some(c)
+    let is_proved = |&c: &f64| {
+        let whole = Mat::from_fn(all.len(), all.len(), |i, j| {
+            let same = (i < count) == (j < count);
+            if same { c * entry(all[i], all[j]) } else { compliance.g[(all[i].0, all[j].0)] }
+        });
+        is_positive_definite(&whole, off)
+    };
+    let estimates = enlarged(power(count, times).sqrt()).map(|c| c.max(f64::EPSILON));
+    estimates.take_while(|&c| c < 1.0).find(is_proved)
 }
 
 /// An estimate of the largest eigenvalue of the matrix that `times` multiplies by, if real and not negative.

@@ -105,7 +105,7 @@ fn loads_reactions_and_the_force_of_the_other_body_balance_on_each_body() {
     }
 }
 
-fn dense(lower: &LowerTriangle) -> Mat<f64> {
+pub(super) fn dense(lower: &LowerTriangle) -> Mat<f64> {
     let n = lower.starts.len() - 1;
     let mut all = Mat::zeros(n, n);
     for column in 0..n {
@@ -125,10 +125,14 @@ fn largest_share(d: &Discretization) -> f64 {
     let numbering = Numbering::under(&order, &d.constraints);
     let stiffness = dense(&matrix::assemble_stiffness(d, &numbering, &neighbours).unwrap());
     let a = dense(&matrix::assemble(d, &numbering, &neighbours).unwrap());
-    let subtracted = &stiffness - &a;
-    let factor = stiffness.llt(Side::Lower).unwrap();
+    largest_beside(&(&stiffness - &a), &stiffness)
+}
+
+/// The largest eigenvalue of one symmetric matrix beside another one, which is positive definite.
+pub(super) fn largest_beside(part: &Mat<f64>, whole: &Mat<f64>) -> f64 {
+    let factor = whole.llt(Side::Lower).unwrap();
     let l = factor.L();
-    let half = l.partial_piv_lu().solve(&subtracted);
+    let half = l.partial_piv_lu().solve(part);
     let both = l.partial_piv_lu().solve(half.transpose());
     let symmetric =
         Mat::from_fn(both.nrows(), both.ncols(), |i, j| (both[(i, j)] + both[(j, i)]) / 2.0);

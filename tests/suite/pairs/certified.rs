@@ -632,9 +632,37 @@ fn the_bound_of_bodies_that_stick_and_slide_is_above_the_error_and_falls_with_th
     let of = s.boundaries[0].friction.unwrap();
     assert!(of.sticks > 0.1 && of.slides > 0.1, "{of:?}");
     let all = [[11, 7], [22, 14], [44, 28]].map(|cells| squares(cells, [1.0, 1.0]));
-    near(&effectivities(&all, [88, 56], Degree::One, &rough), 1.5, 1.6);
+    let found = effectivities(&all, [88, 56], Degree::One, &rough);
+    near(&found, 1.26, 1.6);
+    assert!(found.iter().all(|[e, _]| *e >= 1.06), "{found:?}");
     let all = [[6, 4], [12, 8], [24, 16]].map(|cells| squares(cells, [1.0, 1.0]));
     near(&effectivities(&all, [96, 64], Degree::Two, &rough), 2.5, 1.3);
+}
+
+#[test]
+fn the_bound_of_bodies_that_stick_and_slide_is_near_that_of_another_program() {
+    // By numpy, on meshes of 7 and 11, and of 14 and 22 cells, with the best stress of its space; of the pieces of the finer one 34, 26 and
+    // 5 of 34 slide.
+    for (bound, share, expected) in [
+        ("0.012", 1.0, [1.158, 1.144]),
+        ("0.015", 26.0 / 34.0, [1.159, 1.115]),
+        ("0.02", 5.0 / 34.0, [1.137, 1.107]),
+    ] {
+        let rough = |mut problem: Problem| {
+            problem.pairs[0].friction = Some(Friction::Tresca(expression(bound)));
+            let top = ["0.02", "-0.1 + 0.05*x"].map(|u| Some(expression(u)));
+            problem.with("upper.top", Condition::Displacement(top))
+        };
+        let all = [[7, 11], [14, 22]].map(|cells| squares(cells, [1.0, 1.0]));
+        let s = proved(&rough(all[1].problem()), &method(Degree::One));
+        let of = s.boundaries[0].friction.unwrap();
+        assert!((of.slides / (of.slides + of.sticks) - share).abs() < 0.1, "{bound}: {of:?}");
+        let found = effectivities(&all, [56, 88], Degree::One, &rough);
+        for ([found, _], expected) in found.iter().zip(expected) {
+            // A stress that is made triangle by triangle is not the best one.
+            assert!((found - expected).abs() <= 0.05, "{bound}: {found} {expected}");
+        }
+    }
 }
 
 const TIED: [Law; 2] = [Law::Sliding, Law::Bonded];
