@@ -50,7 +50,7 @@ const ROUNDING: f64 = 3e-14;
 const NEAR_ROUNDING: f64 = 1e-12;
 
 /// After so many factorisations beyond the start pressures are mixed, and after so many more springs are soft at first: of fifty
-/// problems of well-shaped bodies three took more than 30, and none more than 46.
+/// problems of well-shaped bodies three took more than 30, and none more than 63.
 const MOST_FACTORIZATIONS: usize = 40;
 const MOST_MIXED: usize = 160;
 
