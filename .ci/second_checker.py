@@ -95,7 +95,7 @@ def first(rows, role):
 
 def shifted(rows):
     """Moves the widest interval of a force by three times its width, twice its end and 0.001: all are 0 to rounding where symmetry says so."""
-    row = max(rows, key=lambda row: np.ptp(row[6:8].view("<f8")))
+    row = sorted(rows, key=lambda row: np.ptp(row[6:8].view("<f8")))[-1]
     low, high = row[6:8].view("<f8").tolist()
     for k in (6, 7):
         number(row, k, lambda end: end + 3 * (high - low) + 2 * abs(high) + 1e-3)
