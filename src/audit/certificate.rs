@@ -426,9 +426,9 @@ impl Certificate {
 /// An edge on which two bodies may not open.
 #[doc(hidden)]
 pub struct Tied {
-    /// That of the first body.
+    /// The edge of the first body, by its number.
     pub edge: usize,
-    /// That of the second one.
+    /// The edge of the second body.
     pub other: usize,
     /// How they are tied.
     pub law: Law,

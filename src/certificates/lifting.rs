@@ -34,7 +34,7 @@ struct Prescription {
     what: What,
 }
 
-/// What asks for a displacement; of contact the side, 1 on the second of two bodies.
+/// The reason for a displacement; of contact the side, 1 on the second of two bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum What {
     /// A support.

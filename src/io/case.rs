@@ -81,7 +81,7 @@ pub struct Case {
     pub exact: Option<ExactCase>,
     /// The text that it was read from, with a comment for each setting laid over it.
     pub text: String,
-    /// What was decided when the mesh was read, in sentences for people.
+    /// Decisions made when the mesh was read, in sentences for people.
     pub remarks: Vec<String>,
     /// The files that all this was read from.
     pub sources: Vec<PathBuf>,

@@ -6,7 +6,7 @@ use super::table::{Table, Value};
 use crate::contact::Friction;
 use crate::io::input::FileError;
 
-/// What is expected in place of friction in a body of revolution.
+/// The expectation in place of friction in a body of revolution.
 pub(super) const NOT_IN_REVOLUTION: &str =
     "no friction in a body of revolution, where it is not computed by this program";
 
