@@ -1,14 +1,12 @@
 //! solution.vtu and contact.vtu: unstructured grids for ParaView and everything else that is built on VTK.
 //!
-//! The numbers stand in the file compressed by zlib, in blocks, as base64, which keeps every double as it is and costs no
-//! formatting. (Raw bytes at the end of the file would be a quarter smaller, but meshio 5.3.5 confuses their offsets.)
+//! The numbers stand in the file as base64, which keeps every double as it is and costs no formatting. Compressed by zlib the file
+//! would be a fifth smaller, and writing would take as long again; as raw bytes at the end it would be a quarter smaller, but meshio
+//! 5.3.5 confuses their offsets.
 //! Vectors get a third component 0 and symmetric tensors all six, XX, YY, ZZ, XY, YZ, XZ, because VTK knows space only.
-
-use std::iter::repeat_n;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
-use flate2::{Compress, Compression, FlushCompress, Status};
 
 use super::files::{NotFinite, check_finite};
 use crate::model::Degree;
@@ -75,10 +73,14 @@ impl<'a> DataArray<'a> {
     }
 
     fn append_to(&self, data: &mut Vec<u8>) {
-        let zeros = self.components.len().saturating_sub(self.given);
-        for value in self.numbers.chunks(self.given) {
-            for number in value.iter().copied().chain(repeat_n(0.0, zeros)) {
-                data.extend_from_slice(&number.to_le_bytes());
+        let (values, start) = (self.numbers.chunks(self.given), data.len());
+        let components = self.components.len().max(self.given);
+        // The components that are not given stay 0.
+        data.resize(start + values.len() * components * size_of::<f64>(), 0);
+        let places = data[start..].chunks_mut(components * size_of::<f64>());
+        for (place, value) in places.zip(values) {
+            for (place, number) in place.as_chunks_mut().0.iter_mut().zip(value) {
+                *place = number.to_le_bytes();
             }
         }
     }
@@ -92,7 +94,7 @@ pub(super) fn vtu(grid: &Grid) -> Result<Vec<u8>, NotFinite> {
     let (kind, order) = grid.kind.vtk();
     let (points, cells) = (grid.points.len(), grid.connectivity.len() / order.len());
     let mut file = Writer::default();
-    file.line("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">");
+    file.line("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">");
     file.line(&format!(
         "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">"
     ));
@@ -101,23 +103,13 @@ pub(super) fn vtu(grid: &Grid) -> Result<Vec<u8>, NotFinite> {
     file.line("<Points>");
     file.data_array(&places);
     file.line("</Points>\n<Cells>");
-    file.array("type=\"Int64\" Name=\"connectivity\"", |data| {
-        for cell in grid.connectivity.chunks_exact(order.len()) {
-            order.iter().for_each(|&i| data.extend_from_slice(&(cell[i] as u64).to_le_bytes()));
-        }
-    });
-    file.array("type=\"Int64\" Name=\"offsets\"", |data| {
-        for cell in 1..=cells {
-            data.extend_from_slice(&((cell * order.len()) as u64).to_le_bytes());
-        }
-    });
+    let nodes = grid.connectivity.chunks_exact(order.len());
+    file.integers("connectivity", points, nodes.flat_map(|cell| order.iter().map(|&i| cell[i])));
+    file.integers("offsets", cells * order.len(), (1..=cells).map(|cell| cell * order.len()));
     file.array("type=\"UInt8\" Name=\"types\"", |data| data.resize(data.len() + cells, kind));
     file.line("</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>");
     Ok(file.bytes)
 }
-
-/// The bytes of a block before they are compressed.
-const BLOCK: usize = 1 << 20;
 
 /// The file as far as it is written.
 #[derive(Default)]
@@ -125,7 +117,6 @@ struct Writer {
     bytes: Vec<u8>,
     /// The array at hand, kept for its memory.
     data: Vec<u8>,
-    zlib: Zlib,
 }
 
 impl Writer {
@@ -134,21 +125,29 @@ impl Writer {
         self.bytes.push(b'\n');
     }
 
-    /// An array of the bytes that `append` adds: the number of blocks, the size of a block, what is left for the last one (0
-    /// if that is whole) and the size of each once compressed; then the blocks.
+    /// An array of the bytes that `append` adds, after their number.
     fn array(&mut self, attributes: &str, append: impl FnOnce(&mut Vec<u8>)) {
         self.line(&format!("<DataArray {attributes} format=\"binary\">"));
         self.data.clear();
+        self.data.extend_from_slice(&[0; 8]);
         append(&mut self.data);
-        let size = self.data.len().clamp(1, BLOCK);
-        let zlib = &mut self.zlib;
-        let blocks: Vec<Vec<u8>> = self.data.chunks(size).map(|b| zlib.compressed(b)).collect();
-        let mut header = vec![blocks.len(), size, self.data.len() % size];
-        header.extend(blocks.iter().map(Vec::len));
-        let bytes = header.into_iter().flat_map(|n| (n as u64).to_le_bytes());
-        encode(&bytes.collect::<Vec<u8>>(), &mut self.bytes);
-        encode(&blocks.concat(), &mut self.bytes);
+        let length = (self.data.len() - 8) as u64;
+        self.data[..8].copy_from_slice(&length.to_le_bytes());
+        encode(&self.data, &mut self.bytes);
         self.line("\n</DataArray>");
+    }
+
+    /// An array of numbers of nodes, in half the bytes where the `largest` allows that.
+    fn integers(&mut self, name: &str, largest: usize, numbers: impl Iterator<Item = usize>) {
+        let short = i32::try_from(largest).is_ok();
+        let bits = if short { 32 } else { 64 };
+        self.array(&format!("type=\"Int{bits}\" Name=\"{name}\""), |data| {
+            if short {
+                numbers.for_each(|n| data.extend_from_slice(&(n as u32).to_le_bytes()));
+            } else {
+                numbers.for_each(|n| data.extend_from_slice(&(n as u64).to_le_bytes()));
+            }
+        });
     }
 
     fn data_array(&mut self, array: &DataArray) {
@@ -174,50 +173,6 @@ impl Writer {
     }
 }
 
-/// The bytes at the beginning of a block by which the rest is judged.
-const SAMPLE: usize = 1 << 12;
-
-/// The share of its size to which a block must shrink, or it is stored as it is. Coordinates and numbers of nodes shrink to a third or
-/// less; displacements and stresses to two thirds, because of components that are zero, and that takes longer than to solve for them.
-const SHARE: f64 = 0.5;
-
-/// Compression by zlib, by the same tables for all blocks of a file.
-struct Zlib {
-    fast: Compress,
-    none: Compress,
-}
-
-impl Default for Zlib {
-    fn default() -> Self {
-        let [fast, none] =
-            [Compression::fast(), Compression::none()].map(|level| Compress::new(level, true));
-        Zlib { fast, none }
-    }
-}
-
-impl Zlib {
-    /// A block by zlib, fast, or stored where that gains little.
-    fn compressed(&mut self, block: &[u8]) -> Vec<u8> {
-        let sample = &block[..block.len().min(SAMPLE)];
-        let gains = zlib(sample, &mut self.fast).len() as f64 <= SHARE * sample.len() as f64;
-        zlib(block, if gains { &mut self.fast } else { &mut self.none })
-    }
-}
-
-fn zlib(block: &[u8], by: &mut Compress) -> Vec<u8> {
-    by.reset();
-    let mut bytes = Vec::with_capacity(block.len() + block.len() / 64 + 64);
-    loop {
-        let read = by.total_in() as usize;
-        match by.compress_vec(&block[read..], &mut bytes, FlushCompress::Finish) {
-            // There was too little room.
-            Ok(Status::Ok | Status::BufError) => bytes.reserve(block.len() / 64 + 64),
-            // Compressing into memory has no error.
-            Ok(Status::StreamEnd) | Err(_) => return bytes,
-        }
-    }
-}
-
 /// Appends the base64 code of `data`.
 fn encode(data: &[u8], to: &mut Vec<u8>) {
     let start = to.len();
@@ -228,10 +183,6 @@ fn encode(data: &[u8], to: &mut Vec<u8>) {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use std::io::Read;
-
-    use flate2::read::ZlibDecoder;
-
     use super::*;
 
     const POINTS: [[f64; 2]; 6] =
@@ -255,9 +206,6 @@ pub(super) mod tests {
 
     /// The arrays of a file that this module wrote, by the names of their elements and their own.
     pub fn arrays(file: &[u8]) -> Vec<([String; 2], Vec<f64>)> {
-        fn words(bytes: &[u8]) -> impl Iterator<Item = u64> {
-            bytes.as_chunks().0.iter().map(|&word| u64::from_le_bytes(word))
-        }
         let text = std::str::from_utf8(file).unwrap();
         let (mut all, mut element) = (Vec::new(), String::new());
         let mut lines = text.lines();
@@ -270,21 +218,15 @@ pub(super) mod tests {
             };
             let value = |name: &str| attributes.split(&format!("{name}=\"")).nth(1).unwrap();
             let value = |name: &str| value(name).split('"').next().unwrap();
-            let code = lines.next().unwrap();
-            // Its first three words, of which the first is the number of blocks.
-            let count = words(&BASE64.decode(&code[..32]).unwrap()).next().unwrap();
-            let (header, blocks) = code.split_at((8 * (3 + count as usize)).div_ceil(3) * 4);
-            let header = BASE64.decode(header).unwrap();
-            let (mut blocks, mut plain) = (&*BASE64.decode(blocks).unwrap(), Vec::new());
-            for size in words(&header).skip(3) {
-                let (block, rest) = blocks.split_at(size as usize);
-                ZlibDecoder::new(block).read_to_end(&mut plain).unwrap();
-                blocks = rest;
-            }
+            let bytes = BASE64.decode(lines.next().unwrap()).unwrap();
+            let (length, plain) = bytes.split_first_chunk().unwrap();
+            assert_eq!(u64::from_le_bytes(*length), plain.len() as u64);
             let numbers = match value("type") {
-                "UInt8" => plain.into_iter().map(f64::from).collect(),
-                "Int64" => words(&plain).map(|n| n as f64).collect(),
-                _ => words(&plain).map(f64::from_bits).collect(),
+                "UInt8" => plain.iter().copied().map(f64::from).collect(),
+                "Int32" => {
+                    plain.as_chunks().0.iter().map(|n| f64::from(i32::from_le_bytes(*n))).collect()
+                }
+                _ => plain.as_chunks().0.iter().map(|n| f64::from_le_bytes(*n)).collect(),
             };
             all.push(([element.clone(), value(" Name").to_owned()], numbers));
         }
@@ -304,7 +246,7 @@ pub(super) mod tests {
         let xyz = r#"ComponentName0="X" ComponentName1="Y" ComponentName2="Z""#;
         let expected = format!(
             r#"<?xml version="1.0"?>
-<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64" compressor="vtkZLibDataCompressor">
+<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
 <UnstructuredGrid>
 <Piece NumberOfPoints="6" NumberOfCells="1">
 <PointData>
@@ -322,9 +264,9 @@ pub(super) mod tests {
 </DataArray>
 </Points>
 <Cells>
-<DataArray type="Int64" Name="connectivity" format="binary">
+<DataArray type="Int32" Name="connectivity" format="binary">
 </DataArray>
-<DataArray type="Int64" Name="offsets" format="binary">
+<DataArray type="Int32" Name="offsets" format="binary">
 </DataArray>
 <DataArray type="UInt8" Name="types" format="binary">
 </DataArray>
@@ -351,21 +293,15 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn arrays_of_several_blocks_are_whole() {
-        let points: Vec<[f64; 2]> = (0..100_000).map(|i| [f64::from(i), 0.5]).collect();
-        let connectivity: Vec<usize> = (0..100_000 - 1).flat_map(|i| [i, i + 1]).collect();
-        let grid = Grid {
-            kind: CellKind::Line(Degree::One),
-            points: &points,
-            connectivity: &connectivity,
-            point_data: &[],
-            cell_data: &[],
-        };
-        let file = vtu(&grid).unwrap();
-        let (_, arrays) = split(&file);
-        let expected = points.iter().flat_map(|&[x, y]| [x, y, 0.0]);
-        assert!(8 * arrays[0].len() > 2 * BLOCK && arrays[0].iter().copied().eq(expected));
-        assert!(file.len() < 2_000_000, "{}", file.len());
+    fn numbers_of_nodes_beyond_32_bits_are_whole() {
+        let large = 1 << 40;
+        let mut file = Writer::default();
+        file.integers("connectivity", large, [7, large].into_iter());
+        let code = BASE64.encode([16, 7, large].map(|n| (n as u64).to_le_bytes()).concat());
+        let text = format!(
+            "<DataArray type=\"Int64\" Name=\"connectivity\" format=\"binary\">\n{code}\n</DataArray>\n"
+        );
+        assert_eq!(String::from_utf8(file.bytes).unwrap(), text);
     }
 
     #[test]
