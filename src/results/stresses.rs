@@ -4,7 +4,7 @@
 //! take this mean over the triangles of one material at a time: across an interface the stress jumps.
 
 use super::solution::Solution;
-use crate::model::Problem;
+use crate::model::{Degree, Problem};
 
 /// sigma_xx, sigma_yy, sigma_zz, sigma_xy; in a body of revolution sigma_rr, sigma_zz, the hoop stress and sigma_rz.
 pub type Components = [f64; 4];
@@ -109,23 +109,27 @@ impl Solution {
             let (triangle, material) = (problem.mesh.triangle(t), problem.material.of(t));
             let (barycentric, area) = (triangle.barycentric_gradients(), triangle.double_area());
             let nodal = |j: usize| self.displacement[nodes[j]].into();
-            let hoop = material.radii(&triangle).map_or([0.0; 3], |radii| {
+            let radii = material.radii(&triangle);
+            let hoop = radii.map_or([0.0; 3], |radii| {
                 self.degree.hoop_strain(radii, |j| self.displacement[nodes[j]][0])
             });
-            for (j, &node) in nodes.iter().enumerate() {
+            let stress_at = |j: usize| {
                 // Corner j, or the middle of the edge opposite corner j - 3.
                 let l = [0, 1, 2].map(|k| match j {
                     0..3 => f64::from(u8::from(k == j)),
                     _ => f64::from(u8::from(k != j - 3)) / 2.0,
                 });
                 let gradient = self.degree.displacement_gradient(l, barycentric, nodal);
-                let hoop = self.degree.value_from_points(hoop, l);
-                let (stress, zz) = material.state(gradient, hoop);
+                let (stress, zz) = material.state(gradient, self.degree.value_from_points(hoop, l));
                 let [xx, yy, xy] = stress.components();
+                [xx, yy, zz, xy].map(|s| area * s)
+            };
+            let constant = self.degree == Degree::One && radii.is_none();
+            let of_all = constant.then(|| stress_at(0));
+            for (j, &node) in nodes.iter().enumerate() {
+                let stress = of_all.unwrap_or_else(|| stress_at(j));
                 let (sum, weight, _) = sums[node].get_or_insert(([0.0; 4], 0.0, t));
-                for (sum, s) in sum.iter_mut().zip([xx, yy, zz, xy]) {
-                    *sum += area * s;
-                }
+                sum.iter_mut().zip(stress).for_each(|(sum, s)| *sum += s);
                 *weight += area;
             }
         }

@@ -47,25 +47,39 @@ impl Cells {
         let last = [1, 0].map(|c| cell(high[c]) + 1);
         let [rows, columns] = [0, 1].map(|c| (last[c] - first[c] + 1) as usize);
         let mut cells = Cells { first, columns, levels: vec![None; rows * columns] };
-        for (triangle, &level) in triangles.iter().zip(levels) {
-            let turn = area(triangle).signum();
-            let lengths = [0, 1, 2].map(|i| distance(triangle[i], triangle[(i + 1) % 3]));
-            let range = |c: usize| {
+        // From the cell of the lowest corner less `by` to that of the highest less `by`: rows, columns.
+        let range = |triangle: &[Point; 3], by: f64| {
+            [1, 0].map(|c| {
                 let [a, b, d] = triangle.map(|corner| corner[c]);
-                (cell(a.min(b).min(d)) - 1)..=(cell(a.max(b).max(d)) + 1)
-            };
-            for row in range(1) {
-                for column in range(0) {
-                    let centre = [column, row].map(|i| (i as f64 + 0.5) * side);
-                    // The least of the distances from the lines along the sides, negative outside.
-                    let depth = (0..3).map(|i| {
-                        let (a, b) = (triangle[i], triangle[(i + 1) % 3]);
-                        2.0 * turn * area(&[a, b, centre]) / lengths[i]
-                    });
-                    let depth = depth.fold(f64::INFINITY, f64::min);
-                    let cell = cells.at([row, column]);
-                    if depth >= 0.0 || depth > -side && cell.is_none() {
-                        *cell = Some(level);
+                [cell(a.min(b).min(d) - by), cell(a.max(b).max(d) - by)]
+            })
+        };
+        // The distance of the centre from the line along a side, positive inside, times the length of the side.
+        let depth = |triangle: &[Point; 3], [row, column]: [i64; 2], i: usize| {
+            let centre = [column, row].map(|i| (i as f64 + 0.5) * side);
+            2.0 * area(triangle).signum() * area(&[triangle[i], triangle[(i + 1) % 3], centre])
+        };
+        for (triangle, &level) in triangles.iter().zip(levels) {
+            // The centres above the lowest corner and not above the highest.
+            let [[top, bottom], [left, right]] = range(triangle, side / 2.0);
+            for row in top + 1..=bottom {
+                for column in left + 1..=right {
+                    let place = [row, column];
+                    if (0..3).all(|i| depth(triangle, place, i) >= 0.0) {
+                        *cells.at(place) = Some(level);
+                    }
+                }
+            }
+        }
+        for (triangle, &level) in triangles.iter().zip(levels) {
+            let [[top, bottom], [left, right]] = range(triangle, 0.0);
+            for row in top..=bottom {
+                for column in left..=right {
+                    let place = [row, column];
+                    let length = |i: usize| distance(triangle[i], triangle[(i + 1) % 3]);
+                    let is_near = |i: usize| depth(triangle, place, i) > -side * length(i);
+                    if cells.at(place).is_none() && (0..3).all(is_near) {
+                        *cells.at(place) = Some(level);
                     }
                 }
             }
