@@ -21,7 +21,6 @@ use std::fmt;
 
 use crate::linear::dense::singular_vectors;
 use crate::model::element::Degree;
-use crate::model::groups::groups;
 use crate::model::mesh::Mesh;
 use crate::model::space::Space;
 
@@ -176,7 +175,7 @@ impl fmt::Display for FreeMotion {
 impl Parts {
     /// The parts of the body that `mesh` covers.
     pub fn new(mesh: &Mesh) -> Self {
-        let of_triangle = connected_by_edges(mesh);
+        let of_triangle = mesh.parts().to_vec();
         let count = of_triangle.iter().max().map_or(0, |last| last + 1);
         let mut boxes = vec![[[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]]; count];
         let mut places = vec![None; count];
@@ -370,14 +369,6 @@ fn eliminated(mut rows: Vec<Vec<f64>>, count: usize) -> Vec<Vec<f64>> {
         vector
     };
     (0..count).filter(|k| !pivots.contains(k)).map(vector).collect()
-}
-
-/// The number of the part of each triangle: triangles with an edge in common are in one part.
-pub(crate) fn connected_by_edges(mesh: &Mesh) -> Vec<usize> {
-    let mut first = vec![None; mesh.edge_count()];
-    let edges = mesh.triangle_edges().iter().enumerate();
-    let pairs = edges.flat_map(|(t, edges)| edges.map(|e| [*first[e].get_or_insert(t), t]));
-    groups(mesh.triangles().len(), pairs)
 }
 
 /// A place in a body of this size, to six digits of the size.

@@ -26,7 +26,6 @@ use super::mesh::{Mesh, MeshError, TOUCHING};
 use super::plane_sweep::{Edges, Fault, Question, sweep, turn};
 use super::tree::{Bounds, Tree};
 use crate::contact::pairs::Pair;
-use crate::held::rigid::connected_by_edges;
 
 /// The outline of a mesh, with the trees that find what is near.
 struct SearchableOutline<'m> {
@@ -91,8 +90,7 @@ fn check(mesh: &Mesh) -> Result<(), MeshError> {
 /// Triangles that have a vertex in common must be in one part of the body, connected by edges: a point of H^1 holds nothing.
 fn check_joints(mesh: &Mesh) -> Result<(), MeshError> {
     let mut part_at: Vec<Option<usize>> = vec![None; mesh.vertices().len()];
-    let parts = connected_by_edges(mesh);
-    for (corners, &part) in mesh.triangles().iter().zip(&parts) {
+    for (corners, &part) in mesh.triangles().iter().zip(mesh.parts()) {
         for &vertex in corners {
             if *part_at[vertex].get_or_insert(part) != part {
                 let [x, y] = mesh.vertices()[vertex];

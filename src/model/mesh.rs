@@ -20,6 +20,7 @@ mod split;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
+use super::groups::groups;
 use super::tree::{Bounds, Tree};
 use crate::kernel::Triangle;
 use crate::memory::{self, bytes_of};
@@ -45,6 +46,8 @@ struct MeshTopology {
     triangles: Vec<[usize; 3]>,
     triangle_edges: Vec<[usize; 3]>,
     edge_count: usize,
+    /// The part of the body, connected by edges, that each triangle belongs to.
+    parts: Vec<usize>,
     outline: Vec<BoundaryEdge>,
     boundaries: BTreeMap<String, Vec<BoundaryEdge>>,
     /// Named curves that are no boundaries, as one has an edge inside the body, and why.
@@ -91,6 +94,7 @@ impl Mesh {
             edges.edges.iter().filter(|e| !e.inner).map(|e| e.owner).collect();
         let (boundaries, faults) = name_boundaries(&edges, &vertices, named)?;
         let topology = MeshTopology {
+            parts: connected_by_edges(&triangle_edges, edges.edges.len()),
             triangles,
             triangle_edges,
             edge_count: edges.edges.len(),
@@ -249,6 +253,12 @@ impl Mesh {
         self.topology.edge_count
     }
 
+    /// The part of the body that each triangle belongs to: parts are connected by edges, and numbered in the order of their first
+    /// triangles.
+    pub fn parts(&self) -> &[usize] {
+        &self.topology.parts
+    }
+
     /// The whole boundary, named or not.
     pub fn outline(&self) -> &[BoundaryEdge] {
         &self.topology.outline
@@ -383,6 +393,14 @@ pub(crate) const NO_ANGLE: f64 = 1e-8;
 /// |v|, computed without overflow and underflow.
 pub(crate) fn length(v: Vector2<f64>) -> f64 {
     v.x.hypot(v.y)
+}
+
+/// The number of the part of each triangle: triangles with an edge in common are in one part.
+fn connected_by_edges(triangle_edges: &[[usize; 3]], edge_count: usize) -> Vec<usize> {
+    let mut first = vec![None; edge_count];
+    let edges = triangle_edges.iter().enumerate();
+    let pairs = edges.flat_map(|(t, edges)| edges.map(|e| [*first[e].get_or_insert(t), t]));
+    groups(triangle_edges.len(), pairs)
 }
 
 fn diameter(triangle: &Triangle<f64>) -> f64 {

@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 
 use super::{NO_LENGTH, Words, named_obstacle, obstacle_of, place, size};
 use crate::contact::{ContactLine, Pair};
-use crate::held::rigid::Parts;
 use crate::io::numbers::short;
 use crate::kernel::Material;
 use crate::model::boundary_normals::{SMOOTH, SmoothBoundary};
@@ -32,27 +31,28 @@ const NO_COUPLING: f64 = 1e-9;
 /// Says that the mesh has several bodies, and which of them nothing acts on.
 pub(super) fn separate_bodies(problem: &Problem, solution: Option<&Solution>) -> Option<String> {
     let mesh = &problem.mesh;
-    let parts = Parts::new(mesh);
+    let parts = mesh.parts();
+    let count = parts.iter().max().map_or(0, |last| last + 1);
     let part_of = |name: &str| {
         let edge = mesh.edges_of(name).ok()?.first()?;
-        Some(parts.of_triangle()[edge.triangle])
+        Some(parts[edge.triangle])
     };
     let linked = problem.pairs.iter().filter_map(|pair| {
         let [first, second] = &pair.boundaries;
         Some([part_of(first)?, part_of(second)?])
     });
-    let apart: BTreeSet<usize> = groups(parts.count(), linked).into_iter().collect();
+    let apart: BTreeSet<usize> = groups(count, linked).into_iter().collect();
     if apart.len() < 2 {
         return None;
     }
     let idle = solution.map_or(String::new(), |solution| {
-        let mut largest = vec![0.0_f64; parts.count()];
-        for (&part, &stress) in parts.of_triangle().iter().zip(&solution.von_mises) {
+        let mut largest = vec![0.0_f64; count];
+        for (&part, &stress) in parts.iter().zip(&solution.von_mises) {
             largest[part] = largest[part].max(stress);
         }
         let most = largest.iter().copied().fold(0.0, f64::max);
-        let idle = (0..parts.count()).filter(|&part| largest[part] <= NO_STRESS * most);
-        let names: Vec<String> = idle.map(|part| boundaries_of(mesh, &parts, part)).collect();
+        let idle = (0..count).filter(|&part| largest[part] <= NO_STRESS * most);
+        let names: Vec<String> = idle.map(|part| boundaries_of(mesh, part)).collect();
         match &names[..] {
             [] => String::new(),
             [one] => format!("; the one with {one} carries nothing"),
@@ -66,8 +66,8 @@ pub(super) fn separate_bodies(problem: &Problem, solution: Option<&Solution>) ->
 }
 
 /// The boundaries of a part of the body by their names, or where it is.
-fn boundaries_of(mesh: &Mesh, parts: &Parts, part: usize) -> String {
-    let is_of_part = |edge: &BoundaryEdge| parts.of_triangle()[edge.triangle] == part;
+fn boundaries_of(mesh: &Mesh, part: usize) -> String {
+    let is_of_part = |edge: &BoundaryEdge| mesh.parts()[edge.triangle] == part;
     let has_edges =
         |name: &&str| mesh.edges_of(name).is_ok_and(|edges| edges.iter().any(is_of_part));
     let names: Vec<String> =

@@ -11,7 +11,6 @@ use nalgebra::Vector2;
 use super::{check, check_joints, crossing};
 use crate::contact::pairs::Pair;
 use crate::contact::pairs::search::Boundary;
-use crate::held::rigid::connected_by_edges;
 use crate::model::boundary_normals::SmoothBoundary;
 use crate::model::groups::groups;
 use crate::model::mesh::{Mesh, MeshError, TOUCHING, length};
@@ -95,16 +94,16 @@ impl<'p> Zone<'p> {
 /// # Errors
 /// As [`Mesh::new`](Mesh::new), and [`MeshError::Bodies`].
 pub(super) fn check_pairs(mesh: &Mesh, pairs: &[Pair]) -> Result<(), MeshError> {
-    let parts = connected_by_edges(mesh);
+    let parts = mesh.parts();
     let smooth = SmoothBoundary::new(mesh);
     let zones: Vec<Zone> =
-        pairs.iter().filter_map(|pair| Zone::new(mesh, &smooth, &parts, pair)).collect();
+        pairs.iter().filter_map(|pair| Zone::new(mesh, &smooth, parts, pair)).collect();
     let closed = closed_slits(mesh, &zones);
     for part in 0..parts.iter().max().map_or(0, |last| last + 1) {
-        check_part(mesh, &parts, part, &closed)?;
+        check_part(mesh, parts, part, &closed)?;
     }
     check_joints(mesh)?;
-    check_between(mesh, &parts, &zones)
+    check_between(mesh, parts, &zones)
 }
 
 /// For each vertex on the second face of a slit, the vertex of the first face in the same place.

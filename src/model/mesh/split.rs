@@ -131,7 +131,6 @@ pub fn split_names([first, second]: &[String; 2]) -> [String; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::held::rigid::connected_by_edges;
     use crate::model::{Diagonal, Rectangle};
 
     /// A rectangle of 4 x 2 cells, of which those where `holds` are the surface "a", and the others "b".
@@ -145,7 +144,7 @@ mod tests {
     }
 
     fn parts(mesh: &Mesh) -> usize {
-        connected_by_edges(mesh).into_iter().max().unwrap() + 1
+        mesh.parts().iter().max().unwrap() + 1
     }
 
     fn names(names: [&str; 2]) -> [String; 2] {
