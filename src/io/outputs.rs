@@ -81,7 +81,7 @@ pub fn write(
     let solution = &solved.solution;
     memory::check(bytes_to_write(solution))
         .map_err(|lack| Failure::failed(format!("the files cannot be made: {lack}")))?;
-    let mut output = Output::new(folder)?.replacing(&FILES);
+    let mut output = Output::new(folder)?;
     let continuous = solved.certified.as_ref().and_then(|c| c.as_ref().ok());
     let mut results = results(case, solved, read, extra)?;
     let scene = Scene::of(case, solution, &results);
@@ -104,7 +104,7 @@ pub fn write(
     }
     results.seconds.write = start.elapsed().as_secs_f64();
     output.stage_made("result.json", result_json(&results))?;
-    Ok(Written { files: output.publish()?, results, scene })
+    Ok(Written { files: output.publish(&FILES)?, results, scene })
 }
 
 /// The pictures of the runs of a series, which are drawn again on one scale when all are solved.
@@ -143,7 +143,7 @@ impl Series {
         for (folder, picture) in folders.iter().zip(draw(&scenes).unwrap_or_default()) {
             let mut output = Output::new(folder)?;
             output.stage(PICTURE, picture.as_bytes())?;
-            output.publish()?;
+            output.publish(&[])?;
         }
         Ok(())
     }
@@ -180,7 +180,7 @@ pub fn write_certified(
     });
     output.stage_made(CERTIFIED, grid)?;
     stage_certificate(&mut output, case, certified)?;
-    output.publish()
+    output.publish(&[])
 }
 
 /// The values at `nodes` nodes: those of degree 1 take the means of the ends at the middles of edges, where there are some.

@@ -532,7 +532,7 @@ impl Sweep {
     /// paths.
     pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
         let &[table, curves, collection] = self.names;
-        let mut output = Output::new(folder)?.replacing(&self.names[1..]);
+        let mut output = Output::new(folder)?;
         if let Some(drawn) = self.curves() {
             output.stage_made(curves, figure(&drawn))?;
         }
@@ -540,7 +540,7 @@ impl Sweep {
             output.stage(collection, self.pvd().as_bytes())?;
         }
         output.stage(table, self.csv().as_bytes())?;
-        output.publish()
+        output.publish(&self.names[1..])
     }
 }
 
