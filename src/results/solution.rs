@@ -169,6 +169,8 @@ pub struct PieceNodeValues {
 pub struct ContactPoint<'s> {
     /// The name of the boundary.
     pub boundary: &'s str,
+    /// The name of the other boundary of a pair.
+    pub partner: Option<&'s str>,
     /// The node, if it is one.
     pub node: Option<usize>,
     /// Arc length along the boundary, or along the pieces of the pair.
@@ -288,6 +290,7 @@ impl Solution {
         let obstacles = self.contact.iter().map(|edge| {
             let point = |p: &ContactValues| ContactPoint {
                 boundary: &edge.boundary,
+                partner: None,
                 node: Some(p.node),
                 arc: p.arc,
                 place: self.nodes[p.node],
@@ -308,6 +311,7 @@ impl Solution {
             pair.iter().map(move |piece| {
                 let point = |p: &PieceNodeValues| ContactPoint {
                     boundary: &piece.boundaries[i],
+                    partner: Some(&piece.boundaries[1 - i]),
                     node: None,
                     arc: p.arc,
                     place: p.at[i],
