@@ -80,7 +80,7 @@ pub(crate) fn component<S: Enclosing>(w: Vector2<S>, d: Vector2<S>) -> S {
 }
 
 /// The Bernstein coefficients of a function with these values at the ends and this bulge in the middle.
-pub(crate) fn elevated<S: Enclosing>([a, b]: [S; 2], bulge: S) -> [S; 4] {
+fn elevated<S: Enclosing>([a, b]: [S; 2], bulge: S) -> [S; 4] {
     let (two, three) = (S::from(2), S::from(3));
     let middle = (a + b) / two + bulge * two;
     [a, (a + middle * two) / three, (b + middle * two) / three, b]

@@ -25,7 +25,7 @@ fn not_started(program: &Path, error: &io::Error) -> Failure {
 
 /// Solves `case` on `ranks` processes, with the package in `reference` if that is given; result.json and a file for
 /// ParaView are written into `folder`.
-pub fn fenicsx(
+pub(crate) fn fenicsx(
     case: &Path,
     folder: &Path,
     ranks: u16,

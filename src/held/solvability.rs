@@ -28,11 +28,11 @@ pub(super) const MARGIN: f64 = 1e-6;
 
 /// The motions that contact and loads do not hold.
 #[derive(Clone, Debug, PartialEq)]
-pub struct NotHeld {
+pub(crate) struct NotHeld {
     /// A basis of them, or the one that the loads drive.
-    pub motions: Vec<FreeMotion>,
+    pub(crate) motions: Vec<FreeMotion>,
     /// The force of the loads along that one, or their moment about its centre.
-    pub drive: Option<f64>,
+    pub(crate) drive: Option<f64>,
 }
 
 /// The solutions of a body that contact holds: with u those u + sum_j x_j b_j with row . (x + b . u) <= bound.
@@ -58,7 +58,7 @@ pub struct Slides {
 pub struct Play {
     /// The centre of a rotation; left out for a translation.
     #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
-    pub about: Option<[f64; 2]>,
+    pub(crate) about: Option<[f64; 2]>,
     /// The direction of a translation, a unit vector; left out for a rotation.
     #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
     pub along: Option<[f64; 2]>,
@@ -165,7 +165,7 @@ pub(super) fn negligible(rows: &[Vec<f64>], count: usize, rounding: f64) -> f64 
 ///
 /// # Errors
 /// The motions that contact and `load` leave free.
-pub fn slides(
+pub(crate) fn slides(
     motions: &[FreeMotion],
     parts: &Parts,
     space: &Space,
@@ -340,7 +340,7 @@ impl Slides {
     }
 
     /// How far each motion may go from u.
-    pub fn plays(&self, u: &[[f64; 2]]) -> Vec<Play> {
+    pub(crate) fn plays(&self, u: &[[f64; 2]]) -> Vec<Play> {
         let at = self.at(u);
         let play = |(motion, along): &(FreeMotion, Vec<f64>)| {
             let mut range = [None::<f64>; 2];

@@ -33,7 +33,7 @@ pub struct Output {
 #[error("{place} is NaN or infinite; expected a finite number")]
 pub struct NotFinite {
     /// The name of the number, or of the list and the entry that it stands in.
-    pub place: String,
+    pub(crate) place: String,
 }
 
 /// Refuses `values` with a number that is not finite; each entry may hold several numbers.

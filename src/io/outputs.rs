@@ -65,7 +65,7 @@ pub struct Written {
     /// The content of result.json.
     pub results: Results,
     /// The content of the picture.
-    pub scene: Scene,
+    pub(crate) scene: Scene,
 }
 
 /// Writes the files of a case into `folder`. Where there is no
@@ -109,7 +109,7 @@ pub fn write(
 
 /// The pictures of the runs of a series, which are drawn again on one scale when all are solved.
 #[derive(Debug, Default)]
-pub struct Series {
+pub(crate) struct Series {
     scenes: Vec<(PathBuf, Scene)>,
     triangles: usize,
 }
@@ -120,7 +120,7 @@ const MOST_KEPT: usize = 5_000_000;
 
 impl Series {
     /// Keeps the scene of the picture in `folder`.
-    pub fn add(&mut self, folder: PathBuf, scene: Scene) {
+    pub(crate) fn add(&mut self, folder: PathBuf, scene: Scene) {
         self.triangles += scene.triangles();
         if self.triangles <= MOST_KEPT {
             self.scenes.push((folder, scene));

@@ -26,7 +26,7 @@ use crate::results::Solution;
 use crate::results::answers::label;
 
 /// The most runs of a sweep: more are a mistake of the person who asks for them.
-pub(crate) const MOST_RUNS: usize = 10_000;
+const MOST_RUNS: usize = 10_000;
 
 /// The largest number of remarks below the table.
 const MOST_REMARKS: usize = 20;
@@ -36,9 +36,9 @@ const MOST_REMARKS: usize = 20;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ParameterAxis {
     /// The key with its dots.
-    pub key: String,
+    pub(crate) key: String,
     /// The values as TOML has them; at least one.
-    pub values: Vec<String>,
+    pub(crate) values: Vec<String>,
 }
 
 impl FromStr for ParameterAxis {
@@ -117,14 +117,14 @@ const NAMES: &Names = &[FILES[0], FILES[1], "sweep.pvd"];
 /// A case and its results for the combinations of the values of some keys.
 #[derive(Clone, Debug)]
 pub struct Sweep {
-    pub title: String,
-    pub keys: Vec<String>,
+    pub(crate) title: String,
+    pub(crate) keys: Vec<String>,
     /// The values of the keys in each run; those of the last key change first.
-    pub values: Vec<Vec<String>>,
+    pub(crate) values: Vec<Vec<String>>,
     /// The results of the runs so far, or why there are none.
     pub results: Vec<Result<Results, Failure>>,
     /// The files of each run are written, too.
-    pub with_files: bool,
+    pub(crate) with_files: bool,
     /// The names of the files.
     pub(crate) names: &'static Names,
 }
@@ -400,7 +400,7 @@ impl Sweep {
     }
 
     /// The table for people: columns with four digits, aligned.
-    pub fn table(&self) -> String {
+    pub(crate) fn table(&self) -> String {
         let mut lines = self.lines(true, &|x| short(x, 4));
         for line in &mut lines {
             let status = line.len() - 1;
@@ -419,7 +419,7 @@ impl Sweep {
     }
 
     /// The remarks on the runs, a line each: those that several runs share once, with the numbers of these; empty if there are none.
-    pub fn remarks(&self) -> String {
+    pub(crate) fn remarks(&self) -> String {
         let mut remarks: Vec<(String, Vec<String>)> = Vec::new();
         for (i, results) in (1..).zip(&self.results) {
             for text in results.iter().flat_map(summary::remarks) {
@@ -442,7 +442,7 @@ impl Sweep {
     }
 
     /// The text of the table: each number the shortest decimal that reads back to the same double.
-    pub fn csv(&self) -> String {
+    pub(crate) fn csv(&self) -> String {
         self.lines(false, &csv::number).into_iter().map(csv::line).collect()
     }
 

@@ -22,17 +22,17 @@ pub(crate) fn cholesky(matrix: MatMut<'_, f64>) -> Result<(), SolveError> {
 }
 
 /// The sum of the products of two lists.
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The Euclidean norm of a list.
-pub fn norm(a: &[f64]) -> f64 {
+pub(crate) fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
 /// The sum of the products of two fields or functionals.
-pub fn inner(f: &[[f64; 2]], u: &[[f64; 2]]) -> f64 {
+pub(crate) fn inner(f: &[[f64; 2]], u: &[[f64; 2]]) -> f64 {
     f.iter().zip(u).map(|(f, u)| f[0] * u[0] + f[1] * u[1]).sum()
 }
 

@@ -257,7 +257,7 @@ pub fn stable(material: Material<f64>) -> Result<Material<f64>, MaterialError> {
 }
 
 /// eps_xx, eps_yy and 2 eps_xy under the stress sigma_xx, sigma_yy, sigma_xy in the plane, by Cramer's rule.
-pub fn strain(material: &Material<f64>, stress: [f64; 3]) -> [f64; 3] {
+pub(crate) fn strain(material: &Material<f64>, stress: [f64; 3]) -> [f64; 3] {
     let [xx, xy, xz, yy, yz, zz] = material.stiffness();
     let columns = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]].map(Vector3::from);
     let [a, b, c] = columns;

@@ -61,9 +61,9 @@ enum Shape {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beside {
     /// The distance, positive on the left of the line.
-    pub left: f64,
+    pub(crate) left: f64,
     /// The unit vector in which it grows.
-    pub growth: Vector2<f64>,
+    pub(crate) growth: Vector2<f64>,
 }
 
 /// The closest point of a side.

@@ -12,7 +12,7 @@ use super::scene::Scene;
 use crate::io::numbers::ticks;
 
 /// The most triangles that are drawn one by one: more would make the file too large, and are drawn by cells.
-pub(crate) const MOST_TRIANGLES: usize = 20_000;
+const MOST_TRIANGLES: usize = 20_000;
 
 /// The side of such a cell.
 const CELL: f64 = 2.5;

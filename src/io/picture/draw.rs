@@ -9,7 +9,7 @@ use crate::io::numbers;
 use crate::model::tree::Bounds;
 use crate::quote;
 
-pub(super) const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
+const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 /// The size of letters that are neither a heading nor a note.
 const LETTERS: f64 = 13.0;
 pub(super) const DARK: &str = "#222222";

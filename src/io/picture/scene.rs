@@ -199,7 +199,7 @@ impl Scene {
     }
 
     /// The number of triangles that are drawn.
-    pub fn triangles(&self) -> usize {
+    pub(crate) fn triangles(&self) -> usize {
         self.triangles.len()
     }
 
