@@ -55,7 +55,7 @@ impl Coercivity {
     /// The constant of a problem for a degree of V^h.
     ///
     /// # Errors
-    /// As [`ContactLine::new`].
+    /// As `ContactLine::new`.
     pub fn new(problem: &Problem, degree: Degree) -> Result<Self, DataError> {
         ContactLine::new(problem, &Space::new(&problem.mesh, degree))?.coercivity(problem)
     }
@@ -300,7 +300,7 @@ pub(crate) fn by_triangle<S: Scalar>(
 /// All pieces of Gamma_C.
 ///
 /// # Errors
-/// As [`ContactLine::new`].
+/// As `ContactLine::new`.
 pub fn assemble(
     problem: &Problem,
     space: &Space,

@@ -192,7 +192,7 @@ impl Pair {
 /// The pieces of contact of each pair of a problem.
 ///
 /// # Errors
-/// As [`pieces`]; a boundary of a pair that has a condition as well, and a pair that is given twice.
+/// As `pieces`; a boundary of a pair that has a condition as well, and a pair that is given twice.
 pub fn of_problem(
     problem: &Problem,
     smooth: &SmoothBoundary,

@@ -2,7 +2,7 @@
 //!
 //! Each number is the shortest decimal that reads back to the same double. A number that does not exist is left out
 //! together with its name: `null` never stands in the file, and a NaN or an infinity is an error that names it, where
-//! JSON alone would turn it into `null` without a word. Everything but [`Seconds`] is the same from run to run.
+//! JSON alone would turn it into `null` without a word. Everything but `Seconds` is the same from run to run.
 //!
 //! The meaning of each key is in docs/result.md, which a test compares with what is written.
 
