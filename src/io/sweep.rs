@@ -195,19 +195,37 @@ pub fn run(
     let keys = axes.iter().map(|axis| axis.key.clone()).collect();
     let mut sweep =
         Sweep { title, keys, values, results: Vec::new(), with_files: files, names: NAMES };
-    let (all, runs) = (sweep.values.clone(), sweep.values.len());
-    let in_a_row = runs.div_ceil(jobs.clamp(1, runs.max(1)));
-    let stopped = AtomicBool::new(false);
+    let all = sweep.values.clone();
     let one = |i: usize, last: &mut Option<Solution>| {
-        let case = read(&all[i])?;
         let folder = files.then(|| of_run(folder, i));
-        solve(case, folder.as_deref(), last)
+        solve(read(&all[i])?, folder.as_deref(), last)
     };
     let mut series = Series::default();
+    each_in_order(all.len(), jobs, &one, |(results, scene)| {
+        if let Some(scene) = scene {
+            series.add(of_run(folder, sweep.results.len()), scene);
+        }
+        sweep.results.push(results);
+        done(&sweep)
+    })?;
+    series.draw()?;
+    Ok(sweep)
+}
+
+/// Hands the results of the runs to `take` in their order, made by jobs that each do as many runs in a row, from one solution to the
+/// next. A failure stops all.
+fn each_in_order<T: Send>(
+    runs: usize,
+    jobs: usize,
+    one: &(impl Fn(usize, &mut Option<Solution>) -> Result<T, Failure> + Sync),
+    mut take: impl FnMut(T) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let in_a_row = runs.div_ceil(jobs.clamp(1, runs.max(1)));
+    let stopped = &AtomicBool::new(false);
     thread::scope(|scope| {
         let (sender, receiver) = mpsc::channel();
         for first in (0..runs).step_by(in_a_row) {
-            let (sender, one, stopped) = (sender.clone(), &one, &stopped);
+            let sender = sender.clone();
             let work = move || {
                 let mut last = None;
                 for i in first..runs.min(first + in_a_row) {
@@ -226,26 +244,19 @@ pub fn run(
         }
         drop(sender);
         // Runs that ended before one that comes before them in the table.
-        let mut early = BTreeMap::new();
+        let (mut early, mut next) = (BTreeMap::new(), 0);
         for (i, result) in receiver {
             early.insert(i, result);
-            while let Some(next) = early.remove(&sweep.results.len()) {
-                let so_far = next.and_then(|next| {
-                    let (results, scene) = next;
-                    if let Some(scene) = scene {
-                        series.add(of_run(folder, sweep.results.len()), scene);
-                    }
-                    sweep.results.push(results);
-                    done(&sweep)
-                });
-                if so_far.is_err() {
+            while let Some(result) = early.remove(&next) {
+                next += 1;
+                let taken = result.and_then(&mut take);
+                if taken.is_err() {
                     stopped.store(true, Ordering::Relaxed);
                 }
-                so_far?;
+                taken?;
             }
         }
-        series.draw()?;
-        Ok(sweep)
+        Ok(())
     })
 }
 
