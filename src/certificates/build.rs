@@ -94,7 +94,7 @@ pub(super) struct Station {
     pub(crate) from: f64,
     pub(crate) to: f64,
     pub(crate) ends: [[f64; 2]; 2],
-    /// It starts where the one before it ends.
+    /// The edge starts where the edge before it ends.
     pub(crate) joined: bool,
 }
 

@@ -456,7 +456,7 @@ impl Contact {
         self.parts = joined;
     }
 
-    /// It is one of two bodies.
+    /// Returns whether contact is between two bodies.
     pub(crate) fn is_pair(&self) -> bool {
         self.sides.len() > 1
     }
@@ -637,7 +637,7 @@ pub(super) fn even_out(contacts: &mut [Contact]) {
     }
 }
 
-/// One contact ends inside of an edge where the other one begins, and tractions may be affine on both.
+/// Returns whether a contact ends inside of an edge where the other begins, and tractions may be affine on both.
 fn meet(one: &Contact, other: &Contact) -> bool {
     let inside = |(a, b): (&Side, &Side)| {
         a.edge == b.edge && (a.places[1] - b.places[0]).abs() <= SAME_PLACE

@@ -17,7 +17,7 @@ pub(super) const POINTS: usize = 8;
 
 /// The body forces of a problem as a certificate needs them.
 pub(super) struct Data<'a> {
-    /// Those on the whole body, then those on parts of it.
+    /// The forces on the whole body, then those on its parts.
     forces: Vec<(&'a [SharedFunction; 2], [Rule; 2])>,
     /// Which of the latter act on a triangle.
     local: BTreeMap<usize, Vec<usize>>,
@@ -79,12 +79,12 @@ pub(super) enum Traction<'a> {
     Vector(&'a [SharedFunction; 2]),
     /// -p n
     Pressure(&'a SharedFunction),
-    /// One component; the other is held.
+    /// A component; the other is held.
     Component(usize, &'a SharedFunction),
 }
 
 impl Traction<'_> {
-    /// It is affine along a straight edge.
+    /// Returns whether the traction is affine along a straight edge.
     pub(crate) fn is_affine(&self) -> bool {
         match self {
             Traction::Vector(t) => t.iter().all(|f| is_within(f, 1)),

@@ -6,7 +6,7 @@
 //! mu_i c_i(r) with all mu_i > 0 (docs/theory.md, Proposition 5.5). That is decided by non-negative least squares (Lawson &
 //! Hanson), whose residual is the motion that the loads drive. Motions with c = 0 on all of Gamma_C slide.
 //!
-//! Of a solution u, u + r with r of R is one, too, if and only if r_n = 0 where u presses and r_n <= -P(u) where it does not:
+//! If u is a solution, u + r with r of R is a solution, too, if and only if r_n = 0 where u presses and r_n <= -P(u) where it does not:
 //! the solutions are u and a polyhedron, of which the displacement of least norm is taken.
 
 use nalgebra::Vector2;

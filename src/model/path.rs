@@ -70,7 +70,7 @@ pub struct Beside {
 struct Near {
     place: Vector2<f64>,
     distance: f64,
-    /// It is the start (0) or the end (1) of the side.
+    /// The end of the side that the point is: start (0) or end (1).
     end: Option<usize>,
 }
 

@@ -249,9 +249,9 @@ fn recover_between(
 /// The hat functions of an edge's nodes.
 #[derive(Clone, Copy)]
 enum Hats {
-    /// One for each end.
+    /// A hat for each end.
     Whole,
-    /// One for each end and one for the middle.
+    /// A hat for each end and for the middle.
     Halves,
 }
 
