@@ -42,7 +42,7 @@ fn summarised(text: &str, quiet: bool) -> Done {
     Done { text: if quiet { String::new() } else { quote::lines(text) }, code: 0 }
 }
 
-pub fn run() -> ExitCode {
+pub(crate) fn run() -> ExitCode {
     let Arguments { task, quiet, verbose } = match Arguments::read() {
         Ok(arguments) => arguments,
         Err(error) if error.use_stderr() => error.exit(),

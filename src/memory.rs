@@ -14,7 +14,7 @@ use thiserror::Error;
 )]
 pub struct OutOfMemory {
     /// The bytes needed.
-    pub needed: u64,
+    pub(crate) needed: u64,
     /// The bytes available, if the system tells.
     pub available: Option<u64>,
 }

@@ -20,12 +20,12 @@ const MOST_OF_A_PATH: usize = 300;
 const MOST_NAMES: usize = 20;
 
 /// `text` between two `mark`s.
-pub fn quoted(text: &str, mark: char) -> String {
+pub(crate) fn quoted(text: &str, mark: char) -> String {
     format!("{mark}{}{mark}", cut(text))
 }
 
 /// `text` without quotes.
-pub fn cut(text: &str) -> String {
+pub(crate) fn cut(text: &str) -> String {
     cut_at(text, MOST)
 }
 
@@ -52,13 +52,13 @@ pub fn path(path: &Path) -> String {
 }
 
 /// A key of a case file as the file has it: in quotes only if it needs them.
-pub fn key(key: &str) -> String {
+pub(crate) fn key(key: &str) -> String {
     let bare = key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
     if bare && (1..=MOST).contains(&key.len()) { key.to_owned() } else { quoted(key, '"') }
 }
 
 /// The digits that read back to the same number; with an exponent where there would be many zeros.
-pub fn number(x: f64) -> String {
+pub(crate) fn number(x: f64) -> String {
     if x == 0.0 || !x.is_finite() || (1e-5..1e16).contains(&x.abs()) {
         format!("{x}")
     } else {
@@ -67,12 +67,12 @@ pub fn number(x: f64) -> String {
 }
 
 /// A number to three digits, for lengths that are the result of a computation.
-pub fn short(x: f64) -> String {
+pub(crate) fn short(x: f64) -> String {
     number(format!("{x:.2e}").parse().unwrap_or(x))
 }
 
 /// A number with so many decimals; from 1e16 on, which has none, as [`number`] writes it.
-pub fn fixed(x: f64, decimals: usize) -> String {
+pub(crate) fn fixed(x: f64, decimals: usize) -> String {
     if x.abs() < 1e16 { format!("{x:.decimals$}") } else { number(x) }
 }
 
@@ -134,7 +134,7 @@ fn is_hidden(c: char) -> bool {
 }
 
 /// `a, b or c`, where `last` is "or".
-pub fn listed(words: &[&str], last: &str) -> String {
+pub(crate) fn listed(words: &[&str], last: &str) -> String {
     match words {
         [] => String::new(),
         [word] => (*word).to_owned(),
@@ -143,7 +143,7 @@ pub fn listed(words: &[&str], last: &str) -> String {
 }
 
 /// `a, b, c`; of many names the first, and how many more there are.
-pub fn names<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
+pub(crate) fn names<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
     let mut rest = names.into_iter();
     let mut shown: Vec<String> = rest.by_ref().take(MOST_NAMES).map(cut).collect();
     match rest.count() {
@@ -154,7 +154,7 @@ pub fn names<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
 }
 
 /// The order of names in which the numbers in them count as numbers: wall 2 comes before wall 10.
-pub fn natural(a: &str, b: &str) -> Ordering {
+pub(crate) fn natural(a: &str, b: &str) -> Ordering {
     let key = |text: &str| {
         let parts = text.as_bytes().chunk_by(|a, b| a.is_ascii_digit() == b.is_ascii_digit());
         let part = |part: &[u8]| {

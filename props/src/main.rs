@@ -55,7 +55,7 @@ fn main() -> std::process::ExitCode {
             eprintln!(
                 "props receipt LOG  keep the output of cargo kani as a receipt in props/receipts"
             );
-            eprintln!("props sharpness    print the table of docs/parameters.md: limits of gamma0");
+            eprintln!("props sharpness    print docs/figures/sharpness.csv: limits of gamma0");
             return ExitCode::from(2);
         }
     };

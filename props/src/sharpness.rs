@@ -105,7 +105,7 @@ fn specimens() -> Result<Vec<Specimen>> {
         add(&format!("two triangles, e = {e}"), trapezoid(e)?);
     }
     let disk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/disk.toml");
-    add("`cases/disk.toml`, a Gmsh mesh", Case::read(&disk).map_err(text)?.problem);
+    add("cases/disk.toml, a Gmsh mesh", Case::read(&disk).map_err(text)?.problem);
     Ok(all)
 }
 
@@ -295,19 +295,19 @@ pub fn rows() -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// The table of `docs/parameters.md`.
+/// The file `docs/figures/sharpness.csv`.
 pub fn table(rows: &[Row]) -> String {
-    let mut text = "| body | | 1/C_h | gamma0\\* | gamma0\\* C_h |".to_owned();
+    let mut text = "body,triangles,1/C_h,gamma0*,gamma0* C_h".to_owned();
     for kappa in KAPPAS {
-        let _ = write!(text, " lambda_min, 1 - kappa = {:.1} |", 1.0 - kappa);
+        let _ = write!(text, ",\"lambda_min, 1 - kappa = {:.1}\"", 1.0 - kappa);
     }
-    text += "\n| --- | --- | --- | --- | --- | --- | --- |\n";
+    text += "\n";
     for row in rows {
         let Limits { proved, sharp } = row.limits;
         let [half, most] = row.eigenvalues.map(|(_, smallest)| smallest);
         let _ = writeln!(
             text,
-            "| {} | P{} | {} | {} | {:.3} | {half:.3} | {most:.3} |",
+            "\"{}\",P{},{},{},{:.3},{half:.3},{most:.3}",
             row.name,
             row.degree.number(),
             digits(proved),

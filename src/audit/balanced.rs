@@ -47,7 +47,7 @@ pub struct Balanced<S> {
     /// The force and the moment about its centroid by which these and the body force leave each triangle out of balance.
     pub(crate) resultants: Vec<Wrench<S>>,
     /// tau N on the edges in equilibrium.
-    pub in_balance: Vec<[Vector2<S>; 2]>,
+    pub(crate) in_balance: Vec<[Vector2<S>; 2]>,
     /// Corrections that equilibrium needs beside tractions.
     pub(crate) closed: Closed<S>,
     /// 2 int tau_n (v_n - g) over the edges of each triangle.
@@ -317,18 +317,6 @@ impl<S: Enclosing> Balanced<S> {
         let tau = if piece.is_bent() { tau.bent(&frame, &loads.body) } else { tau };
         let apart = tau.distance_from(&sigma);
         (sigma, apart)
-    }
-
-    /// Leaves out the part by which a load that is not constant bends tau.
-    pub fn without_bending(
-        &self,
-        certificate: &Certificate,
-        t: usize,
-    ) -> (Affine<S>, Composite<S>) {
-        let piece = &certificate.pieces[t];
-        let frame = Frame::new(&self.triangles[t]);
-        let sigma = self.v.stress(piece, &self.triangles[t]);
-        (sigma, Composite::new(&frame, &self.loads(piece, t)).distance_from(&sigma))
     }
 
     /// The forces on triangle `t` towards its outside, in equilibrium, and its body force.

@@ -476,7 +476,7 @@ impl<S: Enclosing> Shape<S> {
     }
 
     /// The work on it of a force on edge `e`, affine between its ends, per unit of the edge's parameter.
-    pub fn work_of(&self, force: [Vector2<S>; 2], ends: [usize; 2], e: usize) -> S {
+    pub(crate) fn work_of(&self, force: [Vector2<S>; 2], ends: [usize; 2], e: usize) -> S {
         let [a, b] = ends.map(|p| self.points[p]);
         let work = |c: usize| integral_of_product([force[0][c], force[1][c]], [a[c], b[c]]);
         let work = work(0) + work(1);

@@ -2,7 +2,7 @@
 //!
 //! By Green's formula R(w) = -int_{Gamma_D} sigma n . w - int_{Gamma_C} sigma_n w_n: where w is a rigid motion on one
 //! boundary, and does no work on the others, it is minus a component of the force or the moment of that boundary on the body.
-//! It lies within M |w|_a of L(w) - int m : eps(w) \[Q3\], and int tau : eps(w) is again a sum over the boundary.
+//! That component or moment lies within M |w|_a of L(w) - int m : eps(w) \[Q3\], and int tau : eps(w) is again a sum over the boundary.
 //!
 //! On Gamma_D w must be that motion exactly. On Gamma_C it may miss its target phi by omega = phi - w . d, at a price: what
 //! is meant is R(w) + int |sigma_n| omega, and with -beta' (g - v_n) - e' w0_n <= omega <= beta (g - v_n) + e w0_n that
@@ -80,7 +80,7 @@ pub(crate) fn component<S: Enclosing>(w: Vector2<S>, d: Vector2<S>) -> S {
 }
 
 /// The Bernstein coefficients of a function with these values at the ends and this bulge in the middle.
-pub(crate) fn elevated<S: Enclosing>([a, b]: [S; 2], bulge: S) -> [S; 4] {
+fn elevated<S: Enclosing>([a, b]: [S; 2], bulge: S) -> [S; 4] {
     let (two, three) = (S::from(2), S::from(3));
     let middle = (a + b) / two + bulge * two;
     [a, (a + middle * two) / three, (b + middle * two) / three, b]
@@ -331,7 +331,7 @@ pub(crate) struct Missed {
 pub struct Forces<'a, S> {
     /// The certificate.
     pub certificate: &'a Certificate,
-    /// It in equilibrium.
+    /// The certificate in equilibrium.
     pub state: &'a Balanced<S>,
     /// The boundary of each edge.
     pub of: &'a [Option<usize>],

@@ -56,7 +56,7 @@ pub struct AdaptedLevel {
     /// Degrees of freedom: twice the nodes.
     pub unknowns: usize,
     /// Triangles.
-    pub triangles: usize,
+    pub(crate) triangles: usize,
     /// The number of Newton steps.
     pub newton_steps: usize,
     /// |u - v|_a is at most this.

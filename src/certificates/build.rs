@@ -23,19 +23,19 @@ use crate::model::{BoundaryEdge, Mesh};
 
 /// A certificate with equilibrated tractions, before any improvement.
 pub(super) struct Built {
-    pub certificate: Certificate,
+    pub(crate) certificate: Certificate,
     /// The triangles of the mesh that its pieces come from.
-    pub origins: Vec<usize>,
+    pub(crate) origins: Vec<usize>,
     /// The oscillation of the data.
-    pub oscillation: Oscillation,
+    pub(crate) oscillation: Oscillation,
     /// Its triangles are quarters of those of the mesh.
     quartered: bool,
-    pub divisions: Vec<Division>,
+    pub(crate) divisions: Vec<Division>,
 }
 
 impl Built {
     /// A displacement of the mesh on the pieces: given at the vertices, and at the middles of the edges if it is quadratic.
-    pub fn shape<S: Enclosing>(&self, mesh: &Mesh, nodal: &[[f64; 2]]) -> Shape<S> {
+    pub(crate) fn shape<S: Enclosing>(&self, mesh: &Mesh, nodal: &[[f64; 2]]) -> Shape<S> {
         let (nodal, middles) = nodal.split_at(mesh.vertices().len());
         let points: Vec<Vector2<S>> = nodal.iter().map(|&v| exactly(v)).collect();
         let ends = edge_ends(mesh);
@@ -59,7 +59,7 @@ impl Built {
 
     /// The edges of Gamma_C, by their numbers in `parts`, of the triangles where v can't be shown to be outside the obstacle,
     /// and how far it may be inside.
-    pub fn penetrations(&self, parts: &ProblemParts) -> Vec<(usize, f64)> {
+    pub(crate) fn penetrations(&self, parts: &ProblemParts) -> Vec<(usize, f64)> {
         let found = self.certificate.penetrations();
         if found.is_empty() {
             return Vec::new();
@@ -79,28 +79,28 @@ impl Built {
 
 /// The boundaries of the problem on the edges of a certificate.
 pub(super) struct Line {
-    pub names: Vec<String>,
+    pub(crate) names: Vec<String>,
     /// The boundary of each edge, by its place among the names.
-    pub of: Vec<Option<usize>>,
+    pub(crate) of: Vec<Option<usize>>,
     /// The edges of Gamma_C, along it.
-    pub stations: Vec<Station>,
+    pub(crate) stations: Vec<Station>,
 }
 
 /// An edge of Gamma_C along its boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Station {
-    pub edge: usize,
+    pub(crate) edge: usize,
     /// Arc length at its ends.
-    pub from: f64,
-    pub to: f64,
-    pub ends: [[f64; 2]; 2],
-    /// It starts where the one before it ends.
-    pub joined: bool,
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    pub(crate) ends: [[f64; 2]; 2],
+    /// The edge starts where the edge before it ends.
+    pub(crate) joined: bool,
 }
 
 impl Built {
     /// Where the boundaries of the problem are on the edges of the certificate.
-    pub fn line(&self, parts: &ProblemParts) -> Line {
+    pub(crate) fn line(&self, parts: &ProblemParts) -> Line {
         let (mesh, edges) = (parts.mesh, &self.certificate.edges);
         let along = self.along(mesh);
         let mut line =

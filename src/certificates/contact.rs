@@ -27,25 +27,25 @@ use crate::model::{BoundaryEdge, Degree, Mesh, Problem};
 
 /// An edge of Gamma_C, or two parts of edges that face each other, with what the solution says there.
 pub(super) struct Contact {
-    pub edge: BoundaryEdge,
-    pub boundary: Arc<str>,
+    pub(crate) edge: BoundaryEdge,
+    pub(crate) boundary: Arc<str>,
     /// The parts of edges on which it lies: one, or those of two bodies.
-    pub sides: Vec<Side>,
+    pub(crate) sides: Vec<Side>,
     /// The length over which pressures are integrated: the mean of those of the sides.
-    pub length: f64,
-    pub normal: Vector2<f64>,
+    pub(crate) length: f64,
+    pub(crate) normal: Vector2<f64>,
     /// The direction of contact at both ends.
-    pub directions: [Vector2<f64>; 2],
+    pub(crate) directions: [Vector2<f64>; 2],
     /// g at both ends.
-    pub gap: [f64; 2],
+    pub(crate) gap: [f64; 2],
     /// Its value in the middle less their mean; 0 where it is known to be affine.
-    pub gap_bulge: f64,
+    pub(crate) gap_bulge: f64,
     /// The law; of the bound of friction the values at both ends.
-    pub law: Law,
+    pub(crate) law: Law,
     /// The jump across the direction of contact that glue has: at both ends, and its bulge.
-    pub offset: ([f64; 2], f64),
+    pub(crate) offset: ([f64; 2], f64),
     /// Where the pressure is affine.
-    pub parts: Vec<Part>,
+    pub(crate) parts: Vec<Part>,
 }
 
 /// A part of an edge.
@@ -63,9 +63,9 @@ pub(super) struct Side {
 /// A part of a contact, in units of it, with the tractions at its ends: along the direction of contact and across, to the left.
 #[derive(Clone, Copy)]
 pub(super) struct Part {
-    pub ends: [f64; 2],
-    pub pressure: [f64; 2],
-    pub shear: [f64; 2],
+    pub(crate) ends: [f64; 2],
+    pub(crate) pressure: [f64; 2],
+    pub(crate) shear: [f64; 2],
 }
 
 /// Places on an edge of a pair that are nearer to its ends or its middle are these: between nodes that face each other to rounding, or
@@ -119,9 +119,9 @@ fn near_place(x: f64) -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Profile {
     /// The place.
-    pub cut: Option<f64>,
+    pub(crate) cut: Option<f64>,
     /// Before and after it, each at both ends.
-    pub values: [[f64; 2]; 2],
+    pub(crate) values: [[f64; 2]; 2],
 }
 
 impl Profile {
@@ -217,7 +217,7 @@ fn tied([s, t]: [f64; 2], value: impl Fn(f64) -> Vector2<f64>) -> Part {
 
 impl Contact {
     /// `halved` tells whether each half of an edge has a pressure of its own.
-    pub fn new(problem: &Problem, piece: &Piece, u: &[[f64; 2]], halved: bool) -> Contact {
+    pub(crate) fn new(problem: &Problem, piece: &Piece, u: &[[f64; 2]], halved: bool) -> Contact {
         let (geometry, degree, both) = (&piece.geometry, piece.degree, piece.p(u));
         let (p, across) = both.split_at(geometry.nodes.len());
         let mut directions = [0, 1].map(|a| geometry.nodes[a].direction);
@@ -335,7 +335,7 @@ impl Contact {
 
     /// Gives glue the jump at its start that the contact `before` it has at its end, where this is the same place: of two nodes that
     /// nearly face each other, each has a jump of its own.
-    pub fn join(&mut self, mesh: &Mesh, before: &Contact) {
+    pub(crate) fn join(&mut self, mesh: &Mesh, before: &Contact) {
         let place = |side: &Side, k: usize| {
             let [a, b] = mesh.ends(side.edge).map(|vertex| Vector2::from(mesh.vertices()[vertex]));
             a + (b - a) * side.places[k]
@@ -376,17 +376,17 @@ impl Contact {
     }
 
     /// Returns whether only a small part of one of the two edges faces the other.
-    pub fn is_sliver(&self) -> bool {
+    pub(crate) fn is_sliver(&self) -> bool {
         self.sides.iter().any(|side| (side.places[1] - side.places[0]).abs() < SLIVER)
     }
 
     /// Returns whether the contact is pressed from end to end.
-    pub fn is_pressed(&self) -> bool {
+    pub(crate) fn is_pressed(&self) -> bool {
         self.parts.iter().all(|part| part.pressure.iter().all(|&p| p < 0.0))
     }
 
     /// The least pressure, and by how much friction could bear more where it is least.
-    pub fn least_tractions(&self) -> [f64; 2] {
+    pub(crate) fn least_tractions(&self) -> [f64; 2] {
         let ends = || self.parts.iter().flat_map(|part| [0, 1].map(|k| (part, k)));
         let pressure = ends().map(|(part, k)| -part.pressure[k]).fold(f64::INFINITY, f64::min);
         let margin = ends().map(|(part, k)| self.bound_at(part.ends[k]) - part.shear[k].abs());
@@ -394,17 +394,17 @@ impl Contact {
     }
 
     /// Tractions act across the direction of contact up to a bound.
-    pub fn has_friction(&self) -> bool {
+    pub(crate) fn has_friction(&self) -> bool {
         matches!(self.law, Law::Friction(_))
     }
 
     /// Two bodies that may not open.
-    pub fn is_tied(&self) -> bool {
+    pub(crate) fn is_tied(&self) -> bool {
         matches!(self.law, Law::Sliding | Law::Bonded)
     }
 
     /// The law on the part of the contact between two places of it, without tractions across; the bulge of the offset beside it.
-    pub fn law_between(&self, [s, t]: [f64; 2]) -> certificate::Law {
+    pub(crate) fn law_between(&self, [s, t]: [f64; 2]) -> certificate::Law {
         let ([p, q], bulge) = self.offset;
         let offset = [s, t].map(|s| (1.0 - s) * p + s * q + 4.0 * s * (1.0 - s) * bulge);
         let shear = [0.0; 2];
@@ -419,13 +419,13 @@ impl Contact {
     }
 
     /// On each side it is longer than what is taken for one place.
-    pub fn has_length(&self) -> bool {
+    pub(crate) fn has_length(&self) -> bool {
         self.sides.iter().all(|side| (side.places[1] - side.places[0]).abs() > SAME_PLACE)
     }
 
     /// Takes over what another contact, which is left out, has of the same edges: one that is behind this one (`end` is 1) or before it
     /// (0).
-    pub fn take_over(&mut self, other: &mut Contact, end: usize) {
+    pub(crate) fn take_over(&mut self, other: &mut Contact, end: usize) {
         for (own, side) in self.sides.iter_mut().zip(&mut other.sides) {
             let by = (side.places[end] - own.places[end]).abs();
             // Both ends of what is left out are as near as that.
@@ -456,19 +456,19 @@ impl Contact {
         self.parts = joined;
     }
 
-    /// It is one of two bodies.
-    pub fn is_pair(&self) -> bool {
+    /// Returns whether contact is between two bodies.
+    pub(crate) fn is_pair(&self) -> bool {
         self.sides.len() > 1
     }
 
     /// 1 for the first body, -1 for the second.
-    pub fn sign(side: usize) -> f64 {
+    pub(crate) fn sign(side: usize) -> f64 {
         if side == 0 { 1.0 } else { -1.0 }
     }
 
     /// The tractions along the direction of contact and across at both ends of the part of an edge of side `i` between two places, per
     /// length of the edge of the first side.
-    pub fn tractions_between(&self, i: usize, places: [f64; 2]) -> [[f64; 2]; 2] {
+    pub(crate) fn tractions_between(&self, i: usize, places: [f64; 2]) -> [[f64; 2]; 2] {
         let ends = places.map(|x| self.sides[i].within(x));
         let middle = (ends[0] + ends[1]) / 2.0;
         let inside = |part: &&Part| part.ends[0] < middle && middle < part.ends[1];
@@ -526,18 +526,18 @@ impl Contact {
     }
 
     /// int (p d + q e) phi for the hat functions of the ends of a side's edge, and for 4 s (1 - s).
-    pub fn on_edge(&self, i: usize) -> [Vector2<f64>; 3] {
+    pub(crate) fn on_edge(&self, i: usize) -> [Vector2<f64>; 3] {
         self.moments(i, [0.0, 1.0], |s| [1.0 - s, s, 4.0 * s * (1.0 - s)], Part::tractions)
     }
 
     /// int (p d + q e) phi over the part of a side's edge between two places for the hat functions of its ends.
-    pub fn on_part(&self, i: usize, [from, to]: [f64; 2]) -> [Vector2<f64>; 2] {
+    pub(crate) fn on_part(&self, i: usize, [from, to]: [f64; 2]) -> [Vector2<f64>; 2] {
         let hats = |s: f64| [(to - s) / (to - from), (s - from) / (to - from)];
         self.moments(i, [from, to], hats, Part::tractions)
     }
 
     /// The force int p, which is not positive; none where two bodies are tied.
-    pub fn force(&self) -> f64 {
+    pub(crate) fn force(&self) -> f64 {
         if self.is_tied() {
             return 0.0;
         }
@@ -549,7 +549,7 @@ impl Contact {
     }
 
     /// int p d . r and int (p d + q e) . r over side `i` for a motion that is affine along its edge.
-    pub fn against(&self, i: usize, ends: [Vector2<f64>; 2]) -> [f64; 2] {
+    pub(crate) fn against(&self, i: usize, ends: [Vector2<f64>; 2]) -> [f64; 2] {
         let hats = |s: f64| [1.0 - s, s];
         [Part::pushing, Part::tractions].map(|tractions| {
             let [a, b] = self.moments(i, [0.0, 1.0], hats, tractions);
@@ -558,7 +558,7 @@ impl Contact {
     }
 
     /// Multiplies the pressure.
-    pub fn scale(&mut self, factor: f64) {
+    pub(crate) fn scale(&mut self, factor: f64) {
         self.parts.iter_mut().flat_map(|part| &mut part.pressure).for_each(|p| *p *= factor);
     }
 
@@ -576,20 +576,20 @@ impl Contact {
     }
 
     /// The coefficients of a field along the contact, on a pair less those on the other body.
-    pub fn jump(&self, mesh: &Mesh, field: &Field) -> [Vector2<f64>; 3] {
+    pub(crate) fn jump(&self, mesh: &Mesh, field: &Field) -> [Vector2<f64>; 3] {
         let sides = (0..self.sides.len())
             .map(|i| self.along_side(mesh, i, field).map(|value| value * Contact::sign(i)));
         sides.fold([Vector2::zeros(); 3], |[a, b, c], [d, e, f]| [a + d, b + e, c + f])
     }
 
     /// The directions, if they are not the normal.
-    pub fn along(&self) -> Option<[[f64; 2]; 2]> {
+    pub(crate) fn along(&self) -> Option<[[f64; 2]; 2]> {
         (self.is_pair() || self.directions != [self.normal; 2])
             .then(|| self.directions.map(<[f64; 2]>::from))
     }
 
     /// Tells whether the direction of contact turns along it.
-    pub fn turns(&self) -> bool {
+    pub(crate) fn turns(&self) -> bool {
         self.directions[0] != self.directions[1]
     }
 }
@@ -637,7 +637,7 @@ pub(super) fn even_out(contacts: &mut [Contact]) {
     }
 }
 
-/// One contact ends inside of an edge where the other one begins, and tractions may be affine on both.
+/// Returns whether a contact ends inside of an edge where the other begins, and tractions may be affine on both.
 fn meet(one: &Contact, other: &Contact) -> bool {
     let inside = |(a, b): (&Side, &Side)| {
         a.edge == b.edge && (a.places[1] - b.places[0]).abs() <= SAME_PLACE
@@ -655,7 +655,7 @@ fn with_hats(degree: Degree, p: &[f64]) -> [f64; 2] {
 }
 
 /// Contact that ends this near an end of its edge, in units of the edge, leaves it whole: the triangles would be slivers.
-pub(super) const NEAR_THE_END: f64 = 1e-3;
+const NEAR_THE_END: f64 = 1e-3;
 
 /// The least part of an edge that is cut off where lambda^h is not affine: a sliver bounds badly.
-pub(super) const LEAST_PART: f64 = 0.15;
+const LEAST_PART: f64 = 0.15;

@@ -17,7 +17,7 @@ pub(super) const POINTS: usize = 8;
 
 /// The body forces of a problem as a certificate needs them.
 pub(super) struct Data<'a> {
-    /// Those on the whole body, then those on parts of it.
+    /// The forces on the whole body, then those on its parts.
     forces: Vec<(&'a [SharedFunction; 2], [Rule; 2])>,
     /// Which of the latter act on a triangle.
     local: BTreeMap<usize, Vec<usize>>,
@@ -29,7 +29,7 @@ pub(super) fn is_within(function: &SharedFunction, degree: u32) -> bool {
 }
 
 impl<'a> Data<'a> {
-    pub fn new(problem: &'a Problem) -> Self {
+    pub(crate) fn new(problem: &'a Problem) -> Self {
         let parts = problem.surface_forces.iter().map(|part| &part.force);
         let all = std::iter::once(&problem.body_force).chain(parts);
         let mut local: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
@@ -40,7 +40,7 @@ impl<'a> Data<'a> {
     }
 
     /// The component c of each force that acts on triangle `t`, with its rule.
-    pub fn acting(&self, t: usize) -> impl Iterator<Item = (usize, &SharedFunction, &Rule)> {
+    pub(crate) fn acting(&self, t: usize) -> impl Iterator<Item = (usize, &SharedFunction, &Rule)> {
         let here = self.local.get(&t).into_iter().flatten().copied();
         std::iter::once(0).chain(here).flat_map(|k| {
             let (functions, rules) = &self.forces[k];
@@ -79,12 +79,12 @@ pub(super) enum Traction<'a> {
     Vector(&'a [SharedFunction; 2]),
     /// -p n
     Pressure(&'a SharedFunction),
-    /// One component; the other is held.
+    /// A component; the other is held.
     Component(usize, &'a SharedFunction),
 }
 
 impl Traction<'_> {
-    /// It is affine along a straight edge.
+    /// Returns whether the traction is affine along a straight edge.
     pub(crate) fn is_affine(&self) -> bool {
         match self {
             Traction::Vector(t) => t.iter().all(|f| is_within(f, 1)),
@@ -92,7 +92,7 @@ impl Traction<'_> {
         }
     }
 
-    pub fn at(&self, x: [f64; 2], n: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn at(&self, x: [f64; 2], n: [f64; 2]) -> [f64; 2] {
         match self {
             Traction::Vector(t) => [0, 1].map(|c| t[c].on_boundary(x, n)),
             Traction::Pressure(p) => {
@@ -107,7 +107,7 @@ impl Traction<'_> {
         }
     }
 
-    pub fn rule(&self) -> Rule {
+    pub(crate) fn rule(&self) -> Rule {
         match self {
             Traction::Vector([x, y]) => rule(if x.kink().is_some() { &**x } else { &**y }),
             Traction::Pressure(f) | Traction::Component(_, f) => rule(&***f),
@@ -115,7 +115,7 @@ impl Traction<'_> {
     }
 
     /// int_E t phi for both ends of an edge with the scaled normal N.
-    pub fn moments(&self, ends: [[f64; 2]; 2], normal: Vector2<f64>) -> [Vector2<f64>; 2] {
+    pub(crate) fn moments(&self, ends: [[f64; 2]; 2], normal: Vector2<f64>) -> [Vector2<f64>; 2] {
         let length = length(normal);
         let unit = (normal / length).into();
         let mut moments = [Vector2::zeros(); 2];
@@ -138,7 +138,7 @@ impl Traction<'_> {
     }
 
     /// t_h as the role of an edge.
-    pub fn affine(&self, ends: [[f64; 2]; 2]) -> Role {
+    pub(crate) fn affine(&self, ends: [[f64; 2]; 2]) -> Role {
         let (_, unit) = length_and_normal(ends);
         let role = match self {
             Traction::Pressure(p) if self.is_affine() => {
@@ -154,7 +154,7 @@ impl Traction<'_> {
     }
 
     /// The component of t_h across the direction `d`, along d turned to the left, at both ends.
-    pub fn across(&self, d: [f64; 2], ends: [[f64; 2]; 2]) -> [f64; 2] {
+    pub(crate) fn across(&self, d: [f64; 2], ends: [[f64; 2]; 2]) -> [f64; 2] {
         self.affine_values(ends).map(|t| d[0] * t[1] - d[1] * t[0])
     }
 }

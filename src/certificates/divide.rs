@@ -9,23 +9,23 @@ use crate::kernel::composite::Affine;
 
 /// A triangle of the mesh or a part of it.
 pub(super) struct SubTriangle {
-    pub vertices: [usize; 3],
-    pub edges: [usize; 3],
+    pub(crate) vertices: [usize; 3],
+    pub(crate) edges: [usize; 3],
     /// The barycentric coordinates of its vertices in the triangle of the mesh.
-    pub places: [[f64; 3]; 3],
+    pub(crate) places: [[f64; 3]; 3],
 }
 
 /// A triangle that was cut in two, from a place on the edge `base` to the opposite vertex. The edge's second part and the cut
 /// are the next two edges of the certificate.
 pub(super) struct Division {
     /// The ends of the edge.
-    pub ends: [usize; 2],
+    pub(crate) ends: [usize; 2],
     /// Where on the edge of the mesh it begins, was cut and ends.
-    pub places: [f64; 3],
+    pub(crate) places: [f64; 3],
     /// The edge, whose first part keeps its number.
-    pub base: usize,
+    pub(crate) base: usize,
     /// The edges from the opposite vertex to both ends.
-    pub sides: [usize; 2],
+    pub(crate) sides: [usize; 2],
 }
 
 impl Division {

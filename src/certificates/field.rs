@@ -9,14 +9,14 @@ use crate::model::Mesh;
 #[derive(Clone)]
 pub(super) struct Field {
     /// At the vertices.
-    pub vertices: Vec<[f64; 2]>,
+    pub(crate) vertices: Vec<[f64; 2]>,
     /// Its values in the middle of each edge less the mean of the ends.
-    pub bulges: Option<Vec<[f64; 2]>>,
+    pub(crate) bulges: Option<Vec<[f64; 2]>>,
 }
 
 impl Field {
     /// The field with these values at the vertices, and at the middles of the edges if there are so many.
-    pub fn new(mesh: &Mesh, nodal: &[[f64; 2]]) -> Result<Field, CertifyError> {
+    pub(crate) fn new(mesh: &Mesh, nodal: &[[f64; 2]]) -> Result<Field, CertifyError> {
         let (vertices, nodes) = (mesh.vertices().len(), mesh.vertices().len() + mesh.edge_count());
         if nodal.len() != vertices && nodal.len() != nodes {
             let found = nodal.len();
@@ -32,7 +32,7 @@ impl Field {
     }
 
     /// The values at the vertices, and at the middles of the edges if it is quadratic.
-    pub fn nodal(&self, mesh: &Mesh) -> Vec<[f64; 2]> {
+    pub(crate) fn nodal(&self, mesh: &Mesh) -> Vec<[f64; 2]> {
         let middle = |([a, b], bulge): ([usize; 2], &[f64; 2])| {
             [0, 1].map(|c| (self.vertices[a][c] + self.vertices[b][c]) / 2.0 + bulge[c])
         };
@@ -42,7 +42,7 @@ impl Field {
     }
 
     /// C eps of it on triangle `t`, which has this material.
-    pub fn stress(
+    pub(crate) fn stress(
         &self,
         mesh: &Mesh,
         material: &Material<f64>,

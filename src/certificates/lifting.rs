@@ -144,7 +144,7 @@ fn springs(piece: &Piece) -> DMatrix<f64> {
 impl<'a> Lifter<'a> {
     /// For the boundaries with these `names`; `open` tells of the edges of Gamma_C, by their place in `parts.contact`, where
     /// w is free.
-    pub fn new(
+    pub(crate) fn new(
         parts: &'a ProblemParts<'a>,
         degree: Degree,
         names: &'a [String],
@@ -305,7 +305,7 @@ impl<'a> Lifter<'a> {
     ///
     /// # Errors
     /// A place where two boundaries ask for what is not to be had together.
-    pub fn field(&self, target: ForceTarget) -> Result<Vec<[f64; 2]>, String> {
+    pub(crate) fn field(&self, target: ForceTarget) -> Result<Vec<[f64; 2]>, String> {
         let mut field = vec![[0.0; 2]; self.space.nodes().len()];
         for (&node, demands) in &self.demands {
             let value = |demand: &Prescription| self.value(node, demand, target);
@@ -404,7 +404,7 @@ impl<'a> Lifter<'a> {
     ///
     /// # Errors
     /// A place where boundaries contradict one another; contact along a direction that is not an axis.
-    pub fn pair(
+    pub(crate) fn pair(
         &self,
         (target, w): (ForceTarget, &[[f64; 2]]),
         built: &Built,
@@ -515,7 +515,7 @@ impl<'a> Lifter<'a> {
     }
 
     /// w on the triangles of a certificate, what is exact on the boundary made so.
-    pub fn lifting(
+    pub(crate) fn lifting(
         &self,
         target: ForceTarget,
         built: &Built,

@@ -65,7 +65,7 @@ use crate::quote::quoted;
 use crate::results::Solution;
 
 /// The number of times that the stress is improved around every vertex.
-pub(crate) const SWEEPS: usize = 2;
+const SWEEPS: usize = 2;
 
 /// As [`SWEEPS`], with two bodies: the fans of narrow triangles between them are far from what they start with.
 const SWEEPS_FOR_PAIRS: usize = 6;

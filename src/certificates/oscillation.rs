@@ -13,7 +13,7 @@
 //!   opposite vertex but for the factor 1 - l: z = (1 - l) d(s). Its gradient is constant along the rays, and
 //!   |z|_a^2 = |T| int sigma(G) : G ds with G(s) = d (x) (-grad l) + d' (x) (grad l_b + s grad l).
 //!
-//! These integrals are by quadrature, so a bound that contains one is not rigorous: [`Oscillation::reason`] says so.
+//! The integrals of oscillation are by quadrature, so a bound that contains one is not rigorous: [`Oscillation::reason`] says so.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -34,14 +34,14 @@ use crate::quote::quoted;
 #[derive(Clone, Debug)]
 pub(super) struct Oscillation {
     /// Why the bound rests on quadrature, if it does.
-    pub reason: Option<String>,
+    pub(crate) reason: Option<String>,
     /// |z|_a of the lifts on the triangles of the mesh where v lacks z.
-    pub lifts: BTreeMap<usize, f64>,
+    pub(crate) lifts: BTreeMap<usize, f64>,
 }
 
 impl Oscillation {
     /// `quadratic` tells whether v is, so that it follows data of degree 2.
-    pub fn new(parts: &ProblemParts, quadratic: bool) -> Self {
+    pub(crate) fn new(parts: &ProblemParts, quadratic: bool) -> Self {
         let (given, between) = (given(parts, quadratic), parts.known_at_nodes(quadratic));
         let inexact = given.iter().filter_map(|given| {
             let degree = given.degree?;
@@ -93,7 +93,7 @@ impl Oscillation {
 
     /// Puts the oscillation of the data into the pieces of a certificate; `origins` are their triangles in the mesh, of which
     /// they may be quarters.
-    pub fn measure(
+    pub(crate) fn measure(
         &mut self,
         parts: &ProblemParts,
         data: &Data,

@@ -39,22 +39,22 @@ pub(super) type OnLine = Vec<(usize, usize)>;
 
 /// The parts of a problem that certificates are made from.
 pub(super) struct ProblemParts<'a> {
-    pub problem: &'a Problem,
-    pub mesh: &'a Mesh,
+    pub(crate) problem: &'a Problem,
+    pub(crate) mesh: &'a Mesh,
     /// Gamma_C.
-    pub contact: Vec<Contact>,
+    pub(crate) contact: Vec<Contact>,
     /// The edges that contacts lie on.
-    pub lines: Vec<OnLine>,
+    pub(crate) lines: Vec<OnLine>,
     /// The pieces of tied bodies, with their jumps alone.
-    pub tied: Vec<Piece>,
+    pub(crate) tied: Vec<Piece>,
     /// u_D at the vertices.
-    pub prescribed: Vec<[Option<f64>; 2]>,
+    pub(crate) prescribed: Vec<[Option<f64>; 2]>,
     /// The vertices that are held along an oblique direction alone, and this: what is prescribed there is along it.
-    pub frames: BTreeMap<usize, [f64; 2]>,
+    pub(crate) frames: BTreeMap<usize, [f64; 2]>,
     /// The conditions on boundary edges, by their numbers in the mesh.
-    pub boundary: BTreeMap<usize, Boundary<'a>>,
+    pub(crate) boundary: BTreeMap<usize, Boundary<'a>>,
     /// Where edges without a traction are cut, by their numbers in the certificate.
-    pub cuts: BTreeMap<usize, f64>,
+    pub(crate) cuts: BTreeMap<usize, f64>,
 }
 
 impl<'a> ProblemParts<'a> {
@@ -62,7 +62,7 @@ impl<'a> ProblemParts<'a> {
     ///
     /// # Errors
     /// Conditions that no composite stress can satisfy.
-    pub fn new(
+    pub(crate) fn new(
         problem: &'a Problem,
         degree: Degree,
         pieces: &[Piece],
@@ -219,7 +219,7 @@ impl<'a> ProblemParts<'a> {
 
     /// The role of the part of edge `e` of the mesh from s to t, in units of it, between these places, as the data say: without
     /// the tractions of tau. Beside it the bulge of the data there, which a v that is `quadratic` follows.
-    pub fn role_on(
+    pub(crate) fn role_on(
         &self,
         e: usize,
         ([s, t], places): ([f64; 2], [[f64; 2]; 2]),
@@ -264,12 +264,12 @@ impl<'a> ProblemParts<'a> {
     }
 
     /// The contact that has place `x` of an edge inside, and its side there.
-    pub fn contact_at(&self, line: usize, x: f64) -> Option<(usize, usize)> {
+    pub(crate) fn contact_at(&self, line: usize, x: f64) -> Option<(usize, usize)> {
         self.lines[line].iter().copied().find(|&(k, i)| self.contact[k].sides[i].has(x))
     }
 
     /// The places inside an edge where what acts on it changes.
-    pub fn breaks(&self, e: usize) -> Vec<f64> {
+    pub(crate) fn breaks(&self, e: usize) -> Vec<f64> {
         let Some(&Boundary::Contact(line)) = self.boundary.get(&e) else { return Vec::new() };
         let contacts = self.lines[line].iter();
         let of = |&(k, i): &(usize, usize)| {
@@ -353,7 +353,7 @@ impl<'a> ProblemParts<'a> {
 
     /// The largest |w - u_D| for a field w, at the vertices of Gamma_D and in the middles of its edges, in the components that
     /// are held.
-    pub fn missed(&self, w: &Field) -> f64 {
+    pub(crate) fn missed(&self, w: &Field) -> f64 {
         let along = |d: [f64; 2], u: [f64; 2], given: f64| {
             (u[0] * d[0] + u[1] * d[1] - given).abs() / d[0].hypot(d[1])
         };
@@ -388,19 +388,19 @@ impl<'a> ProblemParts<'a> {
     }
 
     /// The contact boundaries whose direction turns along an edge, so that it and the gap are known at vertices only.
-    pub fn turning(&self) -> BTreeSet<&str> {
+    pub(crate) fn turning(&self) -> BTreeSet<&str> {
         let turning = self.contact.iter().filter(|edge| edge.turns());
         turning.map(|edge| &*edge.boundary).collect()
     }
 
     /// The first boundaries of pairs on which nodes that nearly face each other are taken to do so.
-    pub fn moved(&self) -> BTreeSet<&str> {
+    pub(crate) fn moved(&self) -> BTreeSet<&str> {
         let moved = self.contact.iter().filter(|c| c.sides.iter().any(|side| side.moved));
         moved.map(|contact| &*contact.boundary).collect()
     }
 
     /// The boundaries whose bound of friction is not known to be affine.
-    pub fn rough(&self) -> BTreeSet<&str> {
+    pub(crate) fn rough(&self) -> BTreeSet<&str> {
         let of_pair = |pair: &'a Pair| Some((&pair.boundaries[0], pair.friction.as_ref()?));
         let all = self.problem.friction.iter().chain(self.problem.pairs.iter().filter_map(of_pair));
         let is_rough = |friction: &Friction| matches!(friction, Friction::Tresca(bound) if !is_within(bound, 1));
@@ -410,7 +410,7 @@ impl<'a> ProblemParts<'a> {
     /// The contact boundaries of which direction and gap are known at the nodes only: those that turn, and those whose obstacle is
     /// neither a plane nor a distance that is affine by its expression, and pairs whose clearance a v that is `quadratic`, or affine,
     /// does not follow.
-    pub fn known_at_nodes(&self, quadratic: bool) -> BTreeSet<&str> {
+    pub(crate) fn known_at_nodes(&self, quadratic: bool) -> BTreeSet<&str> {
         let curved = self.problem.conditions.iter().filter(|(_, condition)| is_curved(condition));
         let curved = curved.map(|(name, _)| name.as_str());
         let inexact = |pair: &&Pair| {
@@ -423,7 +423,7 @@ impl<'a> ProblemParts<'a> {
     }
 
     /// The material of triangle `t`.
-    pub fn material(&self, t: usize) -> &Material<f64> {
+    pub(crate) fn material(&self, t: usize) -> &Material<f64> {
         self.problem.material.of(t)
     }
 }

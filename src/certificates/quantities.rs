@@ -91,7 +91,7 @@ pub enum Name {
 
 impl Name {
     /// Its name in result.json.
-    pub fn text(self) -> &'static str {
+    pub(crate) fn text(self) -> &'static str {
         match self {
             Name::ContactForce => "contact force",
             Name::ContactComponent(c) => ["contact force x", "contact force y"][c],
@@ -126,7 +126,7 @@ impl Name {
 #[non_exhaustive]
 pub struct Zone {
     /// The boundary.
-    pub boundary: String,
+    pub(crate) boundary: String,
     /// Arc length along the boundary, from the start of its first edge, where the stretch begins.
     pub from: f64,
     /// Where it ends.
@@ -244,7 +244,7 @@ fn beyond_rigid<S: Enclosing>(
         column(&|x| Vector2::new(-x.y, x.x)),
     ];
     let all: Vec<f64> = v.iter().flat_map(|&v| <[f64; 2]>::from(v)).collect();
-    let weights = least_squares(motions.to_vec(), &all);
+    let weights = least_squares(&motions, &all);
     let left = |k: usize| {
         let of = |c: usize| -> f64 {
             let moved: f64 =

@@ -1,6 +1,6 @@
 //! A better stress: minimises |C eps(v) - tau| over the stresses in equilibrium, vertex by vertex.
 //!
-//! What may be added to tau has no divergence and no traction where the boundary prescribes one: it is the stress of an
+//! Stresses that may be added to tau have no divergence, and no traction where the boundary prescribes it. Each is the stress of an
 //! Airy function, tau = (Phi_yy, Phi_xx, -Phi_xy), and the composite stresses are those of the composite cubics of Hsieh,
 //! Clough and Tocher, whose unknowns are Phi and grad Phi at vertices and one normal slope for each edge. Along an edge
 //! tau N = dq/ds with q = (Phi_y, -Phi_x) = (1 - s) q_a + s q_b + 4 s (1 - s) z, so that

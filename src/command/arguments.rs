@@ -17,15 +17,15 @@ use signorini::io::sweep::ParameterAxis;
     arg_required_else_help = true,
     after_help = format!("{SCOPE}\n\n{EXIT_CODES}")
 )]
-pub struct Arguments {
+pub(crate) struct Arguments {
     #[command(subcommand)]
-    pub task: Task,
+    pub(crate) task: Task,
     /// Print nothing but errors
     #[arg(long, global = true)]
-    pub quiet: bool,
+    pub(crate) quiet: bool,
     /// Print also how the case was solved: mesh, coercivity, Newton's method, accuracy, balance of energies, times
     #[arg(long, global = true, conflicts_with = "quiet")]
-    pub verbose: bool,
+    pub(crate) verbose: bool,
 }
 
 const SCOPE: &str = "Linear elastic, small displacements and rotations, plane strain, plane stress or bodies of revolution. Contact is \
@@ -41,7 +41,7 @@ const EXIT_CODES: &str = "Exit codes: 0 solved and proved; 1 no result: it could
 
 impl Arguments {
     /// Reads the command line; an error suggests what was probably meant.
-    pub fn read() -> Result<Arguments, clap::Error> {
+    pub(crate) fn read() -> Result<Arguments, clap::Error> {
         Arguments::try_parse().map_err(|mut error| {
             let has = |kind| error.get(kind).is_some();
             let is_similar = has(ContextKind::SuggestedArg) || has(ContextKind::SuggestedSubcommand);
@@ -86,7 +86,7 @@ impl Arguments {
 }
 
 #[derive(Subcommand)]
-pub enum Task {
+pub(crate) enum Task {
     /// Solve a case; write solution.vtu, contact.vtu, contact.csv, picture.svg and result.json
     #[command(after_help = "Examples:\n  signorini solve cases/bracket.toml --report\n  \
                             signorini solve cases/disk.toml --within \"force contact 2 %\"\n  \
@@ -174,51 +174,51 @@ pub enum Task {
 
 /// A case file and what is set over it.
 #[derive(Args)]
-pub struct CaseArguments {
+pub(crate) struct CaseArguments {
     /// The case file (TOML), or - for standard input
     #[arg(value_name = "CASE", value_hint = ValueHint::FilePath)]
-    pub file: PathBuf,
+    pub(crate) file: PathBuf,
     /// Set a key of the case file, such as method.gamma0=1e-3; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
-    pub settings: Vec<String>,
+    pub(crate) settings: Vec<String>,
 }
 
 /// Options of a solve.
 #[derive(Args)]
-pub struct SolveOptions {
+pub(crate) struct SolveOptions {
     /// The folder to write to [default: out/ and the name of the case]
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub out: Option<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
     /// Print result.json instead of the summary; write no files unless --out names a folder
     #[arg(long)]
-    pub json: bool,
+    pub(crate) json: bool,
     /// Also bound the distance to the true solution, and write the proof to certificate.json and certificate.bin, for
     /// `signorini audit`; with the forces between two numbers it takes one to five times as long as the solution
     #[arg(long)]
-    pub certificate: bool,
+    pub(crate) certificate: bool,
     /// Refine the mesh until the error is proved to be at most this: "5 %" of the energy norm, or "force NAME 2 %" of the contact
     /// force of a boundary. Sets adapt.target of the case
     #[arg(long, value_name = "TARGET")]
-    pub within: Option<Within>,
+    pub(crate) within: Option<Within>,
     /// Write report.html, too: picture, numbers, what is proved and the case, in one file to send to a colleague
     #[arg(long)]
-    pub report: bool,
+    pub(crate) report: bool,
     /// The solver: this program, or the reference implementation in FEniCSx, which can run in several processes
     #[arg(long, value_enum, default_value_t = Engine::Signorini)]
-    pub engine: Engine,
+    pub(crate) engine: Engine,
     /// MPI processes for --engine fenicsx [default: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub ranks: Option<u16>,
+    pub(crate) ranks: Option<u16>,
     /// The folder of the reference implementation, reference/ of the sources [default: beside this program]
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub reference: Option<PathBuf>,
+    pub(crate) reference: Option<PathBuf>,
 }
 
 /// The target of an adaptive solve.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Within {
     /// The key of the case file that says the same, with its value.
-    pub setting: String,
+    pub(crate) setting: String,
 }
 
 impl FromStr for Within {
@@ -245,7 +245,7 @@ impl FromStr for Within {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Engine {
+pub(crate) enum Engine {
     Signorini,
     Fenicsx,
 }

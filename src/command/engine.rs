@@ -25,7 +25,7 @@ fn not_started(program: &Path, error: &io::Error) -> Failure {
 
 /// Solves `case` on `ranks` processes, with the package in `reference` if that is given; result.json and a file for
 /// ParaView are written into `folder`.
-pub fn fenicsx(
+pub(crate) fn fenicsx(
     case: &Path,
     folder: &Path,
     ranks: u16,
@@ -36,7 +36,7 @@ pub fn fenicsx(
     let path = python_path(reference)?;
     let python = python()?;
     let not_started = |error| not_started(&python, &error);
-    let mut output = files::Output::new(folder)?.replacing(&FILES);
+    let mut output = files::Output::new(folder)?;
     let room = std::path::absolute(output.room()).map_err(not_started)?;
     let full = std::path::absolute(case).map_err(not_started)?;
     let ended = run(safe(&python)
@@ -60,7 +60,7 @@ pub fn fenicsx(
     for name in FILES_OF_FENICSX {
         output.adopt(name)?;
     }
-    let mut files = output.publish()?;
+    let mut files = output.publish(&FILES)?;
     files.retain(|file| !file.ends_with("solution.h5"));
     Ok((results, files))
 }

@@ -11,7 +11,7 @@ use signorini::quote;
 use super::progress::Phases;
 use super::{Done, complain, summarised};
 
-pub fn run(mesh: &Path, out: Option<&Path>, quiet: bool) -> Result<Done, Failure> {
+pub(crate) fn run(mesh: &Path, out: Option<&Path>, quiet: bool) -> Result<Done, Failure> {
     let phases = Phases::start(quiet);
     phases.enter("reading the mesh");
     let (made, pairs) = gmsh::read_with_pairs(mesh)?;

@@ -10,25 +10,25 @@ use signorini::solve::Phase;
 const CLEAR: &str = "\r\x1b[2K";
 
 /// The line, with the time since the start of the work; dropping the value removes the line. `None` if nothing is shown.
-pub struct Phases(Option<Instant>);
+pub(crate) struct Phases(Option<Instant>);
 
 impl Phases {
     /// Shown unless `quiet`.
-    pub fn start(quiet: bool) -> Phases {
+    pub(crate) fn start(quiet: bool) -> Phases {
         let term = std::env::var_os("TERM").unwrap_or_default();
         let is_shown = !quiet && stderr().is_terminal() && !term.is_empty() && term != "dumb";
         Phases(is_shown.then(Instant::now))
     }
 
     /// The phase that begins, such as "certifying".
-    pub fn enter(&self, phase: impl Display) {
+    pub(crate) fn enter(&self, phase: impl Display) {
         if let Some(start) = self.0 {
             show(&format!("{CLEAR}  {} s: {phase} ...", start.elapsed().as_secs()));
         }
     }
 
     /// A phase inside a solve.
-    pub fn enter_solve(&self, phase: Phase) {
+    pub(crate) fn enter_solve(&self, phase: Phase) {
         self.enter(match phase {
             Phase::Assemble => "assembling loads, supports and the contact line".to_owned(),
             Phase::Order => "ordering and assembling the matrix".to_owned(),

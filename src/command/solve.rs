@@ -15,7 +15,7 @@ use super::arguments::{CaseArguments, Engine, SolveOptions};
 use super::progress::Phases;
 use super::{Done, SHORT, complain, engine, folder, is_standard_input, read, summarised, sweep};
 
-pub fn run(
+pub(crate) fn run(
     case: &CaseArguments,
     options: &SolveOptions,
     quiet: bool,

@@ -15,7 +15,7 @@ use super::{Done, FAILED, SHORT, WRONG, folder, read_text, summarised};
 /// The time between two writings of the table of a sweep.
 const BETWEEN_TABLES: Duration = Duration::from_secs(1);
 
-pub fn run(
+pub(crate) fn run(
     file: &Path,
     axes: &[ParameterAxis],
     extent: Extent,

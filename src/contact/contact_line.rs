@@ -55,7 +55,7 @@ impl Coercivity {
     /// The constant of a problem for a degree of V^h.
     ///
     /// # Errors
-    /// As [`ContactLine::new`].
+    /// As `ContactLine::new`.
     pub fn new(problem: &Problem, degree: Degree) -> Result<Self, DataError> {
         ContactLine::new(problem, &Space::new(&problem.mesh, degree))?.coercivity(problem)
     }
@@ -122,7 +122,7 @@ impl ContactLine {
     ///
     /// # Errors
     /// [`DataError::NoContact`], a gap that is not finite, an obstacle on the other side of the body, and unknown boundary names.
-    pub fn new(problem: &Problem, space: &Space) -> Result<Self, DataError> {
+    pub(crate) fn new(problem: &Problem, space: &Space) -> Result<Self, DataError> {
         let obstacles = Obstacles { problem, smooth: SmoothBoundary::new(&problem.mesh) };
         let mut pieces: Vec<PieceGeometry> = Vec::new();
         for (edge, name) in contact_edges(problem)? {
@@ -158,7 +158,7 @@ impl ContactLine {
     }
 
     /// Its pieces, each boundary in chains along the boundary.
-    pub fn pieces(&self) -> impl Iterator<Item = &PieceGeometry> {
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = &PieceGeometry> {
         self.pieces.iter().map(|piece| &**piece)
     }
 
@@ -166,7 +166,7 @@ impl ContactLine {
     ///
     /// # Errors
     /// [`DataError::NoContact`].
-    pub fn coercivity(&self, problem: &Problem) -> Result<Coercivity, DataError> {
+    pub(crate) fn coercivity(&self, problem: &Problem) -> Result<Coercivity, DataError> {
         let mesh = &problem.mesh;
         let constants = self.constants(problem);
         let mut sorted: Vec<f64> = constants.values().copied().collect();
@@ -220,7 +220,7 @@ impl ContactLine {
     }
 
     /// The pieces of method (8).
-    pub fn with_gamma(&self, problem: &Problem, space: &Space, gamma: Gamma) -> Vec<Piece> {
+    pub(crate) fn with_gamma(&self, problem: &Problem, space: &Space, gamma: Gamma) -> Vec<Piece> {
         let mesh = space.mesh();
         let gamma0: Box<dyn Fn(usize) -> f64> = match gamma {
             Gamma::Uniform(gamma0) => Box::new(move |_| gamma0),
@@ -259,7 +259,7 @@ pub(crate) struct Share<S> {
 
 impl<S> Share<S> {
     /// The share of side `i` of a piece.
-    pub fn new(piece: &PieceGeometry, i: usize, value: S) -> Self {
+    pub(crate) fn new(piece: &PieceGeometry, i: usize, value: S) -> Self {
         let Stretch { edge, positions, .. } = &piece.stretches[i];
         let other = piece.stretches.len() > 1;
         let partner = other.then(|| Arc::clone(&piece.stretches[1 - i].boundary));
@@ -300,7 +300,7 @@ pub(crate) fn by_triangle<S: Scalar>(
 /// All pieces of Gamma_C.
 ///
 /// # Errors
-/// As [`ContactLine::new`].
+/// As `ContactLine::new`.
 pub fn assemble(
     problem: &Problem,
     space: &Space,

@@ -40,7 +40,7 @@ pub struct Discretization<'a> {
     /// C_h of kappa = gamma0 C_h.
     pub coercivity: Coercivity,
     /// gamma along Gamma_C.
-    pub gamma: Gamma,
+    pub(crate) gamma: Gamma,
     /// gamma0 of (7), or the smallest where each triangle has its own.
     pub gamma0: f64,
     /// Gamma_C.
@@ -48,7 +48,7 @@ pub struct Discretization<'a> {
     /// The rule for the contact terms.
     pub rule: EdgeRule,
     /// The rigid motions that supports leave free, part by part.
-    pub motions: Vec<FreeMotion>,
+    pub(crate) motions: Vec<FreeMotion>,
     /// Where there are any and contact holds the body: those that it does not stop.
     pub slides: Option<Slides>,
 }
@@ -62,7 +62,7 @@ pub struct Functional {
     /// The sums of magnitudes.
     pub magnitudes: Vec<[f64; 2]>,
     /// a(u, u), from the strains: forces times displacements would cancel where a body moves far and bends little.
-    pub energy: f64,
+    pub(crate) energy: f64,
 }
 
 impl Functional {
@@ -146,7 +146,7 @@ impl<'a> Discretization<'a> {
 
     /// The discretization of a body whose motions `slides` are not stopped: one component for each is held where `u` has it.
     #[must_use]
-    pub fn sliding(&self, slides: Slides, u: &[[f64; 2]]) -> Self {
+    pub(crate) fn sliding(&self, slides: Slides, u: &[[f64; 2]]) -> Self {
         Discretization {
             constraints: self.constraints.clone().pinned(&slides.basis, u),
             slides: Some(slides),

@@ -71,17 +71,17 @@ impl Bound {
 }
 
 /// The integrals across the direction of contact.
-pub struct Across {
+pub(crate) struct Across {
     /// Energy, gradient and Hessian with respect to P_t.
-    pub itself: Integrals,
+    pub(crate) itself: Integrals,
     /// The derivative of the gradient with respect to P_n: not zero for Coulomb's law, which has no energy.
-    pub by_normal: DMatrix<f64>,
+    pub(crate) by_normal: DMatrix<f64>,
     /// The measures of where it sticks and of where it slides.
-    pub measures: [f64; 2],
+    pub(crate) measures: [f64; 2],
 }
 
 /// The integrals of friction over a piece where P_n and P_t have these values at its nodes.
-pub fn integrals<T: Copy + Into<DoubleDouble>>(
+pub(crate) fn integrals<T: Copy + Into<DoubleDouble>>(
     bound: Bound,
     rule: &EdgeRule,
     (degree, gamma): (Degree, f64),
@@ -143,7 +143,7 @@ fn rounded<const M: usize>(fine: &FrictionIntegrals<DoubleDouble, M>) -> Frictio
 
 /// The integral of the Bregman distance of the energy of friction from P to Q, given by the values of both components at the nodes;
 /// the bound is that of P.
-pub fn bregman<T: Copy + Into<DoubleDouble>>(
+pub(crate) fn bregman<T: Copy + Into<DoubleDouble>>(
     bound: Bound,
     rule: &EdgeRule,
     (degree, gamma): (Degree, f64),
@@ -179,7 +179,7 @@ fn bregman_of<E: Element<N, M>, const N: usize, const M: usize>(
 }
 
 /// int F N_a over a piece, enclosed.
-pub fn enclosed(
+pub(crate) fn enclosed(
     bound: Bound,
     rule: &EdgeRule,
     (degree, gamma): (Degree, PreciseBall),

@@ -128,15 +128,15 @@ fn bilateral<T: Copy + Into<DoubleDouble>>(
 #[derive(Clone, Debug, PartialEq)]
 pub struct Integrals {
     /// 1/2 int \[P\]+^2
-    pub energy: f64,
+    pub(crate) energy: f64,
     /// int \[P\]+ N_a
-    pub gradient: Vec<f64>,
+    pub(crate) gradient: Vec<f64>,
     /// int_{P > 0} N_a N_b
-    pub hessian: DMatrix<f64>,
+    pub(crate) hessian: DMatrix<f64>,
     /// the measure of {P > 0}
-    pub active: f64,
+    pub(crate) active: f64,
     /// The measures of where friction sticks and of where it slides.
-    pub friction: [f64; 2],
+    pub(crate) friction: [f64; 2],
 }
 
 impl Default for Integrals {
@@ -192,7 +192,7 @@ impl EdgeRule {
 
     /// The integrals of (8) and J_h over a piece, for P of this degree with the nodal values `p`. At the points of a Gauss rule P
     /// is evaluated in double-doubles: where gamma is small it is far smaller there than at the nodes.
-    pub fn integrals<T: Copy + Into<DoubleDouble>>(
+    pub(crate) fn integrals<T: Copy + Into<DoubleDouble>>(
         &self,
         degree: Degree,
         radii: Option<[f64; 2]>,

@@ -192,7 +192,7 @@ impl Pair {
 /// The pieces of contact of each pair of a problem.
 ///
 /// # Errors
-/// As [`pieces`]; a boundary of a pair that has a condition as well, and a pair that is given twice.
+/// As `pieces`; a boundary of a pair that has a condition as well, and a pair that is given twice.
 pub fn of_problem(
     problem: &Problem,
     smooth: &SmoothBoundary,
@@ -221,7 +221,7 @@ const MOST_TURN: f64 = 1.5;
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairPiece {
     /// The two sides, of boundary 1 and of boundary 2.
-    pub sides: [PairSide; 2],
+    pub(crate) sides: [PairSide; 2],
     /// d at the nodes: unit vectors from body 1 to body 2.
     pub directions: Vec<Vector2<f64>>,
     /// g at the nodes.
@@ -234,18 +234,18 @@ pub struct PairPiece {
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairSide {
     /// The edge that it is a part of.
-    pub edge: BoundaryEdge,
+    pub(crate) edge: BoundaryEdge,
     /// Where on the edge the nodes of the piece are: from 0 at the edge's start to 1 at its end.
-    pub places: Vec<f64>,
+    pub(crate) places: Vec<f64>,
     /// The length of its chord, divided by the length of the piece.
-    pub ratio: f64,
+    pub(crate) ratio: f64,
 }
 
 /// The pieces of contact of a pair, along boundary 1.
 ///
 /// # Errors
 /// Unknown boundaries, a clearance without a value, and what [`PairError`] says.
-pub fn pieces(
+pub(crate) fn pieces(
     mesh: &Mesh,
     smooth: &SmoothBoundary,
     pair: &Pair,
@@ -277,7 +277,7 @@ pub fn pieces(
 }
 
 /// The pairs of two bodies that face each other somewhere, no further apart than their edges are long.
-pub fn touching(mesh: &Mesh, pairs: &[Pair]) -> Vec<Pair> {
+pub(crate) fn touching(mesh: &Mesh, pairs: &[Pair]) -> Vec<Pair> {
     let (parts, smooth) = (Parts::new(mesh), SmoothBoundary::new(mesh));
     let bodies = |name: &String| -> BTreeSet<usize> {
         let edges = mesh.edges_of(name).unwrap_or_default();

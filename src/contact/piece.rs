@@ -27,13 +27,13 @@ use crate::model::space::Space;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PieceNode {
     /// The place on the smooth boundary of the first side, from which the gap is measured.
-    pub place: [f64; 2],
+    pub(crate) place: [f64; 2],
     /// n~, the direction of contact.
     pub direction: Vector2<f64>,
     /// g: on the piece the gap is the Lagrange interpolant of these.
     pub gap: f64,
     /// g_t: the jump across n~ at which friction begins, likewise; 0 but after another load step.
-    pub slip: f64,
+    pub(crate) slip: f64,
 }
 
 /// The part of an edge on which a side of a piece lies.
@@ -42,7 +42,7 @@ pub struct Stretch {
     /// The edge.
     pub edge: BoundaryEdge,
     /// The name of its boundary.
-    pub boundary: Arc<str>,
+    pub(crate) boundary: Arc<str>,
     /// Where the nodes of the piece lie on it, from 0 to 1.
     pub positions: Vec<f64>,
 }
@@ -61,7 +61,7 @@ pub struct PieceGeometry {
     /// n~ is the normal of the edge at all nodes.
     pub along_normal: bool,
     /// g in the middle less the mean of its values at the ends, where n~ does not turn; 0 where g is known to be affine.
-    pub bulge: f64,
+    pub(crate) bulge: f64,
 }
 
 impl Stretch {
@@ -79,7 +79,7 @@ impl PieceGeometry {
     }
 
     /// The part of an edge of the first side, by which results name the piece.
-    pub fn first(&self) -> &Stretch {
+    pub(crate) fn first(&self) -> &Stretch {
         &self.stretches[0]
     }
 
@@ -122,7 +122,7 @@ impl PieceGeometry {
     }
 
     /// g at the nodes.
-    pub fn gaps(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(crate) fn gaps(&self) -> impl Iterator<Item = f64> + '_ {
         self.nodes.iter().map(|node| node.gap)
     }
 
@@ -136,7 +136,7 @@ impl PieceGeometry {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Chords<S> {
     /// Their mean, the length of the piece.
-    pub length: S,
+    pub(crate) length: S,
     /// Each over their mean.
     pub ratios: [S; 2],
 }
@@ -145,11 +145,11 @@ pub(crate) struct Chords<S> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PieceRadii<S> {
     /// At the two ends of the piece, the means over its sides: the weight of its integrals.
-    pub of_piece: [S; 2],
+    pub(crate) of_piece: [S; 2],
     /// There on the side itself.
     pub of_side: [S; 2],
     /// At the start and the end of the side's edge, and at the corner opposite.
-    pub of_triangle: [S; 3],
+    pub(crate) of_triangle: [S; 3],
 }
 
 impl<S: Scalar> Chords<S> {
@@ -187,17 +187,17 @@ impl<S: Scalar> Chords<S> {
 #[derive(Clone, Copy, Debug)]
 pub struct SideData<S> {
     /// The triangle.
-    pub triangle: Triangle<S>,
+    pub(crate) triangle: Triangle<S>,
     /// Its material.
-    pub material: Material<S>,
+    pub(crate) material: Material<S>,
     /// The length of its whole edge.
-    pub length: S,
+    pub(crate) length: S,
     /// n, the unit outward normal there.
-    pub normal: Vector2<S>,
+    pub(crate) normal: Vector2<S>,
     /// gamma of the triangle: gamma0 h_T of (7).
-    pub gamma: S,
+    pub(crate) gamma: S,
     /// r at the corners of the triangle, in a body of revolution.
-    pub radii: Option<[S; 3]>,
+    pub(crate) radii: Option<[S; 3]>,
 }
 
 /// A side of a piece.
@@ -246,16 +246,16 @@ pub struct Piece<S = f64> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contribution {
     /// Its share of J_h.
-    pub energy: f64,
+    pub(crate) energy: f64,
     /// The derivatives of the energy with respect to the nodal values of P: the force of the piece is minus the sum of these, each
     /// times its functional P0.
     pub force: Vec<f64>,
     /// The second derivatives that Newton's method uses.
-    pub tangent: DMatrix<f64>,
+    pub(crate) tangent: DMatrix<f64>,
     /// int -lambda^h of the first component.
     pub resultant: f64,
     /// The measure of {P > 0}.
-    pub active: f64,
+    pub(crate) active: f64,
     /// The measures of where friction sticks and of where it slides.
     pub friction: [f64; 2],
 }

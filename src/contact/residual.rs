@@ -54,7 +54,7 @@ pub fn evaluate(d: &Discretization, u: &[[DoubleDouble; 2]]) -> (Vec<[f64; 2]>, 
 }
 
 /// The values of P(u) at the nodes of each piece, by double-doubles.
-pub fn p(d: &Discretization, u: &[[DoubleDouble; 2]]) -> impl Iterator<Item = DoubleDouble> {
+pub(crate) fn p(d: &Discretization, u: &[[DoubleDouble; 2]]) -> impl Iterator<Item = DoubleDouble> {
     d.contact.iter().flat_map(move |piece| exact_piece(d, piece).p(u))
 }
 

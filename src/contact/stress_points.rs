@@ -33,35 +33,35 @@ impl<S: Scalar> Nodal<S> for [[S; 2]] {
 /// A stress at a point of the rule on a triangle, and its ingredients.
 pub(super) struct StressPoint<'a, S> {
     /// The nodes of the triangle.
-    pub nodes: &'a [usize],
+    pub(crate) nodes: &'a [usize],
     /// The displacement at each node less that at the first: what moves the triangle as a whole would cancel.
-    pub nodal: &'a [Vector2<S>],
+    pub(crate) nodal: &'a [Vector2<S>],
     /// The gradients of the shape functions.
-    pub slopes: &'a [Vector2<S>],
+    pub(crate) slopes: &'a [Vector2<S>],
     /// The material, in doubles.
-    pub material: &'a Material<f64>,
+    pub(crate) material: &'a Material<f64>,
     /// du_i/dx_j
-    pub gradient: Matrix2<S>,
+    pub(crate) gradient: Matrix2<S>,
     /// sigma(u); in a body of revolution what stands for r sigma(u) at the point: [`axial::weighted`].
-    pub stress: Stress<S>,
+    pub(crate) stress: Stress<S>,
     /// The weight of the point, an area.
-    pub weight: S,
+    pub(crate) weight: S,
     /// The hoop stress of a body of revolution.
-    pub hoop: Option<Hoop<'a, S>>,
+    pub(crate) hoop: Option<Hoop<'a, S>>,
 }
 
 /// A hoop stress at a point.
 pub(super) struct Hoop<'a, S> {
     /// sigma_hh(u)
-    pub stress: S,
+    pub(crate) stress: S,
     /// The integral of v_r that it is tested with, as the share of each node in thirtieths of the area.
-    pub shares: &'a [i32],
+    pub(crate) shares: &'a [i32],
     /// A thirtieth of the area.
     pub thirtieth: S,
     /// u_r at each node.
-    pub radial: &'a [S],
+    pub(crate) radial: &'a [S],
     /// The largest r of the triangle.
-    pub most: f64,
+    pub(crate) most: f64,
 }
 
 impl<S: Scalar> Hoop<'_, S> {

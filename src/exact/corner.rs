@@ -44,11 +44,6 @@ impl Corner {
     pub fn alpha(&self) -> f64 {
         self.alpha
     }
-
-    /// The angle at the origin.
-    pub fn omega(&self) -> f64 {
-        self.omega
-    }
 }
 
 /// The zero of sin(2 alpha omega) + alpha sin(2 omega) in (1/2, 1), by bisection to the last bit: the function is positive

@@ -6,22 +6,17 @@
 //! | [`Singular`] | unit square | the r^(3/2) singularity where contact ends | s < 5/2 |
 //! | [`Corner`] | trapezoid | contact everywhere, pressure r^(alpha - 1) at one end | s < 1 + alpha |
 //! | [`Patch`] | any | d1 to d5: u affine, so it lies in V^h | |
-//! | [`StickSlip`] | unit square | contact, friction: sticks for x < c and slides for x > c | s < min(k - 1/2, m + 1/2) |
-//! | [`SlipTip`] | unit square | the r^(3/2) singularity where sliding ends | s < 5/2 |
 //!
-//! Gamma_C lies on y = 0 in all of them: n = (0, -1), u_n = -u_y, sigma_n = sigma_yy. sigma_t = 0 means sigma_xy = 0; with
-//! friction t = (1, 0), so that u_t = u_x and sigma_t = -sigma_xy.
+//! Gamma_C lies on y = 0 in all of them: n = (0, -1), u_n = -u_y, sigma_n = sigma_yy. sigma_t = 0 means sigma_xy = 0. Those with
+//! friction, which no case file asks for, are in the crate `study`.
 //! lambda is the coefficient that acts in the plane, so plane stress needs no second set of formulas.
 
 mod corner;
 pub mod errors;
 mod patch;
 mod singular;
-mod slip_tip;
 mod smooth;
-mod stick_slip;
 
-use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -29,18 +24,13 @@ pub use corner::Corner;
 pub use errors::Errors;
 pub use patch::Patch;
 pub use singular::{Place, Singular};
-pub use slip_tip::SlipTip;
 pub use smooth::Smooth;
-pub use stick_slip::StickSlip;
 
 use nalgebra::Matrix2;
 
-use crate::contact::Friction;
 use crate::kernel::{Material, Scalar, Stress};
 use crate::model::graded_quadrature::Features;
-use crate::model::mesh::Mesh;
-use crate::model::problem::{Condition, Problem};
-use crate::model::{Function, SharedFunction};
+use crate::model::{Condition, Function, SharedFunction};
 
 /// A displacement field that solves (1)-(2), with its data.
 pub trait ExactSolution: Debug + Send + Sync {
@@ -118,19 +108,6 @@ pub fn body_force(solution: &Exact) -> [SharedFunction; 2] {
     [0, 1].map(|c| field(solution, Datum::BodyForce(c)))
 }
 
-/// The problem that `solution` solves on a mesh of its body.
-pub fn problem(solution: &Exact, mesh: Mesh, kinds: &BTreeMap<String, Kind>) -> Problem {
-    let conditions = kinds.iter().map(|(name, kind)| (name.clone(), kind.condition(solution)));
-    let body_force = body_force(solution);
-    let mut problem = Problem::new(mesh, *solution.material(), body_force, conditions.collect());
-    if let Some(bound) = solution.slip_bound() {
-        for (name, _) in kinds.iter().filter(|(_, kind)| **kind == Kind::Contact) {
-            problem = problem.with_friction(name, Friction::tresca(move |_| bound));
-        }
-    }
-    problem
-}
-
 /// One number of an exact solution as a function of the place.
 struct Component {
     solution: Exact,
@@ -180,13 +157,16 @@ impl Function for Component {
 }
 
 /// Kolosov's constant (lambda + 3 mu) / (lambda + mu).
-fn kolosov<S: Scalar>(material: &Material<S>) -> S {
+pub fn kolosov<S: Scalar>(material: &Material<S>) -> S {
     let (lambda, mu) = (material.lambda(), material.mu());
     (lambda + S::from(3) * mu) / (lambda + mu)
 }
 
 /// f = -(lambda + mu) grad div u - mu Laplace u, or -div (A eps(u)), from \[u_xx, u_xy, u_yy\] of each component.
-fn force_of(material: &Material<f64>, [[xx, xy, yy], [vxx, vxy, vyy]]: [[f64; 3]; 2]) -> [f64; 2] {
+pub fn force_of(
+    material: &Material<f64>,
+    [[xx, xy, yy], [vxx, vxy, vyy]]: [[f64; 3]; 2],
+) -> [f64; 2] {
     if !material.is_isotropic() {
         let along_x = material.stress(Matrix2::new(xx, xy, vxx, vxy));
         let along_y = material.stress(Matrix2::new(xy, yy, vxy, vyy));
@@ -199,7 +179,7 @@ fn force_of(material: &Material<f64>, [[xx, xy, yy], [vxx, vxy, vyy]]: [[f64; 3]
 }
 
 /// amplitude \[t\]+^exponent and its first derivatives with respect to t.
-fn truncated_power<const K: usize>(amplitude: f64, exponent: f64, t: f64) -> [f64; K] {
+pub fn truncated_power<const K: usize>(amplitude: f64, exponent: f64, t: f64) -> [f64; K] {
     let mut factor = amplitude;
     let mut exponent = exponent;
     [(); K].map(|()| {

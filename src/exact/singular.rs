@@ -63,7 +63,7 @@ impl<S: Enclosing> Place<S> {
 
 impl<S: Enclosing> Singular<S> {
     /// u
-    pub fn displacement_at(&self, place: &Place<S>) -> [S; 2] {
+    pub(crate) fn displacement_at(&self, place: &Place<S>) -> [S; 2] {
         let &Place { x, y, cos, sin, .. } = place;
         // z^(3/2) = z z^(1/2)
         let [cos3, sin3] = [x * cos - y * sin, x * sin + y * cos];
@@ -77,7 +77,7 @@ impl<S: Enclosing> Singular<S> {
     }
 
     /// du_i/dx_j. Without a value at the singular point itself when y > 0 is lost: there y r^(-1/2) counts as 0.
-    pub(crate) fn gradient_at(&self, place: &Place<S>) -> Matrix2<S> {
+    fn gradient_at(&self, place: &Place<S>) -> Matrix2<S> {
         let &Place { over_r, cos, sin, .. } = place;
         let (one, two) = (S::from(1), S::from(2));
         let am = self.amplitude;

@@ -17,7 +17,7 @@ impl Slides {
     /// All motions that nothing stops where `u` solves (8), within the clearance of the edges that do not press. `None` where
     /// supports hold the body. P is `known` where it belongs to a displacement that is known to more than doubles: P of that in
     /// doubles may have no digit.
-    pub fn around(
+    pub(crate) fn around(
         d: &Discretization,
         u: &[[f64; 2]],
         known: Option<&[DoubleDouble]>,

@@ -26,7 +26,7 @@ pub(super) struct Grip {
     /// The rows int_e s r_t.
     bounded: Vec<Vec<f64>>,
     /// The rows of the edges of the Friction cones, in place of the c_i of their nodes.
-    pub(super) cones: Vec<Vec<f64>>,
+    cones: Vec<Vec<f64>>,
     /// The pieces that have these.
     pub(super) with_cones: Vec<usize>,
 }

@@ -1,4 +1,5 @@
-//! What holds the body: rigid motions, whether supports and contact stop them, what is left free, and corners held where they cannot be.
+//! Supports and contact that hold the body: rigid motions, whether these are stopped, which of them are left free, and corners held where they
+//! cannot be.
 
 pub(crate) mod clearance;
 pub(crate) mod corners;

@@ -44,19 +44,19 @@ struct PartFrame {
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreeMotion {
     /// The number of the part.
-    pub part: usize,
+    pub(crate) part: usize,
     /// c, the middle of the part's box.
-    pub centre: [f64; 2],
+    pub(crate) centre: [f64; 2],
     /// The displacement at c.
-    pub shift: [f64; 2],
+    pub(crate) shift: [f64; 2],
     /// The angle, in 1 / length for a displacement without unit.
-    pub turn: f64,
+    pub(crate) turn: f64,
     /// Half the longer side of the part's box.
     half: f64,
     /// Where the part is, if the body has several.
     place: Option<[f64; 2]>,
     /// The motions of other parts at the same time.
-    pub others: Vec<FreeMotion>,
+    pub(crate) others: Vec<FreeMotion>,
 }
 
 /// The share of the largest singular value below which a singular value stops no motion. The same share decides that a
@@ -85,7 +85,7 @@ impl FreeMotion {
     }
 
     /// The motion as a field: its nodal values.
-    pub fn field(&self, parts: &Parts, space: &Space) -> Vec<[f64; 2]> {
+    pub(crate) fn field(&self, parts: &Parts, space: &Space) -> Vec<[f64; 2]> {
         let mut field = vec![[0.0; 2]; space.nodes().len()];
         for (nodes, &part) in space.elements().zip(&parts.of_triangle) {
             if self.all().any(|motion| motion.part == part) {
@@ -109,13 +109,13 @@ impl FreeMotion {
     }
 
     /// The centre of the rotation; `None` for a translation.
-    pub fn about(&self) -> Option<[f64; 2]> {
+    pub(crate) fn about(&self) -> Option<[f64; 2]> {
         let ([sx, sy], turn) = (self.shift, self.turn);
         (turn != 0.0).then(|| [self.centre[0] - sy / turn, self.centre[1] + sx / turn])
     }
 
     /// The distance of a translation, or the angle of a rotation, counter-clockwise.
-    pub fn size(&self) -> f64 {
+    pub(crate) fn size(&self) -> f64 {
         if self.turn == 0.0 { self.shift[0].hypot(self.shift[1]) } else { self.turn }
     }
 
@@ -174,7 +174,7 @@ impl fmt::Display for FreeMotion {
 
 impl Parts {
     /// The parts of the body that `mesh` covers.
-    pub fn new(mesh: &Mesh) -> Self {
+    pub(crate) fn new(mesh: &Mesh) -> Self {
         let of_triangle = mesh.parts().to_vec();
         let count = of_triangle.iter().max().map_or(0, |last| last + 1);
         let mut boxes = vec![[[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]]; count];
@@ -199,7 +199,7 @@ impl Parts {
     }
 
     /// The number of them.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.frames.len()
     }
 
@@ -255,7 +255,7 @@ impl Parts {
 
 /// A basis, part by part, of the rigid motions that are free when each node is held in its directions `held`, which may be off
 /// by `rounding`; empty if the body is held. With `of_revolution` the hoop strain holds the body, too.
-pub fn free_motions<I>(
+pub(crate) fn free_motions<I>(
     parts: &Parts,
     space: &Space,
     held: impl Fn(usize) -> I,

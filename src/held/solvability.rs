@@ -6,7 +6,7 @@
 //! mu_i c_i(r) with all mu_i > 0 (docs/theory.md, Proposition 5.5). That is decided by non-negative least squares (Lawson &
 //! Hanson), whose residual is the motion that the loads drive. Motions with c = 0 on all of Gamma_C slide.
 //!
-//! Of a solution u, u + r with r of R is one, too, if and only if r_n = 0 where u presses and r_n <= -P(u) where it does not:
+//! If u is a solution, u + r with r of R is a solution, too, if and only if r_n = 0 where u presses and r_n <= -P(u) where it does not:
 //! the solutions are u and a polyhedron, of which the displacement of least norm is taken.
 
 use nalgebra::Vector2;
@@ -28,11 +28,11 @@ pub(super) const MARGIN: f64 = 1e-6;
 
 /// The motions that contact and loads do not hold.
 #[derive(Clone, Debug, PartialEq)]
-pub struct NotHeld {
+pub(crate) struct NotHeld {
     /// A basis of them, or the one that the loads drive.
-    pub motions: Vec<FreeMotion>,
+    pub(crate) motions: Vec<FreeMotion>,
     /// The force of the loads along that one, or their moment about its centre.
-    pub drive: Option<f64>,
+    pub(crate) drive: Option<f64>,
 }
 
 /// The solutions of a body that contact holds: with u those u + sum_j x_j b_j with row . (x + b . u) <= bound.
@@ -58,7 +58,7 @@ pub struct Slides {
 pub struct Play {
     /// The centre of a rotation; left out for a translation.
     #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
-    pub about: Option<[f64; 2]>,
+    pub(crate) about: Option<[f64; 2]>,
     /// The direction of a translation, a unit vector; left out for a rotation.
     #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
     pub along: Option<[f64; 2]>,
@@ -165,7 +165,7 @@ pub(super) fn negligible(rows: &[Vec<f64>], count: usize, rounding: f64) -> f64 
 ///
 /// # Errors
 /// The motions that contact and `load` leave free.
-pub fn slides(
+pub(crate) fn slides(
     motions: &[FreeMotion],
     parts: &Parts,
     space: &Space,
@@ -340,7 +340,7 @@ impl Slides {
     }
 
     /// How far each motion may go from u.
-    pub fn plays(&self, u: &[[f64; 2]]) -> Vec<Play> {
+    pub(crate) fn plays(&self, u: &[[f64; 2]]) -> Vec<Play> {
         let at = self.at(u);
         let play = |(motion, along): &(FreeMotion, Vec<f64>)| {
             let mut range = [None::<f64>; 2];
@@ -400,8 +400,8 @@ pub(super) fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -
                 used.remove(0);
                 continue;
             }
-            let columns = used.iter().map(|(i, _)| rows[*i].clone()).collect();
-            let weights = least_squares(columns, target);
+            let columns: Vec<Vec<f64>> = used.iter().map(|(i, _)| rows[*i].clone()).collect();
+            let weights = least_squares(&columns, target);
             // The weights go towards the new ones until one of them is 0; this weight is set to 0, whatever its rounding.
             let until = |j: usize| {
                 let old = used[j].1;

@@ -60,13 +60,14 @@ fn held(outline: &Outline) -> String {
 fn boundaries(case: &Case, lines: &mut Lines) {
     let (problem, mesh) = (&case.problem, &case.problem.mesh);
     let space = Space::new(mesh, Degree::One);
-    // A failure of these sums is an error of the case, which is reported as such.
-    let loads = loads::resultants(problem, &space).unwrap_or_default();
+    let [mut no_load, mut no_gap] = [None, None];
+    let loads = loads::resultants(problem, &space).map_err(|error| no_load = Some(error));
+    let loads = loads.unwrap_or_default();
     let loads = match problem.material.are_of_revolution() {
         true => loads.of_the_revolution(),
         false => loads.times(case.thickness.unwrap_or(1.0)),
     };
-    let contact = ContactLine::new(problem, &space).ok();
+    let contact = ContactLine::new(problem, &space).map_err(|error| no_gap = Some(error)).ok();
     let largest = loads.boundaries.values().chain([&loads.body]).flatten();
     let no_force = 1e-10 * largest.fold(0.0, |most: f64, f| most.max(f.abs()));
     let shown = QuantityFormat { units: case.units.clone(), thickness: case.thickness, no_force };
@@ -101,6 +102,9 @@ fn boundaries(case: &Case, lines: &mut Lines) {
     }
     for (i, line) in text.into_iter().enumerate() {
         lines.line(if i == 0 { "boundaries" } else { "" }, line);
+    }
+    for (what, error) in [("loads", no_load), ("gaps", no_gap)] {
+        error.into_iter().for_each(|error| lines.line(what, format!("not known: {error}")));
     }
     if loads.body != [0.0; 2] {
         lines.line("body", format!("total load {}", force(loads.body, &shown)));
@@ -202,4 +206,27 @@ fn gap(name: &str, contact: Option<&ContactLine>, shown: &QuantityFormat) -> Str
         summary::vector(at),
         number(largest)
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    #[test]
+    fn a_gap_that_has_no_value_is_named_and_control_one_that_has_is_not() {
+        let said = |gap: &str| {
+            let text = format!(
+                "mesh.rectangle = {{ width = 1, height = 1, nx = 2, ny = 2 }}\nmaterial = {{ lambda = 1, mu = 1 }}\nboundary.bottom.contact = {{ gap = \"{gap}\" }}"
+            );
+            listed(&Case::parse(Path::new("in_a_test.toml"), &text, &[]).unwrap())
+        };
+        assert!(
+            said("sqrt(-1 - x)").contains("gaps         not known: "),
+            "{}",
+            said("sqrt(-1 - x)")
+        );
+        assert!(!said("x").contains("not known"));
+    }
 }

@@ -32,10 +32,10 @@ use crate::kernel::{Ball, Enclosing};
 use crate::model::Function;
 
 /// The greatest depth to which parentheses, functions, signs and powers may nest.
-pub(crate) const MOST_LEVELS: usize = 200;
+const MOST_LEVELS: usize = 200;
 
 /// The most operators, signs and functions of an expression.
-pub(crate) const MOST_OPERATIONS: usize = 10_000;
+const MOST_OPERATIONS: usize = 10_000;
 
 /// A function of x and y; made by [`str::parse`].
 #[derive(Clone, Debug, PartialEq)]

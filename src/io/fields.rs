@@ -20,7 +20,7 @@ impl Solution {
     pub fn write(&self, problem: &Problem, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
         let mut output = Output::new(folder)?;
         stage_fields(&mut output, self, problem, None)?;
-        output.publish()
+        output.publish(&[])
     }
 }
 

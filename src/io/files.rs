@@ -26,8 +26,6 @@ pub struct Output {
     /// The folders that did not exist before, innermost first.
     made: Vec<PathBuf>,
     names: Vec<String>,
-    /// Files of earlier runs, which a reader could take for files of this one where it does not write them itself.
-    replaced: &'static [&'static str],
 }
 
 /// A number that cannot be written.
@@ -35,7 +33,7 @@ pub struct Output {
 #[error("{place} is NaN or infinite; expected a finite number")]
 pub struct NotFinite {
     /// The name of the number, or of the list and the entry that it stands in.
-    pub place: String,
+    pub(crate) place: String,
 }
 
 /// Refuses `values` with a number that is not finite; each entry may hold several numbers.
@@ -75,7 +73,7 @@ impl Output {
         let made = folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
         let number = RandomState::new().build_hasher().finish();
         let room = folder.join(format!(".signorini-{number:016x}.tmp"));
-        let output = Output { folder, room, made, names: Vec::new(), replaced: &[] };
+        let output = Output { folder, room, made, names: Vec::new() };
         match fs::create_dir_all(&output.folder).and_then(|()| fs::create_dir(&output.room)) {
             Ok(()) => Ok(output),
             Err(error) => {
@@ -138,34 +136,27 @@ impl Output {
         Ok(())
     }
 
-    /// Removes those of the files of these names that this run does not write when its own come.
-    #[must_use]
-    pub fn replacing(mut self, names: &'static [&'static str]) -> Output {
-        self.replaced = names;
-        self
-    }
-
     fn wrong(&self, name: &str, error: io::Error) -> Failure {
         let (path, why) = (quote::path(&self.folder.join(name)), reason(&error));
         Failure::failed(format!("cannot write {path}: {why}"))
     }
 
-    /// Gives all staged files their places, replacing the files of an earlier run, and returns the paths in the order of
-    /// staging.
+    /// Gives all staged files their places, and returns the paths in the order of staging. The files of an earlier run that have
+    /// these names go, and those called `stale`, which a reader could take for files of this one.
     ///
     /// # Errors
     /// A failure, should the system refuse to rename; then the last file of the set is not there.
-    pub fn publish(mut self) -> Result<Vec<PathBuf>, Failure> {
+    pub fn publish(mut self, stale: &[&str]) -> Result<Vec<PathBuf>, Failure> {
         // A system without locks takes its chance.
         let lock = File::open(&self.folder).and_then(|folder| folder.lock().map(|()| folder));
-        let renamed = self.rename_all();
+        let renamed = self.rename_all(stale);
         drop(lock);
         renamed?;
         self.made.clear();
         Ok(self.names.iter().map(|name| self.folder.join(name)).collect())
     }
 
-    fn rename_all(&self) -> Result<(), Failure> {
+    fn rename_all(&self, stale: &[&str]) -> Result<(), Failure> {
         let Some((last, others)) = self.names.split_last() else { return Ok(()) };
         let place = |name: &str| self.folder.join(name);
         let remove = |name: &str| match fs::symlink_metadata(place(name)) {
@@ -179,7 +170,7 @@ impl Output {
         };
         remove(last)?;
         let is_stale = |name: &&&str| !self.names.iter().any(|staged| staged == **name);
-        self.replaced.iter().filter(is_stale).try_for_each(|name| remove(name))?;
+        stale.iter().filter(is_stale).try_for_each(|name| remove(name))?;
         others.iter().try_for_each(rename)?;
         rename(last)
     }
@@ -231,7 +222,7 @@ mod tests {
         for name in SET {
             output.stage(name, stamp.as_bytes())?;
         }
-        output.publish()
+        output.publish(&[])
     }
 
     const SET: [&str; 3] = ["a.txt", "b.txt", "result.json"];
@@ -243,7 +234,7 @@ mod tests {
         let mut output = Output::new(&folder).unwrap();
         output.stage("a.txt", b"first").unwrap();
         assert!(!folder.join("a.txt").exists());
-        assert_eq!(output.publish().unwrap(), [folder.join("a.txt")]);
+        assert_eq!(output.publish(&[]).unwrap(), [folder.join("a.txt")]);
         assert_eq!(fs::read(folder.join("a.txt")).unwrap(), b"first");
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
     }
@@ -291,7 +282,7 @@ mod tests {
         }
         // Since it was staged, somebody has put a folder in its place.
         fs::create_dir_all(scratch.0.join("c.txt/full")).unwrap();
-        let error = output.publish().unwrap_err().to_string();
+        let error = output.publish(&[]).unwrap_err().to_string();
         assert!(error.ends_with("c.txt: Is a directory"), "{error}");
         assert_eq!(names(&scratch.0), ["a.txt", "b.txt", "c.txt"]);
     }
@@ -325,19 +316,5 @@ mod tests {
             (names(&scratch.0), names(&folder)),
             (vec!["case".to_owned()], SET.map(str::to_owned).to_vec())
         );
-    }
-
-    #[test]
-    fn control_an_adopted_file_must_be_there() {
-        let scratch = Scratch::new("adopt");
-        let mut output = Output::new(scratch.0.join("case")).unwrap();
-        fs::write(output.room().join("a.txt"), b"of the engine").unwrap();
-        fs::write(output.room().join("droppings"), b"").unwrap();
-        output.adopt("a.txt").unwrap();
-        let error = output.adopt("result.json").unwrap_err().to_string();
-        assert!(error.ends_with("result.json: No such file or directory"), "{error}");
-        output.stage("result.json", b"{}").unwrap();
-        output.publish().unwrap();
-        assert_eq!(names(&scratch.0.join("case")), ["a.txt", "result.json"]);
     }
 }

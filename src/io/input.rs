@@ -148,14 +148,13 @@ fn bytes_of(path: &Path, most: u64) -> Result<Vec<u8>, Failure> {
     // Before it is opened, for to open a pipe is to wait for its other end.
     regular(&fs::metadata(path).map_err(unreadable)?)?;
     let file = File::open(path).map_err(unreadable)?;
-    let metadata = file.metadata().map_err(unreadable)?;
-    regular(&metadata)?;
-    if metadata.len() > most {
+    let length = file.metadata().map_err(unreadable)?.len();
+    if length > most {
         return Err(too_long(most));
     }
     // At once, where growing would take up to twice as much.
     let mut bytes = Vec::new();
-    memory::reserve(&mut bytes, usize::try_from(metadata.len()).unwrap_or(usize::MAX))?;
+    memory::reserve(&mut bytes, usize::try_from(length).unwrap_or(usize::MAX))?;
     read_into(bytes, file, most)
 }
 
@@ -174,32 +173,16 @@ fn too_long(most: u64) -> Failure {
     format!("this has more than {most} bytes; expected at most that many").into()
 }
 
-fn no_file(kind: &str) -> Failure {
-    format!("this is {kind}; expected a file").into()
-}
-
 /// Refuses a file that is not regular.
 fn regular(metadata: &Metadata) -> Result<(), Failure> {
-    if metadata.is_file() { Ok(()) } else { Err(no_file(kind(metadata))) }
+    match (metadata.is_file(), metadata.is_dir()) {
+        (true, _) => Ok(()),
+        (_, true) => Err(DIRECTORY.into()),
+        _ => Err("this is a pipe, a socket or a device; expected a file".into()),
+    }
 }
 
-fn kind(metadata: &Metadata) -> &'static str {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::FileTypeExt;
-        let kind = metadata.file_type();
-        if kind.is_fifo() {
-            return "a pipe";
-        }
-        if kind.is_socket() {
-            return "a socket";
-        }
-        if kind.is_char_device() || kind.is_block_device() {
-            return "a device";
-        }
-    }
-    if metadata.is_dir() { "a directory" } else { "no regular file" }
-}
+const DIRECTORY: &str = "this is a directory; expected a file";
 
 /// The reason in words, without the system's number.
 pub fn reason(error: &io::Error) -> String {
@@ -218,7 +201,7 @@ fn unreadable(error: io::Error) -> Failure {
     }
     match error.kind() {
         io::ErrorKind::NotFound => "there is no such file".into(),
-        io::ErrorKind::IsADirectory => no_file("a directory"),
+        io::ErrorKind::IsADirectory => DIRECTORY.into(),
         io::ErrorKind::PermissionDenied => "there is no permission to read this file".into(),
         io::ErrorKind::OutOfMemory => {
             Failure::failed("there is not enough memory to read this file".to_owned())

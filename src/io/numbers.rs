@@ -1,7 +1,7 @@
 //! Numbers for people: round ones for scales and ticks, a few digits for labels and summaries.
 
 /// The largest of the numbers 1, 2, 5 times powers of ten that is not above `x`, for finite `x > 0`.
-pub fn round_below(x: f64) -> f64 {
+pub(crate) fn round_below(x: f64) -> f64 {
     // The decimal exponent as the formatter sees it: exact, where log10 may be off by one.
     let text = format!("{x:e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
@@ -21,7 +21,7 @@ fn round_above(x: f64) -> f64 {
 }
 
 /// Round numbers in \[min, max\], evenly spaced, some three to six of them, with their text. For `min < max`.
-pub fn ticks(min: f64, max: f64) -> Vec<(f64, String)> {
+pub(crate) fn ticks(min: f64, max: f64) -> Vec<(f64, String)> {
     let step = round_above((max - min) / 5.0);
     let (first, last) = ((min / step).ceil(), (max / step).floor());
     // Where the interval is narrow beside its distance from 0, doubles have no room for ticks.
@@ -33,12 +33,12 @@ pub fn ticks(min: f64, max: f64) -> Vec<(f64, String)> {
 }
 
 /// A number of this many significant digits that is not below `x`, for `x >= 0`.
-pub fn above(x: f64, digits: usize) -> String {
+pub(crate) fn above(x: f64, digits: usize) -> String {
     short(x + 0.5 * 10_f64.powi(1 - digits as i32) * x, digits)
 }
 
 /// `x` with this many significant digits, without the zeros at their end; with an exponent where the size asks for it.
-pub fn short(x: f64, digits: usize) -> String {
+pub(crate) fn short(x: f64, digits: usize) -> String {
     let after_the_first = digits.saturating_sub(1);
     let text = format!("{x:.after_the_first$e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));

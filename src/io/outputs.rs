@@ -65,7 +65,7 @@ pub struct Written {
     /// The content of result.json.
     pub results: Results,
     /// The content of the picture.
-    pub scene: Scene,
+    pub(crate) scene: Scene,
 }
 
 /// Writes the files of a case into `folder`. Where there is no
@@ -81,7 +81,7 @@ pub fn write(
     let solution = &solved.solution;
     memory::check(bytes_to_write(solution))
         .map_err(|lack| Failure::failed(format!("the files cannot be made: {lack}")))?;
-    let mut output = Output::new(folder)?.replacing(&FILES);
+    let mut output = Output::new(folder)?;
     let continuous = solved.certified.as_ref().and_then(|c| c.as_ref().ok());
     let mut results = results(case, solved, read, extra)?;
     let scene = Scene::of(case, solution, &results);
@@ -104,12 +104,12 @@ pub fn write(
     }
     results.seconds.write = start.elapsed().as_secs_f64();
     output.stage_made("result.json", result_json(&results))?;
-    Ok(Written { files: output.publish()?, results, scene })
+    Ok(Written { files: output.publish(&FILES)?, results, scene })
 }
 
 /// The pictures of the runs of a series, which are drawn again on one scale when all are solved.
 #[derive(Debug, Default)]
-pub struct Series {
+pub(crate) struct Series {
     scenes: Vec<(PathBuf, Scene)>,
     triangles: usize,
 }
@@ -120,7 +120,7 @@ const MOST_KEPT: usize = 5_000_000;
 
 impl Series {
     /// Keeps the scene of the picture in `folder`.
-    pub fn add(&mut self, folder: PathBuf, scene: Scene) {
+    pub(crate) fn add(&mut self, folder: PathBuf, scene: Scene) {
         self.triangles += scene.triangles();
         if self.triangles <= MOST_KEPT {
             self.scenes.push((folder, scene));
@@ -143,7 +143,7 @@ impl Series {
         for (folder, picture) in folders.iter().zip(draw(&scenes).unwrap_or_default()) {
             let mut output = Output::new(folder)?;
             output.stage(PICTURE, picture.as_bytes())?;
-            output.publish()?;
+            output.publish(&[])?;
         }
         Ok(())
     }
@@ -180,7 +180,7 @@ pub fn write_certified(
     });
     output.stage_made(CERTIFIED, grid)?;
     stage_certificate(&mut output, case, certified)?;
-    output.publish()
+    output.publish(&[])
 }
 
 /// The values at `nodes` nodes: those of degree 1 take the means of the ends at the middles of edges, where there are some.

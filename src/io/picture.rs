@@ -55,70 +55,31 @@ fn picture(scene: &Scene, scale: &Scale) -> Result<String, NotFinite> {
     check_finite("page", [frame.page([0.0; 2]).as_slice(), &[frame.width, frame.height]])?;
     let deformed: Vec<Point> = deformed.into_iter().map(|p| frame.page(p)).collect();
     let lines: Vec<ContactLine> = lines.into_iter().map(|line| line.on(&frame)).collect();
-    let colours = &scale.colours;
-    let (pressure, obstacle) = (pressure(&lines), obstacle(&lines));
-
+    let drawn = Drawn::of(scene, &deformed, &lines);
     let magnified = match scale.factor {
         1.0 => "deformation at true scale".to_owned(),
         factor => format!("deformation and gap × {}", short(factor)),
     };
     let width = frame.width + GAP + BAR;
-    let mut entries: Vec<(Option<Group>, &str)> =
-        vec![(Some(sample(GREY, 1.2).set("stroke-dasharray", "6 4")), "undeformed")];
-    if scene.of_revolution {
-        entries.push((Some(sample(DARK, 1.0).set("stroke-dasharray", "14 4 3 4")), "axis"));
-    }
-    if !scene.interfaces.is_empty() {
-        entries.push((Some(sample(DARK, 1.0)), "border of two materials"));
-    }
-    if obstacle.is_some() {
-        entries.push((hatched([SAMPLE.map(|[x, y]| [x, y - 3.0]).to_vec()]), "rigid obstacle"));
-    }
-    let on_page = |v: usize| deformed.get(v).copied();
-    let supports = loads::drawn_supports(scene, &deformed);
-    entries.extend(loads::support_entries(scene));
-    let forces = loads::arrows(scene, &deformed, false);
-    if forces.is_some() {
-        entries.push((Some(pointed(FORCE)), "load"));
-    }
-    let motions = loads::arrows(scene, &deformed, true);
-    if motions.is_some() {
-        entries.push((Some(pointed(MOTION)), "prescribed displacement"));
-    }
-    let cross = scene.most_stressed.and_then(on_page).map(loads::cross);
-    if cross.is_some() {
-        entries.push((Some(loads::cross([15.0, -4.5])), "largest von Mises stress"));
-    }
-    entries.push(match pressure {
-        Some(_) => (Some(pressed()), "contact pressure"),
-        None => (None, "no contact pressure"),
-    });
-    if panel::has_shear(scene) {
-        entries.push((Some(sample(panel::OPEN, 1.6)), "size of the friction"));
-    }
-    entries.push((None, &magnified));
     let legend_at = [MARGIN, HEADER + frame.height + 30.0];
-    let (legend, bottom) = legend(entries, legend_at, MARGIN + width);
+    let (legend, bottom) = legend(drawn.entries(scene, &magnified), legend_at, MARGIN + width);
     let panels_at = bottom + LEGEND_LINE;
     let size = [width + 2.0 * MARGIN, panels_at + panel::height(scene)];
 
-    let unit = scene.units.as_ref().map(|[stress, _]| &**stress);
+    let [unit, length] = [0, 1].map(|i| scene.units.as_ref().map(|units| &*units[i]));
     let mut document = page(size.map(f64::round), &scene.title)
         .add(definitions(scene, &deformed))
         .add(headline(scene, width));
     if scene.of_revolution {
         document.append(other_half(&frame));
     }
-    let half = Group::new().set("id", "half").add(body(scene, &deformed, colours));
-    let mut document = document.add(half.add(outlines(scene, &deformed, &frame))).add(colour_bar(
-        colours,
-        unit,
-        [MARGIN + frame.width + GAP, HEADER],
-        frame.height,
-    ));
+    let half = Group::new().set("id", "half").add(body(scene, &deformed, &scale.colours));
+    document.append(half.add(outlines(scene, &deformed, &frame)));
+    let bar_at = [MARGIN + frame.width + GAP, HEADER];
+    document.append(colour_bar(&scale.colours, unit, bar_at, frame.height));
+    let Drawn { obstacle, supports, pressure, motions, forces, cross } = drawn;
     let drawn = [obstacle, supports, pressure, motions, forces, cross];
     drawn.into_iter().flatten().for_each(|group| document.append(group));
-    let length = scene.units.as_ref().map(|[_, length]| &**length);
     let scale_at = [MARGIN + frame.width, HEADER + frame.height + 10.0];
     document.append(loads::scale_bar(&frame, length, scale_at));
     if scene.contact.len() > 1 {
@@ -128,6 +89,70 @@ fn picture(scene: &Scene, scale: &Scale) -> Result<String, NotFinite> {
     document.append(panel::panels(scene, scale, [MARGIN, panels_at], width));
     check_numbers(&document)?;
     Ok(format!("{document}\n"))
+}
+
+/// The drawings over the body, as far as there is something to draw.
+struct Drawn {
+    obstacle: Option<Group>,
+    supports: Option<Group>,
+    pressure: Option<Group>,
+    motions: Option<Group>,
+    forces: Option<Group>,
+    cross: Option<Group>,
+}
+
+impl Drawn {
+    fn of(scene: &Scene, deformed: &[Point], lines: &[ContactLine]) -> Drawn {
+        let on_page = |v: usize| deformed.get(v).copied();
+        Drawn {
+            obstacle: obstacle(lines),
+            supports: loads::drawn_supports(scene, deformed),
+            pressure: pressure(lines),
+            motions: loads::arrows(scene, deformed, true),
+            forces: loads::arrows(scene, deformed, false),
+            cross: scene.most_stressed.and_then(on_page).map(loads::cross),
+        }
+    }
+
+    /// The entries of the legend.
+    fn entries<'w>(&self, scene: &Scene, magnified: &'w str) -> Vec<(Option<Group>, &'w str)> {
+        let dashed = |line: Group, dashes: &str| line.set("stroke-dasharray", dashes);
+        let when = |is_there: bool, sample: Option<Group>, words: &'static str| {
+            is_there.then_some((sample, words))
+        };
+        let wall = hatched([SAMPLE.map(|[x, y]| [x, y - 3.0]).to_vec()]);
+        let axis = dashed(sample(DARK, 1.0), "14 4 3 4");
+        let friction = sample(panel::OPEN, 1.6);
+        let [before, after] = [
+            vec![
+                when(true, Some(dashed(sample(GREY, 1.2), "6 4")), "undeformed"),
+                when(scene.of_revolution, Some(axis), "axis"),
+                when(
+                    !scene.interfaces.is_empty(),
+                    Some(sample(DARK, 1.0)),
+                    "border of two materials",
+                ),
+                when(self.obstacle.is_some(), wall, "rigid obstacle"),
+            ],
+            vec![
+                when(self.forces.is_some(), Some(pointed(FORCE)), "load"),
+                when(self.motions.is_some(), Some(pointed(MOTION)), "prescribed displacement"),
+                when(
+                    self.cross.is_some(),
+                    Some(loads::cross([15.0, -4.5])),
+                    "largest von Mises stress",
+                ),
+                when(self.pressure.is_some(), Some(pressed()), "contact pressure"),
+                when(self.pressure.is_none(), None, "no contact pressure"),
+                when(panel::has_shear(scene), Some(friction), "size of the friction"),
+            ],
+        ];
+        let mut entries: Vec<(Option<Group>, &'w str)> = before.into_iter().flatten().collect();
+        entries.extend(loads::support_entries(scene));
+        entries.extend(after.into_iter().flatten());
+        entries.push((None, magnified));
+        entries
+    }
 }
 
 /// Finite data may be drawn beyond the range of doubles, as where displacements are magnified.

@@ -145,10 +145,10 @@ impl Kind {
     }
 
     /// The most nodes of an element that is read.
-    pub const MOST_NODES: usize = 36;
+    pub(crate) const MOST_NODES: usize = 36;
 
     /// 0 for a point, 1 for a line, 2 for triangles and quadrangles.
-    pub fn dimension(self) -> usize {
+    pub(crate) fn dimension(self) -> usize {
         self.corners.min(3) - 1
     }
 }

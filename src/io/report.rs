@@ -8,7 +8,7 @@ use super::result::Results;
 use super::summary;
 use crate::quote;
 
-pub const FILE: &str = "report.html";
+pub(crate) const FILE: &str = "report.html";
 
 const STYLE: &str = "\
 body { font-family: Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif; color: #222; background: #fff; max-width: 64em; margin: 2em auto; padding: 0 1em; line-height: 1.4 }
@@ -22,7 +22,7 @@ pre { background: #f4f4f4; padding: 1em; overflow-x: auto; white-space: pre-wrap
 footer { color: #666; border-top: 1px solid #ccc; margin-top: 2em; padding-top: 0.5em }";
 
 /// The text of the file, with the text of picture.svg in it.
-pub fn html(case: &Case, results: &Results, picture: &str) -> String {
+pub(crate) fn html(case: &Case, results: &Results, picture: &str) -> String {
     let title = escaped(&case.title);
     // Without the XML declaration, which only a separate file has.
     let picture = picture.find("<svg").map_or("", |start| &picture[start..]);

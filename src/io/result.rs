@@ -2,7 +2,7 @@
 //!
 //! Each number is the shortest decimal that reads back to the same double. A number that does not exist is left out
 //! together with its name: `null` never stands in the file, and a NaN or an infinity is an error that names it, where
-//! JSON alone would turn it into `null` without a word. Everything but [`Seconds`] is the same from run to run.
+//! JSON alone would turn it into `null` without a word. Everything but `Seconds` is the same from run to run.
 //!
 //! The meaning of each key is in docs/result.md, which a test compares with what is written.
 
@@ -30,60 +30,60 @@ use crate::results::{
 /// The content of result.json, in its order.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Results {
-    pub version: String,
+    pub(crate) version: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub case: Option<String>,
     #[serde(default = "first")]
-    pub schema: u32,
-    pub title: String,
+    pub(crate) schema: u32,
+    pub(crate) title: String,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub step: Option<usize>,
+    pub(crate) step: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub verdict: Option<String>,
+    pub(crate) verdict: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub reason: Option<String>,
+    pub(crate) reason: Option<String>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub missing: Vec<String>,
+    pub(crate) missing: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub units: Option<Units>,
+    pub(crate) units: Option<Units>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub thickness: Option<f64>,
+    pub(crate) thickness: Option<f64>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub materials: Vec<MaterialEcho>,
+    pub(crate) materials: Vec<MaterialEcho>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub choices: Option<Choices>,
+    pub(crate) choices: Option<Choices>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub remarks: Vec<String>,
-    pub mesh: MeshSizes,
-    pub gamma: GammaChoice,
-    pub newton: NewtonHistory,
+    pub(crate) remarks: Vec<String>,
+    pub(crate) mesh: MeshSizes,
+    pub(crate) gamma: GammaChoice,
+    pub(crate) newton: NewtonHistory,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub method: Option<MethodReport>,
+    pub(crate) method: Option<MethodReport>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub play: Vec<Play>,
+    pub(crate) play: Vec<Play>,
     pub quantities: Quantities,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub contact: Vec<ContactBoundary>,
+    pub(crate) contact: Vec<ContactBoundary>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub stress: Option<StressPeaks>,
+    pub(crate) stress: Option<StressPeaks>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub reaction_moments: BTreeMap<String, f64>,
+    pub(crate) reaction_moments: BTreeMap<String, f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub balance: Option<EnergyBalance>,
+    pub(crate) balance: Option<EnergyBalance>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub probes: Vec<[f64; 4]>,
+    pub(crate) probes: Vec<[f64; 4]>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub certificate: Option<Certificates>,
+    pub(crate) certificate: Option<Certificates>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub adapt: Option<Adaptation>,
+    pub(crate) adapt: Option<Adaptation>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub errors: Option<Errors>,
-    pub seconds: Seconds,
+    pub(crate) errors: Option<Errors>,
+    pub(crate) seconds: Seconds,
 }
 
 /// The version of the layout of result.json. 2: an entry for each contact boundary, balance, units, materials, choices. 3: a(u, u) is
 /// `a_uu`, beside `elastic_energy`; with `thickness`, forces, moments and energies are those of the whole body.
-pub const SCHEMA: u32 = 3;
+pub(crate) const SCHEMA: u32 = 3;
 
 /// The version of files without a number.
 fn first() -> u32 {
@@ -91,20 +91,20 @@ fn first() -> u32 {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Choices {
-    pub degree: usize,
-    pub gamma0_auto: bool,
-    pub contact_quadrature: String,
-    pub allow_noncoercive: bool,
+pub(crate) struct Choices {
+    pub(crate) degree: usize,
+    pub(crate) gamma0_auto: bool,
+    pub(crate) contact_quadrature: String,
+    pub(crate) allow_noncoercive: bool,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct MeshSizes {
-    pub vertices: usize,
-    pub triangles: usize,
-    pub dofs: usize,
-    pub contact_edges: usize,
-    pub h_max: f64,
+pub(crate) struct MeshSizes {
+    pub(crate) vertices: usize,
+    pub(crate) triangles: usize,
+    pub(crate) dofs: usize,
+    pub(crate) contact_edges: usize,
+    pub(crate) h_max: f64,
 }
 
 impl MeshSizes {
@@ -117,13 +117,13 @@ impl MeshSizes {
 
 /// Nitsche's parameter and how far it is from the limit of coercivity.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct GammaChoice {
-    pub gamma0: f64,
+pub(crate) struct GammaChoice {
+    pub(crate) gamma0: f64,
     #[serde(default)]
-    pub local: bool,
-    pub limit: f64,
-    pub kappa: f64,
-    pub limiting_edge: [[f64; 2]; 2],
+    pub(crate) local: bool,
+    pub(crate) limit: f64,
+    pub(crate) kappa: f64,
+    pub(crate) limiting_edge: [[f64; 2]; 2],
 }
 
 impl From<&GammaReport> for GammaChoice {
@@ -140,38 +140,38 @@ impl From<&GammaReport> for GammaChoice {
 
 /// The largest stresses, each node taken once for each material around it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StressPeaks {
-    pub von_mises: StressPeak,
-    pub principal_max: StressPeak,
-    pub principal_min: StressPeak,
+pub(crate) struct StressPeaks {
+    pub(crate) von_mises: StressPeak,
+    pub(crate) principal_max: StressPeak,
+    pub(crate) principal_min: StressPeak,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub hoop_max: Option<StressPeak>,
+    pub(crate) hoop_max: Option<StressPeak>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub hoop_min: Option<StressPeak>,
+    pub(crate) hoop_min: Option<StressPeak>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StressPeak {
-    pub value: f64,
-    pub at: [f64; 2],
+pub(crate) struct StressPeak {
+    pub(crate) value: f64,
+    pub(crate) at: [f64; 2],
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub surface: Option<String>,
+    pub(crate) surface: Option<String>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct NewtonHistory {
-    pub iterations: usize,
-    pub residuals: Vec<f64>,
-    pub residual: f64,
-    pub factorizations: usize,
-    pub status: Status,
+pub(crate) struct NewtonHistory {
+    pub(crate) iterations: usize,
+    pub(crate) residuals: Vec<f64>,
+    pub(crate) residual: f64,
+    pub(crate) factorizations: usize,
+    pub(crate) status: Status,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adaptation {
-    pub target: f64,
+    pub(crate) target: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub force: Option<String>,
+    pub(crate) force: Option<String>,
     pub met: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
@@ -245,7 +245,7 @@ impl Results {
     }
 
     /// The verdict in one line, with the reasons of all that could not be had; `None` where nothing is said of a proof.
-    pub fn outcome(&self) -> Option<String> {
+    pub(crate) fn outcome(&self) -> Option<String> {
         let verdict = self.verdict.as_deref()?;
         let verdict = match &self.reason {
             Some(reason) => format!("{}: {reason}", verdict.to_uppercase()),
@@ -257,7 +257,7 @@ impl Results {
 }
 
 impl NewtonHistory {
-    pub fn verdict(&self) -> &'static str {
+    pub(crate) fn verdict(&self) -> &'static str {
         match self.status {
             Status::Converged => "converged",
             Status::ConvergedToRounding => "converged to rounding",
@@ -266,13 +266,13 @@ impl NewtonHistory {
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Seconds {
-    pub read: f64,
-    pub assemble: f64,
+pub(crate) struct Seconds {
+    pub(crate) read: f64,
+    pub(crate) assemble: f64,
     pub solve: f64,
     #[serde(default)]
-    pub certify: f64,
-    pub write: f64,
+    pub(crate) certify: f64,
+    pub(crate) write: f64,
 }
 
 /// The text of the file; an error has the path of the number.
@@ -309,48 +309,48 @@ fn null_in(value: &Value, place: &str) -> Option<String> {
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Certificates {
+pub(crate) struct Certificates {
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub discrete: Option<DiscreteCertificate>,
+    pub(crate) discrete: Option<DiscreteCertificate>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub continuous: Option<ContinuousCertificate>,
+    pub(crate) continuous: Option<ContinuousCertificate>,
 }
 
 /// The distance of the solution u~ that was computed from the exact solution u^h of (8).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct DiscreteCertificate {
+pub(crate) struct DiscreteCertificate {
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub radius: Option<f64>,
+    pub(crate) radius: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub relative: Option<f64>,
+    pub(crate) relative: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub pressure: Option<f64>,
+    pub(crate) pressure: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub problem: Option<String>,
+    pub(crate) problem: Option<String>,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub hardly_strains: bool,
-    pub unique: bool,
+    pub(crate) hardly_strains: bool,
+    pub(crate) unique: bool,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub isolated: Option<IsolatedSolution>,
-    pub rigorous: bool,
+    pub(crate) isolated: Option<IsolatedSolution>,
+    pub(crate) rigorous: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub reason: Option<String>,
+    pub(crate) reason: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub intervals: Option<Intervals>,
+    pub(crate) intervals: Option<Intervals>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub probes: Vec<f64>,
+    pub(crate) probes: Vec<f64>,
 }
 
 /// With Coulomb's friction: within which distance there is no other solution, relative and in the energy norm, below which coefficient
 /// there is none anywhere, for all loads, and the two limits of which that one is the larger.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct IsolatedSolution {
+pub(crate) struct IsolatedSolution {
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub within: Option<f64>,
+    pub(crate) within: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub unique_below: Option<f64>,
+    pub(crate) unique_below: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub limits: Option<[f64; 2]>,
+    pub(crate) limits: Option<[f64; 2]>,
 }
 
 impl From<Isolation> for IsolatedSolution {
@@ -395,46 +395,46 @@ pub struct ContinuousCertificate {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bound: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub relative: Option<f64>,
+    pub(crate) relative: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub of_solution: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub potential_energy: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub compliance: Option<[f64; 2]>,
-    pub rigorous: bool,
+    pub(crate) compliance: Option<[f64; 2]>,
+    pub(crate) rigorous: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub reason: Option<String>,
+    pub(crate) reason: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub problem: Option<String>,
+    pub(crate) problem: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub mean_stress: Option<f64>,
+    pub(crate) mean_stress: Option<f64>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub quantities: Vec<CertifiedQuantity>,
+    pub(crate) quantities: Vec<CertifiedQuantity>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub zones: Vec<Zone>,
+    pub(crate) zones: Vec<Zone>,
 }
 
 /// A number of the true solution between two others.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CertifiedQuantity {
-    pub name: String,
-    pub boundary: String,
+    pub(crate) name: String,
+    pub(crate) boundary: String,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub weight: Option<Weight>,
+    pub(crate) weight: Option<Weight>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub interval: Option<(f64, Option<f64>)>,
-    pub value: f64,
-    pub rigorous: bool,
+    pub(crate) interval: Option<(f64, Option<f64>)>,
+    pub(crate) value: f64,
+    pub(crate) rigorous: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub reason: Option<String>,
+    pub(crate) reason: Option<String>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Weight {
-    pub along: String,
-    pub between: [f64; 2],
-    pub ramp: f64,
+    pub(crate) along: String,
+    pub(crate) between: [f64; 2],
+    pub(crate) ramp: f64,
 }
 
 impl From<Ramp> for Weight {
@@ -462,13 +462,13 @@ impl CertifiedQuantity {
 
 impl ContinuousCertificate {
     /// The number of a boundary with this name, of the pressure as it is.
-    pub fn quantity(&self, name: &str, boundary: &str) -> Option<&CertifiedQuantity> {
+    pub(crate) fn quantity(&self, name: &str, boundary: &str) -> Option<&CertifiedQuantity> {
         let is =
             |q: &&CertifiedQuantity| q.name == name && q.boundary == boundary && q.weight.is_none();
         self.quantities.iter().find(is)
     }
 
-    pub fn contact_force(&self, boundary: &str) -> Option<[f64; 2]> {
+    pub(crate) fn contact_force(&self, boundary: &str) -> Option<[f64; 2]> {
         let (low, high) = self.quantity("contact force", boundary)?.interval?;
         Some([low, high?])
     }
@@ -575,7 +575,7 @@ pub(super) mod tests {
         "seconds": { "read": 0.0751, "assemble": 0.0757, "solve": 7.61, "certify": 0.0769, "write": 0.0 }
     }"#;
 
-    pub fn everything() -> Results {
+    pub(crate) fn everything() -> Results {
         serde_json::from_str(EVERYTHING).unwrap()
     }
 

@@ -100,7 +100,7 @@ pub(crate) fn lines_of(r: &Results, verbose: bool) -> Vec<(String, String)> {
 }
 
 /// All remarks on a result, those on motions that nothing stops included.
-pub fn remarks(r: &Results) -> Vec<String> {
+pub(crate) fn remarks(r: &Results) -> Vec<String> {
     let shown = QuantityFormat::of(r);
     r.remarks.iter().cloned().chain(r.play.iter().map(|play| free(play, &shown))).collect()
 }

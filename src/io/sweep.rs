@@ -26,7 +26,7 @@ use crate::results::Solution;
 use crate::results::answers::label;
 
 /// The most runs of a sweep: more are a mistake of the person who asks for them.
-pub(crate) const MOST_RUNS: usize = 10_000;
+const MOST_RUNS: usize = 10_000;
 
 /// The largest number of remarks below the table.
 const MOST_REMARKS: usize = 20;
@@ -36,9 +36,9 @@ const MOST_REMARKS: usize = 20;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ParameterAxis {
     /// The key with its dots.
-    pub key: String,
+    pub(crate) key: String,
     /// The values as TOML has them; at least one.
-    pub values: Vec<String>,
+    pub(crate) values: Vec<String>,
 }
 
 impl FromStr for ParameterAxis {
@@ -117,14 +117,14 @@ const NAMES: &Names = &[FILES[0], FILES[1], "sweep.pvd"];
 /// A case and its results for the combinations of the values of some keys.
 #[derive(Clone, Debug)]
 pub struct Sweep {
-    pub title: String,
-    pub keys: Vec<String>,
+    pub(crate) title: String,
+    pub(crate) keys: Vec<String>,
     /// The values of the keys in each run; those of the last key change first.
-    pub values: Vec<Vec<String>>,
+    pub(crate) values: Vec<Vec<String>>,
     /// The results of the runs so far, or why there are none.
     pub results: Vec<Result<Results, Failure>>,
     /// The files of each run are written, too.
-    pub with_files: bool,
+    pub(crate) with_files: bool,
     /// The names of the files.
     pub(crate) names: &'static Names,
 }
@@ -195,19 +195,37 @@ pub fn run(
     let keys = axes.iter().map(|axis| axis.key.clone()).collect();
     let mut sweep =
         Sweep { title, keys, values, results: Vec::new(), with_files: files, names: NAMES };
-    let (all, runs) = (sweep.values.clone(), sweep.values.len());
-    let in_a_row = runs.div_ceil(jobs.clamp(1, runs.max(1)));
-    let stopped = AtomicBool::new(false);
+    let all = sweep.values.clone();
     let one = |i: usize, last: &mut Option<Solution>| {
-        let case = read(&all[i])?;
         let folder = files.then(|| of_run(folder, i));
-        solve(case, folder.as_deref(), last)
+        solve(read(&all[i])?, folder.as_deref(), last)
     };
     let mut series = Series::default();
+    each_in_order(all.len(), jobs, &one, |(results, scene)| {
+        if let Some(scene) = scene {
+            series.add(of_run(folder, sweep.results.len()), scene);
+        }
+        sweep.results.push(results);
+        done(&sweep)
+    })?;
+    series.draw()?;
+    Ok(sweep)
+}
+
+/// Hands the results of the runs to `take` in their order, made by jobs that each do as many runs in a row, from one solution to the
+/// next. A failure stops all.
+fn each_in_order<T: Send>(
+    runs: usize,
+    jobs: usize,
+    one: &(impl Fn(usize, &mut Option<Solution>) -> Result<T, Failure> + Sync),
+    mut take: impl FnMut(T) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let in_a_row = runs.div_ceil(jobs.clamp(1, runs.max(1)));
+    let stopped = &AtomicBool::new(false);
     thread::scope(|scope| {
         let (sender, receiver) = mpsc::channel();
         for first in (0..runs).step_by(in_a_row) {
-            let (sender, one, stopped) = (sender.clone(), &one, &stopped);
+            let sender = sender.clone();
             let work = move || {
                 let mut last = None;
                 for i in first..runs.min(first + in_a_row) {
@@ -226,26 +244,19 @@ pub fn run(
         }
         drop(sender);
         // Runs that ended before one that comes before them in the table.
-        let mut early = BTreeMap::new();
+        let (mut early, mut next) = (BTreeMap::new(), 0);
         for (i, result) in receiver {
             early.insert(i, result);
-            while let Some(next) = early.remove(&sweep.results.len()) {
-                let so_far = next.and_then(|next| {
-                    let (results, scene) = next;
-                    if let Some(scene) = scene {
-                        series.add(of_run(folder, sweep.results.len()), scene);
-                    }
-                    sweep.results.push(results);
-                    done(&sweep)
-                });
-                if so_far.is_err() {
+            while let Some(result) = early.remove(&next) {
+                next += 1;
+                let taken = result.and_then(&mut take);
+                if taken.is_err() {
                     stopped.store(true, Ordering::Relaxed);
                 }
-                so_far?;
+                taken?;
             }
         }
-        series.draw()?;
-        Ok(sweep)
+        Ok(())
     })
 }
 
@@ -400,7 +411,7 @@ impl Sweep {
     }
 
     /// The table for people: columns with four digits, aligned.
-    pub fn table(&self) -> String {
+    pub(crate) fn table(&self) -> String {
         let mut lines = self.lines(true, &|x| short(x, 4));
         for line in &mut lines {
             let status = line.len() - 1;
@@ -419,7 +430,7 @@ impl Sweep {
     }
 
     /// The remarks on the runs, a line each: those that several runs share once, with the numbers of these; empty if there are none.
-    pub fn remarks(&self) -> String {
+    pub(crate) fn remarks(&self) -> String {
         let mut remarks: Vec<(String, Vec<String>)> = Vec::new();
         for (i, results) in (1..).zip(&self.results) {
             for text in results.iter().flat_map(summary::remarks) {
@@ -442,7 +453,7 @@ impl Sweep {
     }
 
     /// The text of the table: each number the shortest decimal that reads back to the same double.
-    pub fn csv(&self) -> String {
+    pub(crate) fn csv(&self) -> String {
         self.lines(false, &csv::number).into_iter().map(csv::line).collect()
     }
 
@@ -532,7 +543,7 @@ impl Sweep {
     /// paths.
     pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
         let &[table, curves, collection] = self.names;
-        let mut output = Output::new(folder)?.replacing(&self.names[1..]);
+        let mut output = Output::new(folder)?;
         if let Some(drawn) = self.curves() {
             output.stage_made(curves, figure(&drawn))?;
         }
@@ -540,7 +551,7 @@ impl Sweep {
             output.stage(collection, self.pvd().as_bytes())?;
         }
         output.stage(table, self.csv().as_bytes())?;
-        output.publish()
+        output.publish(&self.names[1..])
     }
 }
 

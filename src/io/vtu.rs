@@ -14,12 +14,12 @@ use crate::model::Degree;
 /// Cells of one kind, with data on their points and on the cells themselves.
 #[derive(Clone, Copy)]
 pub(super) struct Grid<'a> {
-    pub kind: CellKind,
-    pub points: &'a [[f64; 2]],
+    pub(crate) kind: CellKind,
+    pub(crate) points: &'a [[f64; 2]],
     /// The points of one cell after the other, each cell in the order of the elements of [`crate::kernel`].
-    pub connectivity: &'a [usize],
-    pub point_data: &'a [DataArray<'a>],
-    pub cell_data: &'a [DataArray<'a>],
+    pub(crate) connectivity: &'a [usize],
+    pub(crate) point_data: &'a [DataArray<'a>],
+    pub(crate) cell_data: &'a [DataArray<'a>],
 }
 
 /// The kind of the cells of a grid. A quadratic line has its start, its end, its middle.
@@ -57,17 +57,17 @@ pub(super) struct DataArray<'a> {
 }
 
 impl<'a> DataArray<'a> {
-    pub fn scalars(name: &'static str, numbers: &'a [f64]) -> Self {
+    pub(crate) fn scalars(name: &'static str, numbers: &'a [f64]) -> Self {
         DataArray { name, numbers, given: 1, components: &[] }
     }
 
-    pub fn vectors(name: &'static str, vectors: &'a [[f64; 2]]) -> Self {
+    pub(crate) fn vectors(name: &'static str, vectors: &'a [[f64; 2]]) -> Self {
         let numbers = vectors.as_flattened();
         DataArray { name, numbers, given: 2, components: &["X", "Y", "Z"] }
     }
 
     /// Symmetric tensors as `[xx, yy, zz, xy]`.
-    pub fn symmetric_tensors(name: &'static str, tensors: &'a [[f64; 4]]) -> Self {
+    pub(crate) fn symmetric_tensors(name: &'static str, tensors: &'a [[f64; 4]]) -> Self {
         let components = &["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
         DataArray { name, numbers: tensors.as_flattened(), given: 4, components }
     }
@@ -205,7 +205,7 @@ pub(super) mod tests {
     }
 
     /// The arrays of a file that this module wrote, by the names of their elements and their own.
-    pub fn arrays(file: &[u8]) -> Vec<([String; 2], Vec<f64>)> {
+    pub(crate) fn arrays(file: &[u8]) -> Vec<([String; 2], Vec<f64>)> {
         let text = std::str::from_utf8(file).unwrap();
         let (mut all, mut element) = (Vec::new(), String::new());
         let mut lines = text.lines();

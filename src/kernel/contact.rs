@@ -66,36 +66,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_open_point_has_no_pressure() {
-        let point = ContactPoint { u_n: -0.5, gap: 0.25, sigma_n: 0.0, gamma: 2.0 };
-        assert_eq!(point.p(), -0.75);
-        assert_eq!(point.pressure(), 0.0);
-        let none = Violation { penetration: 0.0, tension: 0.0, product: 0.0 };
-        assert_eq!(point.violation(), none);
-    }
-
-    #[test]
-    fn a_touching_point_carries_its_normal_stress() {
-        let point = ContactPoint { u_n: 0.25, gap: 0.25, sigma_n: -3.0, gamma: 0.5 };
-        assert_eq!(point.p(), 1.5);
-        assert_eq!(point.pressure(), -3.0);
-    }
-
-    #[test]
-    fn pressure_pushes_back_when_penetrating() {
-        let point = ContactPoint { u_n: 1.0, gap: 0.5, sigma_n: 0.0, gamma: 0.25 };
-        assert_eq!(point.p0(), 1.0);
-        assert_eq!(point.pressure(), -2.0);
-        assert_eq!(point.violation().penetration, 0.5);
-    }
-
-    #[test]
-    fn tension_and_a_product_are_reported_apart() {
-        let v = ContactPoint { u_n: -1.0, gap: 1.0, sigma_n: 3.0, gamma: 1.0 }.violation();
-        assert_eq!((v.penetration, v.tension, v.product), (0.0, 3.0, -6.0));
-    }
-
-    #[test]
     fn nan_is_not_no_contact() {
         let point = ContactPoint { u_n: f64::NAN, gap: 0.0, sigma_n: 0.0, gamma: 1.0 };
         assert!(point.pressure().is_nan());

@@ -9,8 +9,6 @@
 //! A is elliptic if and only if K, M and G are positive. Where A is isotropic, L = I, K = lambda + mu, M = G = mu: nothing cancels
 //! near incompressibility, and so it is with tensors, whose largest entry comes first then.
 
-use nalgebra::Matrix2;
-
 use super::{Scalar, Stress};
 
 /// K, M, G and L of a law.
@@ -80,24 +78,6 @@ impl<S: Scalar> Squares<S> {
         self.per_moduli(self.products(tau, tau)) / S::from(4)
     }
 
-    /// sigma(u):eps(u) for the displacement gradient `gradient[(i, j)]` = du_i/dx_j.
-    pub fn of_gradient(&self, gradient: Matrix2<S>) -> S {
-        let (sphere, deviator) = (gradient.m11 + gradient.m22, gradient.m11 - gradient.m22);
-        let shear = gradient.m12 + gradient.m21;
-        match self.beyond {
-            None => {
-                (deviator * deviator + shear * shear) * self.shear + sphere * sphere * self.bulk
-            }
-            Some((other, [a, b, c])) => {
-                let sphere = sphere + a * deviator + b * shear;
-                let deviator = deviator + c * shear;
-                deviator * deviator * self.shear
-                    + shear * shear * other
-                    + sphere * sphere * self.bulk
-            }
-        }
-    }
-
     /// K, M, G: all positive where A is elliptic.
     pub fn pivots(&self) -> [S; 3] {
         [self.bulk, self.shear, self.beyond.map_or(self.shear, |(other, _)| other)]
@@ -106,33 +86,7 @@ impl<S: Scalar> Squares<S> {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_relative_eq;
-
     use super::*;
-    use crate::{Material, Plane};
-
-    const TENSOR: [f64; 6] = [12.0, 3.0, 2.0, 5.0, -1.0, 4.0];
-
-    #[test]
-    fn the_energies_of_a_strain_and_of_its_stress_are_their_product() {
-        let gradient = Matrix2::new(0.3, -0.4, 0.9, -0.7);
-        for material in [Material::tensor(TENSOR, None), Material::lame(3.0, 0.7, Plane::Strain)] {
-            let (squares, stress) = (material.squares(), material.stress(gradient));
-            let energy = stress.matrix().dot(&gradient);
-            // Twenty operations on numbers up to 10.
-            assert_relative_eq!(squares.of_gradient(gradient), energy, max_relative = 1e-14);
-            assert_relative_eq!(squares.of_stress(stress), energy, max_relative = 1e-14);
-        }
-    }
-
-    #[test]
-    fn an_isotropic_tensor_has_the_moduli_of_lambda_and_mu() {
-        let (lambda, mu) = (3.0, 0.75);
-        let tensor = [lambda + 2.0 * mu, lambda, 0.0, lambda + 2.0 * mu, 0.0, mu];
-        let squares = Squares::of_tensor(tensor);
-        assert_eq!(squares.pivots(), [lambda + mu, mu, mu]);
-        assert_eq!(squares.beyond, Some((mu, [0.0; 3])));
-    }
 
     #[test]
     fn a_pivot_is_not_positive_where_the_law_is_not_elliptic() {

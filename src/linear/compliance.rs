@@ -17,7 +17,7 @@ use super::factor::{Factor, Structure};
 use crate::linear::matrix::OutsidePattern;
 
 /// The supernodes that contact functionals reach, and for each supernode its functionals.
-pub struct Reach {
+pub(crate) struct Reach {
     /// The place of each functional in the order of the walk.
     places: Vec<usize>,
     /// The supernodes that are reached, in the order of elimination.
@@ -32,7 +32,7 @@ struct Reached {
 
 impl Reach {
     /// For pieces with their functionals and the unknowns that these touch, in the order of the functionals.
-    pub fn new(structure: &Structure, pieces: &[(Range<usize>, Vec<usize>)]) -> Self {
+    pub(crate) fn new(structure: &Structure, pieces: &[(Range<usize>, Vec<usize>)]) -> Self {
         let count = structure.supernodes();
         let supernode_of = |row: usize| structure.supernode_of(row);
         let parent: Vec<Option<usize>> = (0..count)
@@ -70,12 +70,12 @@ impl Reach {
     }
 
     /// The number of functionals.
-    pub fn functionals(&self) -> usize {
+    pub(crate) fn functionals(&self) -> usize {
         self.places.len()
     }
 
     /// Multiplications with an addition for X and G.
-    pub fn operations(&self, structure: &Structure) -> f64 {
+    pub(crate) fn operations(&self, structure: &Structure) -> f64 {
         let of = |reached: &Reached| {
             let w = structure.columns(reached.supernode).len() as f64;
             let below = structure.rows_below(reached.supernode).len() as f64;
@@ -86,7 +86,7 @@ impl Reach {
     }
 
     /// The entries of X that are stored.
-    pub fn stored_entries(&self, structure: &Structure) -> usize {
+    pub(crate) fn stored_entries(&self, structure: &Structure) -> usize {
         let of = |r: &Reached| structure.columns(r.supernode).len() * r.functionals.len();
         self.supernodes.iter().map(of).sum()
     }
@@ -126,12 +126,12 @@ fn postorder(parent: &[Option<usize>]) -> Vec<usize> {
 }
 
 /// X = L^-1 B^T, block by block, and G = X^T X.
-pub struct Compliance<'a> {
+pub(crate) struct Compliance<'a> {
     structure: &'a Structure,
     reach: &'a Reach,
     x: Vec<Mat<f64>>,
     /// G, both triangles.
-    pub g: Mat<f64>,
+    pub(crate) g: Mat<f64>,
 }
 
 impl<'a> Compliance<'a> {
@@ -139,7 +139,7 @@ impl<'a> Compliance<'a> {
     ///
     /// # Errors
     /// An entry, or one that the factor makes of it, in rows that `reach` does not reach with its functional.
-    pub fn new(
+    pub(crate) fn new(
         structure: &'a Structure,
         factor: &Factor,
         reach: &'a Reach,

@@ -29,7 +29,7 @@ impl Structure {
     ///
     /// # Errors
     /// [`SolveError::OutOfMemory`].
-    pub fn new(matrix: &LowerTriangle) -> Result<Self, SolveError> {
+    pub(crate) fn new(matrix: &LowerTriangle) -> Result<Self, SolveError> {
         let n = matrix.starts.len() - 1;
         let (starts, rows) = upper_triangle(matrix);
         let upper = SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows);
@@ -60,17 +60,17 @@ impl Structure {
     }
 
     /// The number of unknowns.
-    pub fn size(&self) -> usize {
+    pub(crate) fn size(&self) -> usize {
         self.symbolic.nrows()
     }
 
     /// The number of supernodes. They are numbered as they are eliminated.
-    pub fn supernodes(&self) -> usize {
+    pub(crate) fn supernodes(&self) -> usize {
         self.symbolic.n_supernodes()
     }
 
     /// The columns of supernode `s`.
-    pub fn columns(&self, s: usize) -> std::ops::Range<usize> {
+    pub(crate) fn columns(&self, s: usize) -> std::ops::Range<usize> {
         self.symbolic.supernode_begin()[s]..self.symbolic.supernode_end()[s]
     }
 
@@ -101,7 +101,7 @@ impl Structure {
     }
 
     /// Multiplications with an addition of one factorisation: half the sum over the columns of the squares of their lengths.
-    pub fn operations(&self) -> f64 {
+    pub(crate) fn operations(&self) -> f64 {
         let of = |s: usize| {
             let (columns, below) = (self.columns(s).len(), self.rows_below(s).len());
             (1..=columns).map(|left| ((left + below) as f64).powi(2)).sum::<f64>() / 2.0
@@ -179,7 +179,7 @@ impl Factor {
 
     /// The columns of supernode `s`: first the lower triangle on the diagonal, below it the rows of
     /// [`Structure::rows_below`].
-    pub fn block(&self, s: usize) -> MatRef<'_, f64> {
+    pub(crate) fn block(&self, s: usize) -> MatRef<'_, f64> {
         let [rows, columns] = self.structure.shape(s);
         let values = &self.values[self.structure.start(s)..][..rows * columns];
         MatRef::from_column_major_slice(values, rows, columns)

@@ -126,9 +126,9 @@ impl Numbering {
 )]
 pub struct OutsidePattern {
     /// The row.
-    pub row: usize,
+    pub(crate) row: usize,
     /// The column.
-    pub column: usize,
+    pub(crate) column: usize,
 }
 
 /// The nodes around each node: those that share a triangle or a piece of Gamma_C with it, itself included.
@@ -166,7 +166,7 @@ impl Neighbours {
     }
 
     /// The nodes around `node`, each once.
-    pub fn of(&self, node: usize) -> &[usize] {
+    pub(crate) fn of(&self, node: usize) -> &[usize] {
         &self.of[node]
     }
 }
@@ -184,7 +184,7 @@ pub struct LowerTriangle {
 
 impl LowerTriangle {
     /// All entries that a matrix over these unknowns can have, zero.
-    pub fn zero(numbering: &Numbering, neighbours: &Neighbours) -> Self {
+    pub(crate) fn zero(numbering: &Numbering, neighbours: &Neighbours) -> Self {
         let (mut starts, mut rows) = (vec![0], Vec::new());
         for (column, &node) in numbering.nodes.iter().enumerate() {
             let numbers = neighbours.of(node).iter().flat_map(|&other| numbering.of[other]);
@@ -201,7 +201,7 @@ impl LowerTriangle {
     ///
     /// # Errors
     /// Nodes that are no neighbours.
-    pub fn add(
+    pub(crate) fn add(
         &mut self,
         numbering: &Numbering,
         nodes: &[usize],

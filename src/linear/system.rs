@@ -127,18 +127,18 @@ impl<'d, 'p> System<'d, 'p> {
     }
 
     /// The number of functionals.
-    pub fn functionals(&self) -> usize {
+    pub(crate) fn functionals(&self) -> usize {
         self.d.contact.last().map_or(0, |piece| piece.functionals().end)
     }
 
     /// The free degrees of freedom on the triangles of piece `e`.
-    pub fn unknowns(&self, e: usize) -> Vec<usize> {
+    pub(crate) fn unknowns(&self, e: usize) -> Vec<usize> {
         let nodes = self.d.contact[e].nodes.iter();
         nodes.flat_map(|&node| self.numbering.of[node]).flatten().collect()
     }
 
     /// For each piece the numbers of its functionals and the free degrees of freedom on its triangles.
-    pub fn pieces(&self) -> Vec<(Range<usize>, Vec<usize>)> {
+    pub(crate) fn pieces(&self) -> Vec<(Range<usize>, Vec<usize>)> {
         let of = |(e, piece): (usize, &Piece)| (piece.functionals(), self.unknowns(e));
         self.d.contact.iter().enumerate().map(of).collect()
     }
@@ -188,7 +188,7 @@ impl<'d, 'p> System<'d, 'p> {
     }
 
     /// The largest diagonal entry of A, infinite if one is no number. The largest eigenvalue is no smaller.
-    pub fn largest(&self) -> f64 {
+    pub(crate) fn largest(&self) -> f64 {
         self.diagonal().fold(0.0, larger)
     }
 
@@ -201,7 +201,7 @@ impl<'d, 'p> System<'d, 'p> {
     /// The size that corrections of `u` are measured by while it is refined: |u|_a, which is `norm`. A body without loads that is
     /// moved as a whole has no strain but that of rounding, which no correction betters: there the size is what the norm would
     /// be for independent components of this size. What is proved is not relative to this norm.
-    pub fn size(&self, norm: f64, u: &[[f64; 2]]) -> f64 {
+    pub(crate) fn size(&self, norm: f64, u: &[[f64; 2]]) -> f64 {
         if self.d.load.as_flattened().iter().any(|&l| l != 0.0) {
             return norm;
         }

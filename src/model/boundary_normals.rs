@@ -160,11 +160,11 @@ pub(crate) fn smooth_normals(
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SmoothEdge {
     /// Start and end, the body on the left.
-    pub ends: [Vector2<f64>; 2],
+    pub(crate) ends: [Vector2<f64>; 2],
     /// The outward normals there.
-    pub normals: [Vector2<f64>; 2],
+    pub(crate) normals: [Vector2<f64>; 2],
     /// The boundary is not the chord.
-    pub curved: bool,
+    pub(crate) curved: bool,
 }
 
 impl SmoothEdge {
@@ -173,7 +173,7 @@ impl SmoothEdge {
     }
 
     /// |b - a|
-    pub fn length(&self) -> f64 {
+    pub(crate) fn length(&self) -> f64 {
         length(self.ends[1] - self.ends[0])
     }
 
@@ -199,7 +199,7 @@ impl SmoothEdge {
     }
 
     /// The point of the curve at `s`, from 0 to 1.
-    pub fn at(&self, s: f64) -> (Vector2<f64>, Vector2<f64>) {
+    pub(crate) fn at(&self, s: f64) -> (Vector2<f64>, Vector2<f64>) {
         if s <= 0.0 || s >= 1.0 {
             let k = usize::from(s >= 1.0);
             return (self.ends[k], self.normals[k]);
@@ -218,7 +218,7 @@ impl SmoothEdge {
     }
 
     /// The curvature of the circle through both ends with these normals.
-    pub fn curvature(&self) -> f64 {
+    pub(crate) fn curvature(&self) -> f64 {
         let [n, m] = self.normals;
         length(m - n) / self.length()
     }

@@ -118,7 +118,7 @@ fn driven(motions: &[FreeMotion], drive: Option<f64>) -> String {
 ///
 /// # Errors
 /// [`DataError::NotFinite`].
-pub fn finite(
+pub(crate) fn finite(
     function: &dyn Function,
     x: [f64; 2],
     what: impl Fn() -> String,
@@ -130,7 +130,11 @@ pub fn finite(
 ///
 /// # Errors
 /// [`DataError::NotFinite`].
-pub fn checked(value: f64, x: [f64; 2], what: impl Fn() -> String) -> Result<f64, DataError> {
+pub(crate) fn checked(
+    value: f64,
+    x: [f64; 2],
+    what: impl Fn() -> String,
+) -> Result<f64, DataError> {
     if value.is_finite() {
         Ok(value)
     } else {

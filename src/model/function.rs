@@ -41,7 +41,7 @@ impl<F: Fn([f64; 2]) -> f64 + Send + Sync> Function for F {
 
 /// A constant function.
 #[derive(Clone, Copy, Debug)]
-pub struct Constant(pub f64);
+pub(crate) struct Constant(pub f64);
 
 impl Function for Constant {
     fn at(&self, _: [f64; 2]) -> f64 {

@@ -1,7 +1,7 @@
 //! The groups into which pairs join items: union-find.
 
 /// The number of each item's group when the items of each pair are in one; groups are numbered in the order of their first items.
-pub fn groups(count: usize, pairs: impl IntoIterator<Item = [usize; 2]>) -> Vec<usize> {
+pub(crate) fn groups(count: usize, pairs: impl IntoIterator<Item = [usize; 2]>) -> Vec<usize> {
     let mut parent: Vec<usize> = (0..count).collect();
     for pair in pairs {
         let [a, b] = pair.map(|item| root(&mut parent, item));

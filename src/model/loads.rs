@@ -130,9 +130,9 @@ impl Force<'_> {
 /// The resultants of the loads.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Resultants {
-    /// That of the forces on the body and on parts of it.
+    /// The resultant of the forces on the body and on parts of it.
     pub body: [f64; 2],
-    /// Those of the boundaries on which a traction or a pressure is given, by name.
+    /// The resultants of the boundaries on which a traction or a pressure is given, by name.
     pub boundaries: BTreeMap<String, [f64; 2]>,
 }
 

@@ -11,13 +11,13 @@ use super::tree::{Bounds, Tree};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Merged {
     /// The vertices that are left.
-    pub vertices: Vec<[f64; 2]>,
+    pub(crate) vertices: Vec<[f64; 2]>,
     /// The triangles that are left, in the new numbers.
-    pub triangles: Vec<[usize; 3]>,
+    pub(crate) triangles: Vec<[usize; 3]>,
     /// The new number of each old vertex.
     pub vertex: Vec<usize>,
     /// The old number of each vertex that is left.
-    pub old_vertex: Vec<usize>,
+    pub(crate) old_vertex: Vec<usize>,
     /// The old number of each triangle that is left.
     pub old_triangle: Vec<usize>,
 }

@@ -255,7 +255,7 @@ impl Mesh {
 
     /// The part of the body that each triangle belongs to: parts are connected by edges, and numbered in the order of their first
     /// triangles.
-    pub fn parts(&self) -> &[usize] {
+    pub(crate) fn parts(&self) -> &[usize] {
         &self.topology.parts
     }
 

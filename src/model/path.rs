@@ -61,16 +61,16 @@ enum Shape {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beside {
     /// The distance, positive on the left of the line.
-    pub left: f64,
+    pub(crate) left: f64,
     /// The unit vector in which it grows.
-    pub growth: Vector2<f64>,
+    pub(crate) growth: Vector2<f64>,
 }
 
 /// The closest point of a side.
 struct Near {
     place: Vector2<f64>,
     distance: f64,
-    /// It is the start (0) or the end (1) of the side.
+    /// The end of the side that the point is: start (0) or end (1).
     end: Option<usize>,
 }
 

@@ -12,18 +12,18 @@ use nalgebra::Vector2;
 /// The edges of an outline.
 pub(super) struct Edges<'a> {
     /// The places of vertices.
-    pub places: &'a [Vector2<f64>],
+    pub(crate) places: &'a [Vector2<f64>],
     /// Start and end of each edge.
-    pub ends: &'a [[usize; 2]],
+    pub(crate) ends: &'a [[usize; 2]],
     /// The body lies on the left of each edge; else on the right.
-    pub body_on_left: bool,
+    pub(crate) body_on_left: bool,
 }
 
 /// A question asked for a vertex: which edges cross the upright segment at x from one height to another?
 pub(super) struct Question {
-    pub vertex: usize,
-    pub x: f64,
-    pub between: [f64; 2],
+    pub(crate) vertex: usize,
+    pub(crate) x: f64,
+    pub(crate) between: [f64; 2],
 }
 
 /// Faults of an outline.

@@ -2,23 +2,23 @@
 
 /// An axis-parallel box: its least and its greatest coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
+pub(crate) struct Bounds {
     /// The least coordinates.
-    pub low: [f64; 2],
+    pub(crate) low: [f64; 2],
     /// The greatest coordinates.
-    pub high: [f64; 2],
+    pub(crate) high: [f64; 2],
 }
 
 impl Bounds {
     /// Around these points.
-    pub fn around(points: impl IntoIterator<Item = [f64; 2]>) -> Self {
+    pub(crate) fn around(points: impl IntoIterator<Item = [f64; 2]>) -> Self {
         let nothing = Bounds { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
         points.into_iter().fold(nothing, |all, p| all.with(Bounds { low: p, high: p }))
     }
 
     /// Widens the box by `margin` on each side.
     #[must_use]
-    pub fn widened(self, margin: f64) -> Self {
+    pub(crate) fn widened(self, margin: f64) -> Self {
         Bounds { low: self.low.map(|c| c - margin), high: self.high.map(|c| c + margin) }
     }
 
@@ -36,14 +36,14 @@ impl Bounds {
     }
 
     /// The longest side.
-    pub fn size(self) -> f64 {
+    pub(crate) fn size(self) -> f64 {
         (self.high[0] - self.low[0]).max(self.high[1] - self.low[1])
     }
 }
 
 /// The tree over a list of boxes. A node covers a range of `items`; its children halve the range.
 #[derive(Clone, Debug)]
-pub struct Tree {
+pub(crate) struct Tree {
     items: Vec<usize>,
     boxes: Vec<Bounds>,
     nodes: Vec<Bounds>,
@@ -54,7 +54,7 @@ const LEAF: usize = 4;
 
 impl Tree {
     /// Over `boxes`, which are known by their numbers from here on.
-    pub fn new(boxes: Vec<Bounds>) -> Self {
+    pub(crate) fn new(boxes: Vec<Bounds>) -> Self {
         let mut items: Vec<usize> = (0..boxes.len()).collect();
         let mut nodes = Vec::new();
         build(&mut items, &boxes, 0, &mut nodes);

@@ -51,7 +51,7 @@ pub struct Enclosure {
     /// The strains are surely below 1e-10 of the displacement over the size of the body: what there is of them is rounding.
     pub hardly_strains: bool,
     /// The energy norm of the body if it strained by its displacement over its size, or by 1 where that is less.
-    pub if_strained: f64,
+    pub(crate) if_strained: f64,
     /// The norm of gamma^{1/2} (lambda~ - lambda^h) on Gamma_C at most.
     pub pressure: f64,
     /// The length of u~ - u^h at each node at most.
@@ -170,11 +170,11 @@ pub struct Verifier<'s, 'd, 'p> {
     /// What the proof with Coulomb's friction knows of A.
     known: Option<isolated::Known>,
     /// The sum of the magnitudes of the residual where it was last evaluated.
-    pub unbalanced: f64,
+    pub(crate) unbalanced: f64,
     /// The residual where it was last evaluated, rounded to doubles at last; empty if that was in other unknowns.
     pub(crate) residual: Vec<f64>,
     /// The time that it has taken.
-    pub time: Duration,
+    pub(crate) time: Duration,
 }
 
 /// The data of pressed edges with these springs.
@@ -480,7 +480,7 @@ fn isolation(
 impl Enclosure {
     /// The radius over |u~|_a or, for a body that hardly strains, over what that would be if it did; infinite where neither is known. A
     /// body at rest has no energy to compare with: a radius of rounding alone is none.
-    pub fn in_parts(&self) -> f64 {
+    pub(crate) fn in_parts(&self) -> f64 {
         if self.radius < LEAST_NORM {
             0.0
         } else if self.hardly_strains {

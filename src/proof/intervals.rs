@@ -13,7 +13,7 @@ use crate::linear::system::System;
 use crate::proof::rounded_stress;
 
 /// An interval `[low, high]`.
-pub type Range = [f64; 2];
+pub(crate) type Range = [f64; 2];
 
 /// Intervals that contain the quantities of the exact solution of (8).
 #[derive(Clone, Debug, PartialEq)]
@@ -47,10 +47,10 @@ impl Intervals {
 #[non_exhaustive]
 pub struct ContactIntervals {
     /// Its name.
-    pub boundary: String,
+    pub(crate) boundary: String,
     /// The name of the boundary of the other body, if there is one.
     #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
-    pub partner: Option<String>,
+    pub(crate) partner: Option<String>,
     /// -int lambda^h
     pub force: Range,
     /// int lambda^h n~: the force on the body
@@ -108,17 +108,17 @@ impl Arithmetic {
 /// (8) at u~, or near it.
 pub(super) struct EnclosedResidual {
     /// The residual at every basis function.
-    pub residual: Vec<[PreciseBall; 2]>,
+    pub(crate) residual: Vec<[PreciseBall; 2]>,
     /// With Coulomb's friction: the residual for the middles of the contact forces, which are off by [`EnclosedResidual::spread`].
-    pub for_middles: Option<Vec<[PreciseBall; 2]>>,
+    pub(crate) for_middles: Option<Vec<[PreciseBall; 2]>>,
     /// u~, or the field near it, with its prescribed components where they should be.
-    pub u: Vec<[PreciseBall; 2]>,
+    pub(crate) u: Vec<[PreciseBall; 2]>,
     /// The energy norm of what that is off the displacement that is reported, at most.
-    pub moved: f64,
+    pub(crate) moved: f64,
     /// a(u~, u~)
-    pub energy: PreciseBall,
+    pub(crate) energy: PreciseBall,
     /// The residual is off by no more than a functional r with |r(v)| <= this times |v|_a.
-    pub off: f64,
+    pub(crate) off: f64,
     /// int \[P\]+ N_a / gamma on each piece.
     pressures: Vec<Vec<PreciseBall>>,
     arithmetic: Arithmetic,
@@ -126,7 +126,7 @@ pub(super) struct EnclosedResidual {
 
 impl EnclosedResidual {
     /// None if it over- or underflows double precision.
-    pub fn new(
+    pub(crate) fn new(
         system: &System,
         lines: &[Piece<PreciseBall>],
         (u, reported): (&[[f64; 2]], &[[f64; 2]]),
@@ -193,14 +193,14 @@ impl EnclosedResidual {
     }
 
     /// What the force of each functional is off the middle of its ball, at most.
-    pub fn spread(&self) -> Vec<f64> {
+    pub(crate) fn spread(&self) -> Vec<f64> {
         self.pressures.iter().flatten().map(|force| force.radius()).collect()
     }
 
     /// Encloses the reported quantities, with |u~ - u^h|_A <= `rho`, |u~ - u^h|_a <= `radius`, the norm of gamma^{1/2}
     /// (lambda~ - lambda^h) at most
     /// `pressure`, and displacements at the nodes with their bounds.
-    pub fn intervals(
+    pub(crate) fn intervals(
         &self,
         d: &Discretization,
         lines: &[Piece<PreciseBall>],

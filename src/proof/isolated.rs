@@ -41,15 +41,15 @@ const MOST_CORRECTIONS: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Isolated {
     /// |u~ - u^h|_A at most.
-    pub rho: f64,
+    pub(crate) rho: f64,
     /// There is no other solution within this distance, in the norm of A; `None` if that is known with springs only.
-    pub within: Option<f64>,
+    pub(crate) within: Option<f64>,
     /// There is no other solution anywhere.
-    pub everywhere: bool,
+    pub(crate) everywhere: bool,
     /// Lower bounds of the coefficient below which that is so for all loads.
-    pub limits: [f64; 2],
+    pub(crate) limits: [f64; 2],
     /// The norm of gamma^{1/2} (lambda~ - lambda^h) at most.
-    pub pressure: f64,
+    pub(crate) pressure: f64,
 }
 
 /// A product with A in balls: of a vector, off by a functional of at most the number that comes with it, times |v|_a.
@@ -57,14 +57,14 @@ pub(super) type Product<'a> = &'a dyn Fn(&[PreciseBall]) -> (Vec<PreciseBall>, f
 
 /// Bounds of A.
 pub(super) struct Body<'a, 'd, 'p> {
-    pub system: &'a System<'d, 'p>,
+    pub(crate) system: &'a System<'d, 'p>,
     /// Any factor, the better the nearer it is to that of A.
-    pub factor: &'a Factor,
-    pub times: Product<'a>,
+    pub(crate) factor: &'a Factor,
+    pub(crate) times: Product<'a>,
     /// |t|_A* <= the sum of these times |t_i|.
-    pub crude: &'a [f64],
+    pub(crate) crude: &'a [f64],
     /// |v|_A^2 is at least this times |v|_a^2.
-    pub coercivity: f64,
+    pub(crate) coercivity: f64,
 }
 
 /// The matrix G, enclosed.
@@ -720,7 +720,7 @@ impl Known {
     ///
     /// # Errors
     /// Why nothing is proved.
-    pub fn new(
+    pub(crate) fn new(
         body: &Body,
         pieces: &[Piece<PreciseBall>],
         springs: Option<&[DMatrix<f64>]>,
@@ -748,14 +748,14 @@ impl Known {
 /// The residual at a displacement, of which the forces of contact are known up to some numbers.
 pub(super) struct Rest<'a> {
     /// Its dual norm for certain forces, at most.
-    pub rho: f64,
+    pub(crate) rho: f64,
     /// A z with this z is that residual, up to a functional of at most this dual norm.
-    pub z: &'a [PreciseBall],
-    pub left: f64,
+    pub(crate) z: &'a [PreciseBall],
+    pub(crate) left: f64,
     /// What the force of each functional is off, at most.
-    pub spread: &'a [f64],
+    pub(crate) spread: &'a [f64],
     /// The norm of the displacement.
-    pub size: f64,
+    pub(crate) size: f64,
 }
 
 /// Decides around the displacement `u` with the residual `of`. The norm is that of A, or of A with the springs that are

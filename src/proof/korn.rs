@@ -135,11 +135,6 @@ impl Korn {
         }
         nodes.iter().all(|n| n.is_finite()).then_some(Korn { nodes })
     }
-
-    /// The largest of the factors.
-    pub fn largest(&self) -> f64 {
-        self.nodes.iter().fold(0.0, |m: f64, &n| m.max(n))
-    }
 }
 
 /// No triangle.

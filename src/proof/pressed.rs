@@ -262,7 +262,7 @@ impl PressedPart {
 
 impl Pressed {
     /// Nothing: |v|_S = |v|_A.
-    pub fn nowhere(count: usize) -> Self {
+    pub(crate) fn nowhere(count: usize) -> Self {
         Pressed { count, parts: Vec::new() }
     }
 
@@ -359,7 +359,7 @@ impl Pressed {
     }
 
     /// For each piece of Gamma_C the matrix of its springs, in doubles.
-    pub fn springs(&self, lines: &[Piece<PreciseBall>]) -> Vec<DMatrix<f64>> {
+    pub(crate) fn springs(&self, lines: &[Piece<PreciseBall>]) -> Vec<DMatrix<f64>> {
         let nothing = |line: &Piece<PreciseBall>| DMatrix::zeros(line.p0.len(), line.p0.len());
         let mut springs: Vec<DMatrix<f64>> = lines.iter().map(nothing).collect();
         for part in &self.parts {
@@ -432,7 +432,7 @@ pub(crate) fn greatest(degree: Degree, p: &[PreciseBall]) -> f64 {
 /// An upper bound of P0(v) along a piece where |v| is at most `far` at the nodes of its edges, added up over its sides, and
 /// `radius` in the energy norm a: gamma |s(v)| is at most 2 (gamma / |E|)^{1/2} |v|_a in the plane, and n~ . v at most 5/4 of the largest nodal
 /// value; where the nodes of the piece are not those of the edge, that twice.
-pub fn change(line: &Piece<PreciseBall>, far: f64, radius: f64) -> f64 {
+pub(crate) fn change(line: &Piece<PreciseBall>, far: f64, radius: f64) -> f64 {
     let spread = if line.sides.len() == 1 { 1.25 } else { 1.25 * 1.25 };
     up(SAFETY * (spread * far + stress_factor(line) * root_of(line) * radius))
 }

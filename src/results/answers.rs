@@ -85,7 +85,7 @@ pub struct ContactBoundary {
 #[non_exhaustive]
 pub struct BoundaryFriction {
     /// The sum over its edges of the magnitudes of their shear forces.
-    pub shear: f64,
+    pub(crate) shear: f64,
     /// The measure of where the body sticks, within the bound.
     pub sticks: f64,
     /// The measure of where it slides, at the bound.
@@ -93,7 +93,7 @@ pub struct BoundaryFriction {
     /// The largest magnitude of the slip at a node: u_t, less that of the load step before.
     pub slip: f64,
     /// Where that is, in the undeformed body.
-    pub slip_at: [f64; 2],
+    pub(crate) slip_at: [f64; 2],
     /// The work of friction on the slip, int lambda_t u_t with the sign turned: what is lost to heat.
     pub dissipated: f64,
     /// The share of the shear force that may act at most which acts where the body does not touch; 0 but for Tresca's law.
@@ -159,7 +159,7 @@ pub(crate) fn energy_balance(
 }
 
 /// The largest principal strain, in magnitude, of the mean strain on a triangle, and the middle of that triangle.
-pub fn largest_strain(d: &Discretization, u: &[[f64; 2]]) -> (f64, [f64; 2]) {
+pub(crate) fn largest_strain(d: &Discretization, u: &[[f64; 2]]) -> (f64, [f64; 2]) {
     let of = |t| {
         let g = d.space.mean_gradient(t, u);
         let hoop = d.space.mean_hoop_strain(t, d.problem.material.of(t), u).abs();
@@ -249,9 +249,9 @@ fn recover_between(
 /// The hat functions of an edge's nodes.
 #[derive(Clone, Copy)]
 enum Hats {
-    /// One for each end.
+    /// A hat for each end.
     Whole,
-    /// One for each end and one for the middle.
+    /// A hat for each end and for the middle.
     Halves,
 }
 
@@ -382,7 +382,7 @@ pub(crate) fn contact_boundaries(
 }
 
 /// The name of a contact boundary, and that of a pair of boundaries.
-pub fn label(boundary: &str, partner: Option<&str>) -> String {
+pub(crate) fn label(boundary: &str, partner: Option<&str>) -> String {
     match partner {
         None => boundary.to_owned(),
         Some(partner) => format!("{boundary} on {partner}"),

@@ -106,7 +106,7 @@ pub struct ContactValues {
     /// The node.
     pub node: usize,
     /// n~, the direction of contact.
-    pub direction: [f64; 2],
+    pub(crate) direction: [f64; 2],
     /// Arc length along the boundary from the start of its first edge.
     pub arc: f64,
     /// u_n = u . n~
@@ -130,7 +130,7 @@ pub struct ContactValues {
 #[non_exhaustive]
 pub struct PieceValues {
     /// The names of the two boundaries.
-    pub boundaries: [Arc<str>; 2],
+    pub(crate) boundaries: [Arc<str>; 2],
     /// The nodes in order along the first one (for P2 with the middle in the middle).
     pub points: Vec<PieceNodeValues>,
 }
@@ -142,11 +142,11 @@ pub struct PieceNodeValues {
     /// The places on the edges of the two bodies, undeformed.
     pub at: [[f64; 2]; 2],
     /// u^h there, of each body.
-    pub displacement: [[f64; 2]; 2],
+    pub(crate) displacement: [[f64; 2]; 2],
     /// n~, the direction of contact, from the first body to the second.
-    pub direction: [f64; 2],
+    pub(crate) direction: [f64; 2],
     /// Arc length along the pieces of the pair from the start of the first one.
-    pub arc: f64,
+    pub(crate) arc: f64,
     /// The jump of u . n~
     pub u_n: f64,
     /// g
@@ -169,6 +169,8 @@ pub struct PieceNodeValues {
 pub struct ContactPoint<'s> {
     /// The name of the boundary.
     pub boundary: &'s str,
+    /// The name of the other boundary of a pair.
+    pub partner: Option<&'s str>,
     /// The node, if it is one.
     pub node: Option<usize>,
     /// Arc length along the boundary, or along the pieces of the pair.
@@ -192,7 +194,7 @@ pub struct ContactPoint<'s> {
     /// u . t, or the jump of that, t being n~ turned to the left.
     pub u_t: f64,
     /// The shear stress of friction along t.
-    pub shear: f64,
+    pub(crate) shear: f64,
 }
 
 /// Scalars of a solution, in the units of the case.
@@ -288,6 +290,7 @@ impl Solution {
         let obstacles = self.contact.iter().map(|edge| {
             let point = |p: &ContactValues| ContactPoint {
                 boundary: &edge.boundary,
+                partner: None,
                 node: Some(p.node),
                 arc: p.arc,
                 place: self.nodes[p.node],
@@ -308,6 +311,7 @@ impl Solution {
             pair.iter().map(move |piece| {
                 let point = |p: &PieceNodeValues| ContactPoint {
                     boundary: &piece.boundaries[i],
+                    partner: Some(&piece.boundaries[1 - i]),
                     node: None,
                     arc: p.arc,
                     place: p.at[i],

@@ -10,7 +10,7 @@ use crate::model::{Degree, Problem};
 pub type Components = [f64; 4];
 
 /// The von Mises stress, sigma_zz included.
-pub fn von_mises([xx, yy, zz, xy]: Components) -> f64 {
+pub(crate) fn von_mises([xx, yy, zz, xy]: Components) -> f64 {
     let squares = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
     (squares / 2.0 + 3.0 * xy * xy).sqrt()
 }

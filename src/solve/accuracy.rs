@@ -88,7 +88,7 @@ pub struct Outcome {
 
 impl Outcome {
     /// Returns whether the exact solution is proved to be as near as asked for.
-    pub fn is_proved(&self, settings: &Settings) -> bool {
+    pub(crate) fn is_proved(&self, settings: &Settings) -> bool {
         self.enclosure.as_ref().is_ok_and(|e| e.is_within(settings.proof))
     }
 
@@ -104,7 +104,7 @@ impl Outcome {
     }
 
     /// Returns whether Newton's method took all the steps that it may.
-    pub(crate) fn is_out_of_steps(&self, settings: &Settings) -> bool {
+    fn is_out_of_steps(&self, settings: &Settings) -> bool {
         self.residuals.len() > settings.max_iterations
     }
 

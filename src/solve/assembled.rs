@@ -24,7 +24,7 @@ use crate::linear::factor::Factor;
 use crate::linear::system::System;
 
 /// The last factored tangent.
-pub struct Assembled<'a, 'd, 'p> {
+pub(crate) struct Assembled<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
     /// The size that residuals are relative to.
     reference: f64,
@@ -40,7 +40,7 @@ pub struct Assembled<'a, 'd, 'p> {
 
 impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
     /// Before anything is factored.
-    pub fn new(system: &'a System<'d, 'p>, reference: f64) -> Self {
+    pub(crate) fn new(system: &'a System<'d, 'p>, reference: f64) -> Self {
         Assembled {
             system,
             reference,

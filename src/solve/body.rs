@@ -100,7 +100,7 @@ pub struct Residual {
 /// The derivatives of Psi at y.
 pub struct Derivatives {
     /// The stiffness of its springs, 1 for those of (8).
-    pub stiffness: f64,
+    pub(crate) stiffness: f64,
     /// Nodal values of the gradient.
     pub gradient: Vec<f64>,
     /// The Hessian, piece by piece.

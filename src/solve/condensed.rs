@@ -38,7 +38,7 @@ use crate::linear::system::System;
 use crate::model::mesh::ROUNDED;
 
 /// The body, factored, and the forces of contact on it.
-pub struct Condensed<'a, 'd, 'p> {
+pub(crate) struct Condensed<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
     factor: Arc<Factor>,
     compliance: Compliance<'a>,
@@ -57,7 +57,7 @@ impl<'a, 'd, 'p> Condensed<'a, 'd, 'p> {
     ///
     /// # Errors
     /// As [`Compliance::new`].
-    pub fn new(
+    pub(crate) fn new(
         system: &'a System<'d, 'p>,
         factor: Arc<Factor>,
         reach: &'a Reach,

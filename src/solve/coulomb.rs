@@ -89,7 +89,7 @@ pub(crate) fn coefficient(piece: &Piece<impl Sized>) -> Option<f64> {
 }
 
 /// The way to a solution with Coulomb's friction.
-pub struct Coulomb<'a, 'd, 'p> {
+pub(crate) struct Coulomb<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
     /// The size that residuals are relative to.
     reference: f64,
@@ -106,7 +106,7 @@ pub struct Coulomb<'a, 'd, 'p> {
 
 impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
     /// Before anything is factored.
-    pub fn new(system: &'a System<'d, 'p>, reference: f64) -> Self {
+    pub(crate) fn new(system: &'a System<'d, 'p>, reference: f64) -> Self {
         Coulomb {
             system,
             reference,

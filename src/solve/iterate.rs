@@ -35,15 +35,15 @@ pub struct Evaluation {
     /// A(u, v) - L(v) for every basis function v.
     pub forces: Vec<[f64; 2]>,
     /// Its values for every free degree of freedom.
-    pub linear: Vec<f64>,
+    pub(crate) linear: Vec<f64>,
     /// P(u) at the nodes of the contact edges; negative on those that press in no solution.
-    pub p: Vec<DoubleDouble>,
+    pub(crate) p: Vec<DoubleDouble>,
     /// The magnitudes that these were added up from.
-    pub p_magnitudes: Vec<f64>,
+    pub(crate) p_magnitudes: Vec<f64>,
     /// a(u, u)
-    pub energy: f64,
+    pub(crate) energy: f64,
     /// A norm that rounding alone may give the residual.
-    pub noise: f64,
+    pub(crate) noise: f64,
     /// In double-doubles.
     pub precisely: bool,
 }
@@ -77,7 +77,7 @@ impl Iterate {
     }
 
     /// The part that rounding to doubles leaves out.
-    pub fn remainder(&self) -> Vec<[f64; 2]> {
+    pub(crate) fn remainder(&self) -> Vec<[f64; 2]> {
         self.u.iter().map(|u| u.map(DoubleDouble::tail)).collect()
     }
 
@@ -143,9 +143,9 @@ pub struct Evaluated {
     /// Nodal values.
     pub u: Vec<[f64; 2]>,
     /// P(u) at the nodes of each contact edge.
-    pub p: Vec<Vec<DoubleDouble>>,
+    pub(crate) p: Vec<Vec<DoubleDouble>>,
     /// R(u; v) for every basis function v.
-    pub residual: Vec<[f64; 2]>,
+    pub(crate) residual: Vec<[f64; 2]>,
 }
 
 impl Evaluated {
@@ -159,7 +159,7 @@ impl Evaluated {
 
     /// Evaluates a displacement whose `forces`, A(u, v) - L(v) for every basis function v, and whose P at the nodes of the
     /// contact edges are known.
-    pub fn with(
+    pub(crate) fn with(
         d: &Discretization,
         u: Vec<[f64; 2]>,
         forces: Vec<[f64; 2]>,
@@ -176,7 +176,7 @@ impl Evaluated {
 
     /// Goes to the solution of least norm, where contact holds the body and there are several: neither the forces nor P where it
     /// presses change by it. Gives how far the body may move from there.
-    pub fn settle(&mut self, d: &Discretization) -> Vec<Play> {
+    pub(crate) fn settle(&mut self, d: &Discretization) -> Vec<Play> {
         let p: Vec<DoubleDouble> = self.p.iter().flatten().copied().collect();
         let Some(slides) = Slides::around(d, &self.u, Some(&p)) else { return Vec::new() };
         if slides.basis.is_empty() {

@@ -89,7 +89,7 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
     }
 
     /// The operations that are predicted for a route.
-    pub fn predicted(&self, name: RouteName) -> f64 {
+    pub(crate) fn predicted(&self, name: RouteName) -> f64 {
         self.predicted[name as usize]
     }
 

@@ -236,7 +236,7 @@ pub fn write(folder: &Path, title: &str, studies: &[Study]) -> Result<Vec<PathBu
     let mut output = Output::new(folder)?;
     output.stage(FILES[0], csv(studies).as_bytes())?;
     output.stage_made(FILES[1], figure(&plot(title, studies)))?;
-    output.publish()
+    output.publish(&[])
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use signorini::certificates::{Target, adapt, certify};
-use signorini::exact::{Corner, Errors, Exact, Kind, Singular, SlipTip, Smooth, StickSlip};
+use signorini::exact::{Corner, Errors, Exact, Kind, Singular, Smooth};
 use signorini::io::Case;
 use signorini::io::picture::plot::{self, Figure, Panel, Style};
 use signorini::kernel::{Material, Plane};
@@ -28,7 +28,7 @@ use signorini::solve::{ContactQuadrature, Gamma0, Method, Settings, SolveError, 
 
 use crate::convergence::{self, NORMS, Study};
 use crate::ladder::fitted_slope;
-use crate::{Ladder, Theorem};
+use crate::{Ladder, SlipTip, StickSlip, Theorem};
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
-use signorini::exact::{self, Errors, Exact, Kind};
-use signorini::model::{Degree, MeshError, Perturbation, Problem, Space, Structured};
+use signorini::contact::Friction;
+use signorini::exact::{Errors, Exact, Kind, body_force};
+use signorini::model::{Degree, Mesh, MeshError, Perturbation, Problem, Space, Structured};
 use signorini::results::Solution;
 use signorini::solve::{
     ContactQuadrature, Gamma0, Method, Outline, Settings, SolveError, check, solve,
@@ -62,6 +63,19 @@ pub struct Level {
     pub proved: Option<f64>,
 }
 
+/// The problem that `solution` solves on a mesh of its body.
+pub fn problem(solution: &Exact, mesh: Mesh, kinds: &BTreeMap<String, Kind>) -> Problem {
+    let conditions = kinds.iter().map(|(name, kind)| (name.clone(), kind.condition(solution)));
+    let (material, force) = (*solution.material(), body_force(solution));
+    let mut problem = Problem::new(mesh, material, force, conditions.collect());
+    if let Some(bound) = solution.slip_bound() {
+        for (name, _) in kinds.iter().filter(|(_, kind)| **kind == Kind::Contact) {
+            problem = problem.with_friction(name, Friction::tresca(move |_| bound));
+        }
+    }
+    problem
+}
+
 impl Ladder {
     /// The problem of a level.
     ///
@@ -73,7 +87,7 @@ impl Ladder {
             .perturbation
             .map(|p| Perturbation { seed: p.seed.wrapping_add(level as u64), ..p });
         let mesh = self.body.refined(factor.unwrap_or(usize::MAX)).mesh(moved)?;
-        Ok(exact::problem(&self.solution, mesh, &self.kinds))
+        Ok(problem(&self.solution, mesh, &self.kinds))
     }
 
     /// The size of a level's discrete problem, and its coercivity.

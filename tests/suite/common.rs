@@ -174,10 +174,10 @@ pub mod exact {
     use std::sync::Arc;
 
     use signorini::exact::Exact;
-    use signorini::exact::{Corner, Kind, Singular, SlipTip, Smooth, StickSlip};
+    use signorini::exact::{Corner, Kind, Singular, Smooth};
     use signorini::model::{Degree, Perturbation, Structured, Trapezoid};
     use signorini::solve::Settings;
-    use study::Ladder;
+    use study::{Ladder, SlipTip, StickSlip};
 
     use super::{EXACT, method, unit_material, unit_square};
 

@@ -1,6 +1,6 @@
 //! The command where its surroundings give out: pipes that close, disks that are full, signals, files that are none, names that
 //! attack the terminal, and the other engine, which runs nothing of the folder in which it is started. Each case is one that once
-//! went wrong. The random ones (kills, races, a small disk) are in `.ci/faults.py`.
+//! went wrong. Kills at random times and small disks are in `.ci/faults.py`.
 
 use std::fs;
 use std::os::unix::fs::{PermissionsExt, symlink};
@@ -124,10 +124,13 @@ fn pipes_devices_and_directories_are_no_files_to_read() {
     let on_a_device = edited(&[[RECTANGLE, "gmsh = \"/dev/zero\""]]);
     fs::write(folder.join("mesh.toml"), on_a_device).unwrap();
     for (case, expected) in [
-        ("pipe", "pipe: this is a pipe; expected a file"),
-        ("/dev/zero", "/dev/zero: this is a device; expected a file"),
+        ("pipe", "pipe: this is a pipe, a socket or a device; expected a file"),
+        ("/dev/zero", "/dev/zero: this is a pipe, a socket or a device; expected a file"),
         (".", ".: this is a directory; expected a file"),
-        ("mesh.toml", "mesh.toml:3: [mesh] gmsh: /dev/zero: this is a device; expected a file"),
+        (
+            "mesh.toml",
+            "mesh.toml:3: [mesh] gmsh: /dev/zero: this is a pipe, a socket or a device; expected a file",
+        ),
     ] {
         for task in ["solve", "check"] {
             let output = run(&mut command(&folder, &[task, case]));

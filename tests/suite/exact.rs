@@ -14,12 +14,13 @@ use approx::{abs_diff_eq, assert_relative_eq};
 use crate::common::Random;
 use crate::common::exact::{corner, on_square, on_trapezoid, singular, smooth};
 use signorini::exact::errors::POINTS;
-use signorini::exact::{Corner, Patch, Singular, SlipTip, Smooth, StickSlip};
+use signorini::exact::{Corner, Patch, Singular, Smooth};
 use signorini::exact::{Errors, Exact};
 use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
 use signorini::model::Space;
 use signorini::nalgebra::{Matrix2, Vector2};
+use study::{SlipTip, StickSlip};
 
 /// A solution, its name, and its body: the unit square, or the wedge 0 < theta < omega.
 struct Sample {

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use signorini::exact::Exact;
-use signorini::exact::{self, Kind, Patch};
+use signorini::exact::{Kind, Patch};
 use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
 use signorini::model::{Diagonal, Problem};
@@ -35,7 +35,7 @@ fn problem(solution: &Exact, diagonal: Diagonal) -> Problem {
         ("bottom", Kind::Contact),
     ];
     let kinds = kinds.map(|(name, kind)| (name.to_owned(), kind)).into();
-    exact::problem(solution, skewed_square(6, diagonal), &kinds)
+    study::problem(solution, skewed_square(6, diagonal), &kinds)
 }
 
 fn solved(problem: &Problem, degree: Degree) -> Solution {

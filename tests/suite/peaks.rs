@@ -1,7 +1,7 @@
 //! Peak pressures on curved lines of contact over four refinements, against values of other origin: a plate on a pin and a
 //! shaft in a bearing against `reference/peaks.py` (mapped biquadratic elements, conditions at the nodes, an active set), a
 //! disk on a plane against Hertz. What the normals of the facets give instead is in `parts`. The two coarser levels are run by
-//! `cargo test`; all four, with the table of docs/parts.md: `cargo test --test suite peaks:: -- --ignored --nocapture`.
+//! `cargo test`; all four, with the table of docs/figures/peaks.csv: `cargo test --test suite peaks:: -- --ignored --nocapture`.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -225,7 +225,7 @@ const FAMILIES: [Family; 4] = [
 /// From the second level on the peaks within 2 %, the forces within 1 %; on the coarsest within 5 % and 3 %.
 fn peaks_are_right_on(levels: std::ops::Range<usize>) {
     for Family { name, levels: edges, problem, expected } in FAMILIES {
-        println!("| {name} | {:?} |", &edges[levels.clone()]);
+        println!("{name},\"{:?}\"", &edges[levels.clone()]);
         for degree in [Degree::One, Degree::Two] {
             let mut peaks = Vec::new();
             for level in levels.clone() {
@@ -241,7 +241,7 @@ fn peaks_are_right_on(levels: std::ops::Range<usize>) {
                 assert!(off[1] < of_force, "{name}, {degree:?}, {n}: force {force}, {line:?}");
                 peaks.push(format!("{:.5} ({ratio:.4})", line.peak_pressure));
             }
-            println!("| {degree:?} | {} |", peaks.join(" | "));
+            println!("{name},{degree:?},{}", peaks.join(","));
         }
     }
 }
@@ -252,7 +252,7 @@ fn peaks_on_a_pin_in_a_bearing_and_under_a_disk_are_those_of_other_programs_and_
 }
 
 #[test]
-#[ignore = "takes most of a minute; run by .ci/run, prints the table of docs/parts.md"]
+#[ignore = "takes most of a minute; run by .ci/run, prints the table of docs/figures/peaks.csv"]
 fn peaks_converge_over_four_refinements() {
     peaks_are_right_on(0..4);
 }

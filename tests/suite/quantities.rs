@@ -11,7 +11,7 @@ use signorini::certificates::{
     Asked, Continuous, Ramp, Target, adapt, adapt_to, certify, certify_with, forces,
 };
 use signorini::exact::Exact;
-use signorini::exact::{self, Kind, Patch};
+use signorini::exact::{Kind, Patch};
 use signorini::io::certificate::{self, Header};
 use signorini::kernel::Ball;
 use signorini::model::Degree;
@@ -196,7 +196,7 @@ fn of_a_patch_test_the_force_is_known_to_twelve_digits() {
             let kinds = kinds.into_iter().chain(sides).map(|(name, kind)| (name.to_owned(), kind));
             let solution: Exact = Arc::new(patch.clone());
             let problem =
-                exact::problem(&solution, unit_square(4).mesh().unwrap(), &kinds.collect());
+                study::problem(&solution, unit_square(4).mesh().unwrap(), &kinds.collect());
             let c = by_a_dual_pair(&problem, degree);
             let [low, high] = interval(&c, Name::ContactForce, "bottom");
             eprintln!("{k} {degree:?}: {} {} rigorous {}", low - force, high - force, c.rigorous);
@@ -419,7 +419,7 @@ fn weighted_force(n: usize, perturbation: Option<Perturbation>, degree: Degree) 
     let more = [("right", Kind::Displacement), ("top", Kind::Displacement)];
     let kinds = kinds.into_iter().chain(more).map(|(name, kind)| (name.to_owned(), kind));
     let mesh = Structured::Rectangle(unit_square(n)).mesh(perturbation).unwrap();
-    let problem = exact::problem(&singular(0.5), mesh, &kinds.collect());
+    let problem = study::problem(&singular(0.5), mesh, &kinds.collect());
     let weight = Ramp { axis: 0, between: [0.25, 1.0], width: 0.25 };
     let asked = Asked { forces: vec![("bottom".to_owned(), Some(weight))] };
     let c = certify_with(&problem, &solved(&problem, degree), &asked).unwrap();
@@ -581,7 +581,7 @@ fn a_weight_with_kinks_inside_edges_has_the_force_of_a_uniform_pressure_times_it
             let kinds = [("top", Kind::Displacement), ("bottom", Kind::Contact)];
             let sides = [("left", Kind::Traction), ("right", Kind::Traction)];
             let kinds = kinds.into_iter().chain(sides).map(|(name, kind)| (name.to_owned(), kind));
-            let problem = exact::problem(&patch, unit_square(n).mesh().unwrap(), &kinds.collect());
+            let problem = study::problem(&patch, unit_square(n).mesh().unwrap(), &kinds.collect());
             let weight = Ramp { axis: 0, between: [0.31, 0.62], width: 0.17 };
             let asked = Asked { forces: vec![("bottom".to_owned(), Some(weight))] };
             let c = certify_with(&problem, &solved(&problem, degree), &asked).unwrap();

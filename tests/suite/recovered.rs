@@ -14,7 +14,7 @@
 //! F'(s) ds = (E* / R) s arccos(b / s) ds: b = 0 is Hertz. The fourth is a ring that a pin stretches (Lame).
 //!
 //! `cargo test` runs the two coarser meshes; `cargo test --test suite recovered:: -- --ignored --nocapture` all, with the table
-//! of docs/parts.md.
+//! of docs/figures/recovered.csv.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
@@ -278,11 +278,8 @@ fn orders_hold_on(levels: Range<usize>, families: &[Family], meshes: &[(bool, &s
     let mut missed = Vec::new();
     for family in families {
         for &(moved, kind) in meshes {
-            let mut rows: Vec<String> = family
-                .parts
-                .iter()
-                .map(|p| format!("| {} | {} | {kind} |", family.name, p.name))
-                .collect();
+            let mut rows: Vec<String> =
+                family.parts.iter().map(|p| format!("{},{},{kind}", family.name, p.name)).collect();
             for degree in [Degree::One, Degree::Two] {
                 let all: Vec<Vec<[f64; 2]>> = levels
                     .clone()
@@ -294,7 +291,7 @@ fn orders_hold_on(levels: Range<usize>, families: &[Family], meshes: &[(bool, &s
                     let found = order(&recovered);
                     let cells: Vec<String> =
                         recovered.iter().map(|e| format!("{:.3}", 100.0 * e)).collect();
-                    *row += &format!(" {} | {found:.1} |", cells.join(" | "));
+                    *row += &format!(",{},{found:.1}", cells.join(","));
                     let is_second = part.is_smooth && !moved;
                     let is_right = match levels.len() {
                         _ if is_second => found > 1.5 && order(&planted) < 1.5,
@@ -321,7 +318,7 @@ fn the_recovered_pressure_is_of_second_order_where_it_is_smooth_on_two_structure
 }
 
 #[test]
-#[ignore = "takes a minute; run by .ci/run, prints the table of docs/parts.md"]
+#[ignore = "takes a minute; run by .ci/run, prints the table of docs/figures/recovered.csv"]
 fn the_recovered_pressure_has_its_orders_on_four_meshes() {
     orders_hold_on(0..4, &FAMILIES, &[(false, "structured"), (true, "moved")]);
 }

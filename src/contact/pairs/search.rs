@@ -12,16 +12,16 @@ use crate::model::tree::{Bounds, Tree};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     /// The number of the edge in the boundary.
-    pub edge: usize,
+    pub(crate) edge: usize,
     /// Where on the curve along it, from 0 at its start to 1 at its end.
-    pub s: f64,
+    pub(crate) s: f64,
 }
 
 /// A point of a boundary.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Point {
-    pub place: Vector2<f64>,
-    pub normal: Vector2<f64>,
+    pub(crate) place: Vector2<f64>,
+    pub(crate) normal: Vector2<f64>,
     /// Where it lies: on two edges where a smooth boundary goes on from one to the next.
     at: [Option<Place>; 2],
 }
@@ -39,9 +39,9 @@ impl Point {
 /// Two points that face each other, of boundary 1 and of boundary 2.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Facing {
-    pub points: [Vector2<f64>; 2],
+    pub(crate) points: [Vector2<f64>; 2],
     /// d
-    pub direction: Vector2<f64>,
+    pub(crate) direction: Vector2<f64>,
     at: [[Option<Place>; 2]; 2],
 }
 
@@ -55,7 +55,11 @@ impl Facing {
     }
 
     /// The points of two curves on the line through `from` along `direction`.
-    pub fn along(from: Vector2<f64>, direction: Vector2<f64>, curves: &[SmoothEdge; 2]) -> Self {
+    pub(crate) fn along(
+        from: Vector2<f64>,
+        direction: Vector2<f64>,
+        curves: &[SmoothEdge; 2],
+    ) -> Self {
         let on = |curve: &SmoothEdge| {
             let off = |s: f64| (curve.at(s).0 - from).perp(&direction);
             // Boundary 1 crosses the line from the right to the left, boundary 2 the other way.
@@ -92,8 +96,8 @@ pub(super) fn cut(from: Vector2<f64>, direction: Vector2<f64>, curve: &SmoothEdg
 
 /// A boundary of a pair.
 pub(crate) struct Boundary {
-    pub edges: Vec<BoundaryEdge>,
-    pub curves: Vec<SmoothEdge>,
+    pub(crate) edges: Vec<BoundaryEdge>,
+    pub(crate) curves: Vec<SmoothEdge>,
     /// The vertices at start and end of each edge.
     ends: Vec<[usize; 2]>,
     /// The nodes, one for each side of a corner.
@@ -112,7 +116,7 @@ const OPPOSITE: f64 = 0.5;
 const EQUAL: f64 = 1e-9;
 
 impl Boundary {
-    pub fn new(mesh: &Mesh, smooth: &SmoothBoundary, name: &str) -> Result<Self, MeshError> {
+    pub(crate) fn new(mesh: &Mesh, smooth: &SmoothBoundary, name: &str) -> Result<Self, MeshError> {
         let edges = mesh.edges_of(name)?.to_vec();
         let curves: Vec<SmoothEdge> = edges.iter().map(|&e| smooth.edge(mesh, e)).collect();
         let ends: Vec<[usize; 2]> = edges.iter().map(|&e| mesh.ends(e)).collect();
@@ -150,7 +154,7 @@ impl Boundary {
     }
 
     /// The share of edge `e` by which rounding may misplace a partner at this distance.
-    pub fn rounding(&self, e: usize, distance: f64) -> f64 {
+    pub(crate) fn rounding(&self, e: usize, distance: f64) -> f64 {
         self.turned[e] * (1.0 + distance / self.curves[e].length())
     }
 
@@ -214,7 +218,7 @@ impl Boundary {
     }
 
     /// The least distance of a place from the chords, and where.
-    pub fn closest(&self, from: Vector2<f64>, most: f64) -> Option<(f64, Vector2<f64>)> {
+    pub(crate) fn closest(&self, from: Vector2<f64>, most: f64) -> Option<(f64, Vector2<f64>)> {
         let mut radius = self.curves.first()?.length().min(most);
         loop {
             let mut best: Option<(f64, Vector2<f64>)> = None;
@@ -291,9 +295,9 @@ fn mutual(sides: &[Boundary; 2], of: usize, point: &Point, reach: f64) -> Option
 /// A stretch of two boundaries between neighbouring partners that are on one edge of each.
 pub(super) struct Stretch {
     /// The edges.
-    pub on: [usize; 2],
+    pub(crate) on: [usize; 2],
     /// Its ends, along boundary 1.
-    pub ends: [Facing; 2],
+    pub(crate) ends: [Facing; 2],
 }
 
 /// All stretches, along the edges of boundary 1.

@@ -54,7 +54,7 @@ fn read_corner(table: &Table, material: Material<f64>) -> Result<Exact, FileErro
 const ANGLE: &str = "an angle between pi/2 and pi";
 
 /// omega, and where it stands.
-pub fn angle<'s>(table: &Table<'s>) -> Result<(f64, Value<'s>), FileError> {
+pub(crate) fn angle<'s>(table: &Table<'s>) -> Result<(f64, Value<'s>), FileError> {
     let value = table.require("omega", ANGLE)?;
     Ok((value.number_that(|omega| FRAC_PI_2 < omega && omega < PI, ANGLE)?, value))
 }

@@ -15,12 +15,12 @@ use crate::quote::quoted;
 
 /// A mesh and how it was made.
 pub(super) struct Meshed {
-    pub mesh: Mesh,
-    pub structured: Option<Structured>,
-    pub perturbation: Option<Perturbation>,
-    pub file: Option<PathBuf>,
+    pub(crate) mesh: Mesh,
+    pub(crate) structured: Option<Structured>,
+    pub(crate) perturbation: Option<Perturbation>,
+    pub(crate) file: Option<PathBuf>,
     /// What was decided when the file was read.
-    pub remarks: Vec<String>,
+    pub(crate) remarks: Vec<String>,
 }
 
 impl From<Mesh> for Meshed {

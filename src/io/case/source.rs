@@ -18,17 +18,17 @@ use crate::quote::{cut, quoted};
 
 /// A file, its text, and the settings over it. Places in the settings come after those in the text.
 #[derive(Clone, Copy)]
-pub struct Source<'s> {
-    pub file: &'s Path,
-    pub text: &'s str,
-    pub settings: &'s [String],
+pub(crate) struct Source<'s> {
+    pub(crate) file: &'s Path,
+    pub(crate) text: &'s str,
+    pub(crate) settings: &'s [String],
     /// The functions that the text calls `@0`, `@1`, ..
-    pub functions: &'s [SharedFunction],
+    pub(crate) functions: &'s [SharedFunction],
 }
 
 impl<'s> Source<'s> {
     /// `error` at the byte `start`, or in the file as a whole.
-    pub fn wrong(&self, start: Option<usize>, error: Failure) -> FileError {
+    pub(crate) fn wrong(&self, start: Option<usize>, error: Failure) -> FileError {
         let setting = start.and_then(|start| self.setting_at(start));
         let position = match (setting, start) {
             (Some(setting), _) => Position::Setting(setting.to_owned()),
@@ -51,7 +51,7 @@ impl<'s> Source<'s> {
 
     /// The entries of the text, with those of the settings laid over them. `layers` are the settings as [`Source::layers`] has
     /// them.
-    pub fn entries(self, layers: &'s [String]) -> Result<DeTable<'s>, FileError> {
+    pub(crate) fn entries(self, layers: &'s [String]) -> Result<DeTable<'s>, FileError> {
         let parsed = DeTable::parse(self.text).map_err(|e| {
             let start = e.span().map(|span| span.start).or_else(|| deepest(&e, self.text));
             self.wrong(start, no_toml(&e, self.text))
@@ -77,7 +77,7 @@ impl<'s> Source<'s> {
     }
 
     /// The entries of a load step, from 0: each \[\[step\]\] up to this step is laid over the rest of the file, one after the other.
-    pub fn entries_of_step(
+    pub(crate) fn entries_of_step(
         self,
         layers: &'s [String],
         step: usize,
@@ -95,13 +95,13 @@ impl<'s> Source<'s> {
     }
 
     /// The text, with a comment for each setting.
-    pub fn said(self) -> String {
+    pub(crate) fn said(self) -> String {
         let comment = |setting: &String| format!("# --set {}\n", setting.replace('\n', " "));
         self.text.to_owned() + &self.settings.iter().map(comment).collect::<String>()
     }
 
     /// The settings as TOML, each behind so much space that a place in it is a place in no other, nor in the file.
-    pub fn layers(&self) -> Vec<String> {
+    pub(crate) fn layers(&self) -> Vec<String> {
         let mut start = self.text.len();
         let mut layers = Vec::with_capacity(self.settings.len());
         for setting in self.settings {

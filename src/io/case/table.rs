@@ -18,41 +18,41 @@ use crate::model::{MeshError, SharedFunction};
 use crate::quote::{cut, key as shown, listed, number, quoted};
 
 /// The subject of a message: its name and its place. The file as a whole has neither.
-pub struct Spot<'s> {
+pub(crate) struct Spot<'s> {
     source: Source<'s>,
-    pub name: String,
+    pub(crate) name: String,
     start: Option<usize>,
 }
 
 impl Spot<'_> {
     /// A mistake here.
-    pub fn wrong(&self, error: impl Into<Failure>) -> FileError {
+    pub(crate) fn wrong(&self, error: impl Into<Failure>) -> FileError {
         self.source.wrong(self.start, error.into())
     }
 
     /// An error of the mesh here.
-    pub fn mesh(&self, error: MeshError) -> FileError {
+    pub(crate) fn mesh(&self, error: MeshError) -> FileError {
         self.wrong(Failure::from(error).map(|problem| format!("{}: {problem}", self.name)))
     }
 
     /// The complaint that something else should be here.
-    pub fn found(&self, found: &str, expected: &str) -> FileError {
+    pub(crate) fn found(&self, found: &str, expected: &str) -> FileError {
         self.wrong(format!("{}: found {found}; expected {expected}", self.name))
     }
 }
 
-pub struct Table<'s> {
-    pub at: Spot<'s>,
+pub(crate) struct Table<'s> {
+    pub(crate) at: Spot<'s>,
     entries: &'s DeTable<'s>,
 }
 
-pub struct Value<'s> {
-    pub at: Spot<'s>,
+pub(crate) struct Value<'s> {
+    pub(crate) at: Spot<'s>,
     value: &'s DeValue<'s>,
 }
 
 impl<'s> Table<'s> {
-    pub fn whole(source: Source<'s>, entries: &'s DeTable<'s>) -> Self {
+    pub(crate) fn whole(source: Source<'s>, entries: &'s DeTable<'s>) -> Self {
         let at = Spot { source, name: String::new(), start: None };
         Table { at, entries }
     }
@@ -66,17 +66,17 @@ impl<'s> Table<'s> {
         }
     }
 
-    pub fn keys(&self) -> impl Iterator<Item = &'s str> {
+    pub(crate) fn keys(&self) -> impl Iterator<Item = &'s str> {
         self.entries.keys().map(|key| &**key.get_ref())
     }
 
     /// The keys of tables.
-    pub fn keys_of_tables(&self) -> Vec<&'s str> {
+    pub(crate) fn keys_of_tables(&self) -> Vec<&'s str> {
         let is_table = |key: &&str| self.get(key).is_some_and(|value| value.is_table());
         self.keys().filter(is_table).collect()
     }
 
-    pub fn get(&self, key: &str) -> Option<Value<'s>> {
+    pub(crate) fn get(&self, key: &str) -> Option<Value<'s>> {
         let (key, value) = self.entries.get_key_value(key)?;
         let name = self.name_of(&shown(key.get_ref()));
         let at = Spot { source: self.at.source, name, start: Some(key.span().start) };
@@ -84,7 +84,7 @@ impl<'s> Table<'s> {
     }
 
     /// Reads the value of `key`, if it is there.
-    pub fn optional<T>(
+    pub(crate) fn optional<T>(
         &self,
         key: &str,
         read: impl FnOnce(&Value<'s>) -> Result<T, FileError>,
@@ -93,7 +93,7 @@ impl<'s> Table<'s> {
     }
 
     /// Reads the value of `key` into `setting`, if it is there.
-    pub fn set<T>(
+    pub(crate) fn set<T>(
         &self,
         key: &str,
         setting: &mut T,
@@ -106,12 +106,12 @@ impl<'s> Table<'s> {
     }
 
     /// Lists those of `keys` that are there.
-    pub fn given<'k>(&self, keys: &[&'k str]) -> Vec<&'k str> {
+    pub(crate) fn given<'k>(&self, keys: &[&'k str]) -> Vec<&'k str> {
         keys.iter().copied().filter(|key| self.entries.contains_key(*key)).collect()
     }
 
     /// A number that must be there and have a property, which `expected` puts in words.
-    pub fn number_that(
+    pub(crate) fn number_that(
         &self,
         key: &str,
         holds: impl FnOnce(f64) -> bool,
@@ -121,18 +121,18 @@ impl<'s> Table<'s> {
     }
 
     /// The value of `key`, which must be there.
-    pub fn require(&self, key: &str, expected: &str) -> Result<Value<'s>, FileError> {
+    pub(crate) fn require(&self, key: &str, expected: &str) -> Result<Value<'s>, FileError> {
         let missing = || format!("{} is missing; expected {expected}", self.name_of(key));
         self.get(key).ok_or_else(|| self.at.wrong(missing()))
     }
 
     /// The table `key` of the file under its header, if there is one.
-    pub fn section(&self, key: &str) -> Result<Option<Table<'s>>, FileError> {
+    pub(crate) fn section(&self, key: &str) -> Result<Option<Table<'s>>, FileError> {
         self.optional(key, |value| value.section(format!("[{key}]")))
     }
 
     /// Reads the table `key` of the file, if it is there.
-    pub fn optional_section<T>(
+    pub(crate) fn optional_section<T>(
         &self,
         key: &str,
         read: impl FnOnce(&Table<'s>) -> Result<T, FileError>,
@@ -141,25 +141,29 @@ impl<'s> Table<'s> {
     }
 
     /// The table `key` of the file, which must be there.
-    pub fn required_section(&self, key: &str, expected: &str) -> Result<Table<'s>, FileError> {
+    pub(crate) fn required_section(
+        &self,
+        key: &str,
+        expected: &str,
+    ) -> Result<Table<'s>, FileError> {
         let missing = || format!("[{key}] is missing; expected {expected}");
         self.section(key)?.ok_or_else(|| self.at.wrong(missing()))
     }
 
     /// The entry `key` of this section, under a header of its own.
-    pub fn under_header(&self, key: &str) -> Spot<'s> {
+    pub(crate) fn under_header(&self, key: &str) -> Spot<'s> {
         let name = format!("{}.{}]", self.at.name.trim_end_matches(']'), shown(key));
         let start = self.entries.get_key_value(key).map(|(key, _)| key.span().start);
         Spot { source: self.at.source, name, start }
     }
 
     /// The table `key` of this section, under a header of its own.
-    pub fn subsection(&self, key: &str) -> Result<Table<'s>, FileError> {
+    pub(crate) fn subsection(&self, key: &str) -> Result<Table<'s>, FileError> {
         self.require(key, "a table")?.section(self.under_header(key).name)
     }
 
     /// Refuses keys that are not `known`.
-    pub fn only(&self, known: &[&str]) -> Result<(), FileError> {
+    pub(crate) fn only(&self, known: &[&str]) -> Result<(), FileError> {
         let unknown = self.entries.keys().find(|key| !known.contains(&&**key.get_ref()));
         let Some(key) = unknown else { return Ok(()) };
         let within = match &*self.at.name {
@@ -174,7 +178,7 @@ impl<'s> Table<'s> {
     }
 
     /// The complaint about which of `keys` are there.
-    pub fn combination(&self, keys: &[&str], expected: &str) -> FileError {
+    pub(crate) fn combination(&self, keys: &[&str], expected: &str) -> FileError {
         let found = self.given(keys);
         // If a setting over the file supplied one of the keys, report that setting.
         let mut starts = found.iter().filter_map(|key| self.get(key)?.at.start);
@@ -190,7 +194,7 @@ impl<'s> Table<'s> {
 
 impl<'s> Value<'s> {
     /// The value as a table under the header `name`.
-    pub fn section(&self, name: String) -> Result<Table<'s>, FileError> {
+    pub(crate) fn section(&self, name: String) -> Result<Table<'s>, FileError> {
         match self.value {
             DeValue::Table(entries) => {
                 let at = Spot { source: self.at.source, name, start: self.at.start };
@@ -201,26 +205,26 @@ impl<'s> Value<'s> {
     }
 
     /// The value as a table under its key.
-    pub fn table(&self) -> Result<Table<'s>, FileError> {
+    pub(crate) fn table(&self) -> Result<Table<'s>, FileError> {
         self.section(self.at.name.clone())
     }
 
-    pub fn is_table(&self) -> bool {
+    pub(crate) fn is_table(&self) -> bool {
         matches!(self.value, DeValue::Table(_))
     }
 
-    pub fn text(&self) -> Result<&'s str, FileError> {
+    pub(crate) fn text(&self) -> Result<&'s str, FileError> {
         self.as_text().ok_or_else(|| self.wrong("a text in quotes"))
     }
 
-    pub fn as_text(&self) -> Option<&'s str> {
+    pub(crate) fn as_text(&self) -> Option<&'s str> {
         match self.value {
             DeValue::String(text) => Some(text),
             _ => None,
         }
     }
 
-    pub fn flag(&self) -> Result<bool, FileError> {
+    pub(crate) fn flag(&self) -> Result<bool, FileError> {
         match self.value {
             DeValue::Boolean(flag) => Ok(*flag),
             _ => Err(self.wrong("true or false")),
@@ -228,7 +232,7 @@ impl<'s> Value<'s> {
     }
 
     /// A finite number; integers are numbers.
-    pub fn number(&self) -> Result<f64, FileError> {
+    pub(crate) fn number(&self) -> Result<f64, FileError> {
         let number = match self.value {
             DeValue::Integer(n) => integer(n).map(|n| n as f64),
             DeValue::Float(f) => f.as_str().parse().ok(),
@@ -241,7 +245,7 @@ impl<'s> Value<'s> {
     }
 
     /// A number with a property, which `expected` puts in words.
-    pub fn number_that(
+    pub(crate) fn number_that(
         &self,
         holds: impl FnOnce(f64) -> bool,
         expected: &str,
@@ -250,12 +254,12 @@ impl<'s> Value<'s> {
         if holds(number) { Ok(number) } else { Err(self.wrong(expected)) }
     }
 
-    pub fn positive(&self) -> Result<f64, FileError> {
+    pub(crate) fn positive(&self) -> Result<f64, FileError> {
         self.number_that(|x| x > 0.0, "a positive number")
     }
 
     /// An integer in a range.
-    pub fn whole_number(&self, range: RangeInclusive<usize>) -> Result<usize, FileError> {
+    pub(crate) fn whole_number(&self, range: RangeInclusive<usize>) -> Result<usize, FileError> {
         let number = match self.value {
             DeValue::Integer(n) => integer(n).and_then(|n| usize::try_from(n).ok()),
             _ => None,
@@ -266,7 +270,7 @@ impl<'s> Value<'s> {
     }
 
     /// The value that one of these words stands for.
-    pub fn one_of<T: Copy>(&self, words: &[(&str, T)]) -> Result<T, FileError> {
+    pub(crate) fn one_of<T: Copy>(&self, words: &[(&str, T)]) -> Result<T, FileError> {
         let found = self.as_text().and_then(|text| words.iter().find(|word| word.0 == text));
         found.map(|word| word.1).ok_or_else(|| {
             let words: Vec<String> = words.iter().map(|word| quoted(word.0, '"')).collect();
@@ -277,7 +281,7 @@ impl<'s> Value<'s> {
         })
     }
 
-    pub fn items(&self) -> Result<Vec<Value<'s>>, FileError> {
+    pub(crate) fn items(&self) -> Result<Vec<Value<'s>>, FileError> {
         match self.value {
             DeValue::Array(items) => Ok(items.iter().enumerate().map(|i| self.item(i)).collect()),
             _ => Err(self.wrong("a list")),
@@ -290,23 +294,23 @@ impl<'s> Value<'s> {
         Value { at, value: item.get_ref() }
     }
 
-    pub fn pair(&self) -> Result<[Value<'s>; 2], FileError> {
+    pub(crate) fn pair(&self) -> Result<[Value<'s>; 2], FileError> {
         let pair = self.items().ok().and_then(|items| items.try_into().ok());
         pair.ok_or_else(|| self.wrong("a list of two: one for x, one for y"))
     }
 
     /// Two numbers: a point or a vector.
-    pub fn vector(&self) -> Result<[f64; 2], FileError> {
+    pub(crate) fn vector(&self) -> Result<[f64; 2], FileError> {
         let [x, y] = self.pair()?;
         Ok([x.number()?, y.number()?])
     }
 
-    pub fn functions(&self) -> Result<[SharedFunction; 2], FileError> {
+    pub(crate) fn functions(&self) -> Result<[SharedFunction; 2], FileError> {
         let [x, y] = self.pair()?;
         Ok([x.function()?, y.function()?])
     }
 
-    pub fn function(&self) -> Result<SharedFunction, FileError> {
+    pub(crate) fn function(&self) -> Result<SharedFunction, FileError> {
         let number = self.as_text().and_then(|text| text.strip_prefix('@')?.parse::<usize>().ok());
         match number.and_then(|number| self.at.source.functions.get(number)) {
             Some(function) => Ok(Arc::clone(function)),
@@ -315,7 +319,7 @@ impl<'s> Value<'s> {
     }
 
     /// An expression in x and y. One that is the same everywhere must be finite.
-    pub fn expression(&self) -> Result<Expression, FileError> {
+    pub(crate) fn expression(&self) -> Result<Expression, FileError> {
         if let DeValue::Integer(_) | DeValue::Float(_) = self.value {
             return self.number().map(Expression::from);
         }
@@ -335,7 +339,7 @@ impl<'s> Value<'s> {
     }
 
     /// The complaint that this should have been as `expected`.
-    pub fn wrong(&self, expected: &str) -> FileError {
+    pub(crate) fn wrong(&self, expected: &str) -> FileError {
         let found = match self.value {
             DeValue::String(text) => quoted(text, '"'),
             DeValue::Integer(n) => cut(&n.to_string()),
@@ -349,7 +353,7 @@ impl<'s> Value<'s> {
     }
 
     /// The value is wrong; messages show it as `found`.
-    pub fn wrong_as(&self, found: &str, expected: &str) -> FileError {
+    pub(crate) fn wrong_as(&self, found: &str, expected: &str) -> FileError {
         self.at.wrong(format!("{} = {found}; expected {expected}", self.at.name))
     }
 }

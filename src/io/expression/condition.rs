@@ -29,7 +29,7 @@ struct Comparison {
 
 impl PlaceCondition {
     /// Returns whether it holds at (x, y).
-    pub fn holds(&self, at: [f64; 2]) -> bool {
+    pub(crate) fn holds(&self, at: [f64; 2]) -> bool {
         self.alternatives.iter().any(|all| all.iter().all(|comparison| comparison.holds(at)))
     }
 }

@@ -183,7 +183,7 @@ impl<'b> Cursor<'b> {
         memory::reserve(list, self.at_most(announced)).map_err(|lack| self.in_the_file(lack))
     }
 
-    pub(super) fn skip_white_space(&mut self) {
+    fn skip_white_space(&mut self) {
         let rest = self.rest();
         self.at += rest.len() - rest.trim_ascii_start().len();
     }
@@ -196,7 +196,7 @@ impl<'b> Cursor<'b> {
         self.wrong_at(start, format!("found {found}, expected {expected}"))
     }
 
-    pub(super) fn cut_short(&self, expected: &str) -> FileError {
+    fn cut_short(&self, expected: &str) -> FileError {
         let said = format!("the file ends, expected {expected}: it is cut short");
         self.wrong_at(self.bytes.len(), said)
     }

@@ -5,14 +5,14 @@ use svg::node::element::{ClipPath, Definitions, Group, LinearGradient, Stop};
 
 use super::cells::{area, rectangles};
 use super::draw::{
-    DARK, GREY, PageAxis, PageMap, PathData, Point, VIRIDIS, clean, fitting, loops, rectangle,
-    shape, short, stroke, text, thinned, viridis,
+    DARK, GREY, PageAxis, PageMap, PathData, Point, VIRIDIS, clean, fitting, loops, quantile,
+    rectangle, shape, short, stroke, text, thinned, viridis,
 };
 use super::scene::Scene;
 use crate::io::numbers::ticks;
 
 /// The most triangles that are drawn one by one: more would make the file too large, and are drawn by cells.
-pub(crate) const MOST_TRIANGLES: usize = 20_000;
+const MOST_TRIANGLES: usize = 20_000;
 
 /// The side of such a cell.
 const CELL: f64 = 2.5;
@@ -120,15 +120,8 @@ impl Colours {
             .zip(&scene.von_mises)
             .map(|(vertices, &value)| (value, area(&vertices.map(|v| scene.points[v])).abs()))
             .collect();
-        parts.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
-        let whole: f64 = parts.iter().map(|part| part.1).sum();
-        let mut above = 0.0;
-        let quantile = parts.iter().find(|part| {
-            above += part.1;
-            above > ABOVE * whole
-        });
-        let [min, quantile, max] =
-            [parts.last(), quantile, parts.first()].map(|part| part.map_or(0.0, |part| part.0));
+        let quantile = quantile(&mut parts, ABOVE).unwrap_or(0.0);
+        let [max, min] = [parts.first(), parts.last()].map(|part| part.map_or(0.0, |part| part.0));
         if max - min <= 1e-9 * max {
             Colours { min: max, top: max, max }
         } else if quantile > min && max > 1.5 * quantile {

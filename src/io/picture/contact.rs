@@ -202,7 +202,7 @@ fn hatch(border: &[Point], hatching: &mut PathData) {
 }
 
 /// The letter of a contact boundary: the same at its panel.
-pub(super) fn letter(surface: usize) -> String {
+fn letter(surface: usize) -> String {
     match u8::try_from(surface) {
         Ok(i @ 0..26) => char::from(b'A' + i).to_string(),
         _ => (surface + 1).to_string(),

@@ -9,7 +9,7 @@ use crate::io::numbers;
 use crate::model::tree::Bounds;
 use crate::quote;
 
-pub(super) const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
+const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 /// The size of letters that are neither a heading nor a note.
 const LETTERS: f64 = 13.0;
 pub(super) const DARK: &str = "#222222";
@@ -158,6 +158,19 @@ pub(super) fn red_area(area: PathData, curve: PathData) -> Group {
 /// The smallest and the largest of some numbers.
 pub(super) fn range(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
     numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+}
+
+/// The value that no more than a `share` of the whole lies above, of parts by their value and their size, which are sorted by it from the
+/// largest on.
+pub(super) fn quantile(parts: &mut [(f64, f64)], share: f64) -> Option<f64> {
+    parts.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
+    let most = share * parts.iter().map(|part| part.1).sum::<f64>();
+    let mut above = 0.0;
+    let reaches = |part: &&(f64, f64)| {
+        above += part.1;
+        above > most
+    };
+    parts.iter().find(reaches).map(|part| part.0)
 }
 
 /// An axis: the range of its values, which may fall, and the ends of that on the page.

@@ -1,7 +1,7 @@
 //! The content of a picture as data: that of a solved case, and by how much it is magnified.
 
 use super::contact::{FURTHEST_WHERE_BENT, turns};
-use super::draw::{Point, distance, moved, short};
+use super::draw::{Point, distance, moved, quantile, short};
 use super::loads;
 use crate::certificates::quantities::Zone;
 use crate::io::case::{Case, Measure};
@@ -11,7 +11,7 @@ use crate::model::mesh::ROUNDED;
 use crate::model::tree::Bounds;
 use crate::model::{BoundaryEdge, Condition, Degree, Obstacle};
 use crate::quote;
-use crate::results::solution::{ContactEdgeValues, ContactValues, PieceNodeValues, PieceValues};
+use crate::results::solution::ContactPoint;
 use crate::results::{ContactBoundary, Solution, Verdict};
 
 /// The content of the picture of a solved case.
@@ -103,16 +103,9 @@ impl ContactSurface {
             .map(|pair| (pair[0].pressure.max(pair[1].pressure), pair[1].arc - pair[0].arc))
             .filter(|(pressure, length)| *pressure > 0.0 && *length > 0.0)
             .collect();
-        pressed.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
-        let whole: f64 = pressed.iter().map(|part| part.1).sum();
-        let mut above = 0.0;
-        let quantile = pressed.iter().find(|part| {
-            above += part.1;
-            above > SPIKE * whole
-        });
         let peak = self.peak().map_or(0.0, |peak| peak.pressure);
-        match quantile {
-            Some(&(quantile, _)) if peak > SPIKES * quantile => quantile,
+        match quantile(&mut pressed, SPIKE) {
+            Some(quantile) if peak > SPIKES * quantile => quantile,
             _ => peak,
         }
     }
@@ -206,7 +199,7 @@ impl Scene {
     }
 
     /// The number of triangles that are drawn.
-    pub fn triangles(&self) -> usize {
+    pub(crate) fn triangles(&self) -> usize {
         self.triangles.len()
     }
 
@@ -278,88 +271,65 @@ fn interfaces(case: &Case) -> Vec<BoundaryEdge> {
     found
 }
 
-/// The contact boundaries by their connected parts. A pressure that is mere rounding is none.
+/// The contact boundaries by their connected parts, those of pairs on the first body and without an obstacle. A pressure that is mere
+/// rounding is none.
 fn contact_surfaces(case: &Case, s: &Solution, results: &Results) -> Vec<ContactSurface> {
     let certificate = results.certificate.as_ref().and_then(|c| c.continuous.as_ref());
     let proved = certificate.filter(|certificate| certificate.bound.is_some());
+    let edges = s.contact_points();
     let mut surfaces: Vec<ContactSurface> = Vec::new();
-    for edges in s.contact.chunk_by(|a, b| a.boundary == b.boundary) {
-        let name = edges[0].boundary.to_string();
-        let carries =
-            results.contact.iter().find(|part| part.boundary == name && part.partner.is_none());
-        let presses = carries.is_some_and(|part| results.is_in_contact(part));
-        let connected = |a: &ContactEdgeValues, b: &ContactEdgeValues| {
-            a.points.last().map(|p| p.node) == b.points.first().map(|p| p.node)
+    for edges in edges.chunk_by(|a, b| names(a) == names(b)) {
+        let is_this = |part: &&ContactBoundary| {
+            names(&edges[0]) == Some((&part.boundary, part.partner.as_deref()))
         };
-        let sample = |p: &ContactValues| ContactSample {
+        // The second side of a pair has no entry of its own.
+        let Some(part) = results.contact.iter().find(is_this) else { continue };
+        let (name, presses) = (&part.boundary, results.is_in_contact(part));
+        let of_obstacle = part.partner.is_none();
+        let sample = |p: &ContactPoint| ContactSample {
             arc: p.arc,
-            position: s.nodes[p.node],
+            position: p.place,
             normal: p.direction,
-            displacement: s.displacement[p.node],
-            gap: p.gap,
+            displacement: p.displacement,
+            gap: if of_obstacle { p.gap } else { f64::INFINITY },
             pressure: if presses { p.pressure } else { 0.0 },
-            shear: carries.and_then(|part| part.friction.map(|_| p.shear.abs())),
+            shear: part.friction.map(|_| p.shear.abs()),
         };
-        let parts = edges.chunk_by(connected);
+        let mut parts: Vec<Vec<ContactSample>> = edges
+            .chunk_by(|a, b| meet(a.last(), b.first()))
+            .map(|part| part.iter().flatten().map(sample).collect())
+            .collect();
+        if s.degree == Degree::Two {
+            parts.iter_mut().for_each(|part| smooth(part));
+        }
         let zones = |c: &ContinuousCertificate| {
-            c.zones.iter().filter(|zone| zone.boundary == name).cloned().collect()
+            c.zones.iter().filter(|zone| zone.boundary == *name).cloned().collect()
         };
+        let proved = proved.filter(|_| of_obstacle);
         surfaces.push(ContactSurface {
-            parts: parts
-                .map(|part| part.iter().flat_map(|e| &e.points).map(sample).collect())
-                .collect(),
-            zones: proved.map(zones),
+            name: part.label(),
             rigid: matches!(
-                case.problem.conditions.get(&name),
+                case.problem.conditions.get(name),
                 Some(Condition::Obstacle(_, Obstacle::Plane { .. } | Obstacle::Circle { .. }))
             ),
+            parts,
+            zones: proved.map(zones),
             reserved: proved.is_some_and(|c| !c.rigorous || c.problem.is_some()),
-            name,
         });
-    }
-    surfaces.extend(pairs(s, results));
-    if s.degree == Degree::Two {
-        surfaces.iter_mut().flat_map(|surface| &mut surface.parts).for_each(|part| smooth(part));
     }
     surfaces.sort_by(|a, b| quote::natural(&a.name, &b.name));
     surfaces
 }
 
-/// The pairs of bodies: the pressure stands on the first of them, and no obstacle is drawn.
-fn pairs(s: &Solution, results: &Results) -> Vec<ContactSurface> {
-    let of_pairs = s.between.chunk_by(|a, b| a.boundaries == b.boundaries);
-    let surface = |pieces: &[PieceValues]| {
-        let [first, second] = &pieces[0].boundaries;
-        let is_this = |part: &&ContactBoundary| {
-            part.boundary == **first && part.partner.as_deref() == Some(&**second)
-        };
-        let carries = results.contact.iter().find(is_this);
-        let presses = carries.is_some_and(|part| results.is_in_contact(part));
-        let sample = |p: &PieceNodeValues| ContactSample {
-            arc: p.arc,
-            position: p.at[0],
-            normal: p.direction,
-            displacement: p.displacement[0],
-            gap: f64::INFINITY,
-            pressure: if presses { p.pressure } else { 0.0 },
-            shear: carries.and_then(|part| part.friction.map(|_| p.shear.abs())),
-        };
-        let connected = |a: &PieceValues, b: &PieceValues| {
-            // The end of one piece and the start of the next are one place up to rounding.
-            let ends = [a.points.last(), b.points.first()].map(|p| p.map(|p| p.at[0]));
-            let [Some([x, y]), Some([p, q])] = ends else { return false };
-            (x - p).hypot(y - q) <= ROUNDED * (x.hypot(y) + p.hypot(q))
-        };
-        let parts = pieces.chunk_by(connected);
-        ContactSurface {
-            parts: parts
-                .map(|part| part.iter().flat_map(|e| &e.points).map(sample).collect())
-                .collect(),
-            rigid: false,
-            zones: None,
-            reserved: false,
-            name: carries.map_or_else(|| first.to_string(), ContactBoundary::label),
-        }
+/// The boundary that an edge is of, and the other one of a pair.
+fn names<'p>(edge: &[ContactPoint<'p>]) -> Option<(&'p str, Option<&'p str>)> {
+    edge.first().map(|p| (p.boundary, p.partner))
+}
+
+/// Returns whether the end of one edge and the start of the next are one place, up to rounding.
+fn meet(end: Option<&ContactPoint>, start: Option<&ContactPoint>) -> bool {
+    let [Some([x, y]), Some([p, q])] = [end, start].map(|p| p.map(|p| p.place)) else {
+        return false;
     };
-    of_pairs.map(surface).collect()
+    (x - p).hypot(y - q) <= ROUNDED * (x.hypot(y) + p.hypot(q))
 }

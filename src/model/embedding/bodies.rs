@@ -27,7 +27,7 @@ pub(super) struct Linked {
 
 impl Linked {
     /// `named` has the edges of each boundary.
-    pub fn new(
+    pub(crate) fn new(
         count: usize,
         triangles: &[[usize; 3]],
         named: &[(String, Vec<[usize; 2]>)],

@@ -16,12 +16,12 @@ pub(super) struct MeshEdge {
 pub(super) struct MeshEdges {
     pub(super) edges: Vec<MeshEdge>,
     pub(super) first: Vec<Option<usize>>,
-    pub(super) triangles_at: Vec<u32>,
+    triangles_at: Vec<u32>,
 }
 
 impl MeshEdges {
     /// The end whose list has the edge, if it is in one.
-    pub(super) fn lister(&self, a: usize, b: usize) -> Option<usize> {
+    fn lister(&self, a: usize, b: usize) -> Option<usize> {
         let at = |v: usize| self.triangles_at.get(v).map(|&count| (count, v));
         Some(at(a)?.min(at(b)?).1)
     }

@@ -1,4 +1,4 @@
-//! The numbers of docs/parts.md: `cargo test --test suite revolution::measured -- --ignored --nocapture`.
+//! The numbers of docs/figures/revolution.csv: `cargo test --test suite revolution::measured -- --ignored --nocapture`.
 
 use signorini::model::Degree;
 
@@ -12,7 +12,7 @@ fn off(ratio: f64) -> String {
 }
 
 fn row(what: &str, numbers: [Vec<String>; 2]) {
-    println!("| {what} | {} |", numbers.map(|of| of.join(", ")).join(" | "));
+    println!("\"{what}\",{}", numbers.map(|of| format!("\"{}\"", of.join(", "))).join(","));
 }
 
 /// One list for P1 and one for P2.
@@ -39,7 +39,7 @@ fn orders(what: &str, sizes: [&[usize]; 2], f: impl Fn(usize, Degree) -> (f64, [
 #[test]
 #[ignore = "prints a table; the bounds are in the tests beside this one"]
 fn the_table_of_bodies_of_revolution_is_near_the_formulas() {
-    println!("| | P1 | P2 |\n| --- | --- | --- |");
+    println!("body,P1,P2");
     orders(
         "smooth, n = 8, 16, 32, 64; 4, 8, 16, 32",
         [&[8, 16, 32, 64], &[4, 8, 16, 32]],

@@ -7,12 +7,10 @@
 //! On y = 0: u_n = 0; for x > c it slides, u_x = (2/3) k A (x - c)^(3/2) / mu, with sigma_xy = s; for x < c it sticks, with
 //! sigma_xy = s - (1 + k) A |x - c|^(1/2) >= -s; sigma_n = -p + (1 - k) A \[x - c\]+^(1/2) < 0.
 
-use nalgebra::Matrix2;
-
-use super::singular::Place;
-use super::{ExactSolution, kolosov};
-use crate::kernel::Material;
-use crate::model::graded_quadrature::{Features, Singularity};
+use signorini::exact::{ExactSolution, Place, kolosov};
+use signorini::kernel::Material;
+use signorini::model::graded_quadrature::{Features, Singularity};
+use signorini::nalgebra::Matrix2;
 
 /// The solution (f).
 #[derive(Clone, Debug, PartialEq)]

@@ -7,11 +7,10 @@
 //! On y = 0: u_n = 0, sigma_n = -p, the slip u_x = U >= 0, and sigma_xy = T, which is s where the edge slides. So it solves
 //! Tresca's problem with the slip bound s if b c^m <= 2 s, and, as sigma_n is -p all along, Coulomb's with the coefficient s / p.
 
-use nalgebra::Matrix2;
-
-use super::{ExactSolution, force_of, truncated_power};
-use crate::kernel::Material;
-use crate::model::graded_quadrature::Features;
+use signorini::exact::{ExactSolution, force_of, truncated_power};
+use signorini::kernel::Material;
+use signorini::model::graded_quadrature::Features;
+use signorini::nalgebra::Matrix2;
 
 /// The solution (e).
 #[derive(Clone, Debug, PartialEq)]
