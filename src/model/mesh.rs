@@ -17,7 +17,7 @@ mod edges;
 mod error;
 mod split;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, OnceLock};
 
 use super::groups::groups;
@@ -439,19 +439,19 @@ fn check_vertices(
             }
         }
     }
-    let mut order: Vec<usize> = (0..vertices.len()).collect();
     // Adding 0.0 makes -0 and 0 the same place.
-    let place = |v: usize| vertices[v].map(|c| c + 0.0);
-    order.sort_unstable_by(|&a, &b| {
-        let ([ax, ay], [bx, by]) = (place(a), place(b));
-        ax.total_cmp(&bx).then(ay.total_cmp(&by)).then(a.cmp(&b))
-    });
-    for together in order.chunk_by(|&a, &b| place(a) == place(b)) {
-        for (i, &a) in together.iter().enumerate() {
-            if let Some(&b) = together[i + 1..].iter().find(|&&b| !may_meet(a, b)) {
-                let [x, y] = place(a);
+    let place = |v: usize| vertices[v].map(|c| (c + 0.0).to_bits());
+    let mut last_at = HashMap::with_capacity(vertices.len());
+    let mut earlier = vec![None; vertices.len()];
+    for b in 0..vertices.len() {
+        earlier[b] = last_at.insert(place(b), b);
+        let mut together = earlier[b];
+        while let Some(a) = together {
+            if !may_meet(a, b) {
+                let [x, y] = vertices[b].map(|c| c + 0.0);
                 return Err(MeshError::Duplicate { vertices: [a, b], x, y });
             }
+            together = earlier[a];
         }
     }
     match used.iter().position(|&used| !used) {
