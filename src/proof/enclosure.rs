@@ -353,8 +353,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             self.held = Some(HeldByContact { springs, korn, factor: None });
         }
         let Some(HeldByContact { korn: Some(korn), factor, springs }) = &mut self.held else {
-            let by_contact = d.slides.is_some();
-            return Err(if by_contact { Unproved::HeldByContact } else { Unproved::NotHeld });
+            return Err(d.slides.as_ref().map_or(Unproved::NotHeld, |_| Unproved::HeldByContact));
         };
         let crude = crude_norms(system, korn, coercivity);
         let up_to = up(at.off / coercivity.sqrt());
