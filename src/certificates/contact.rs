@@ -87,25 +87,25 @@ impl Side {
     }
 
     /// The place on the edge of place `s` of the contact.
-    pub fn place(&self, s: f64) -> f64 {
+    pub(crate) fn place(&self, s: f64) -> f64 {
         let [from, to] = self.places;
         if s == 1.0 { to } else { near_place(from + s * (to - from)) }
     }
 
     /// The middle on the edge of the part of the contact between these places: inside of it, however short it is.
-    pub fn middle(&self, ends: [f64; 2]) -> f64 {
+    pub(crate) fn middle(&self, ends: [f64; 2]) -> f64 {
         let [s, t] = ends.map(|s| self.place(s));
         (s + t) / 2.0
     }
 
     /// The place in the contact of place `x` on the edge.
-    pub fn within(&self, x: f64) -> f64 {
+    pub(crate) fn within(&self, x: f64) -> f64 {
         let [from, to] = self.places;
         (x - from) / (to - from)
     }
 
     /// The contact has place `x` of the edge inside.
-    pub fn has(&self, x: f64) -> bool {
+    pub(crate) fn has(&self, x: f64) -> bool {
         let s = self.within(x);
         0.0 < s && s < 1.0
     }
@@ -563,7 +563,7 @@ impl Contact {
     }
 
     /// The Bernstein coefficients along the contact of a field on side `i`.
-    pub fn along_side(&self, mesh: &Mesh, i: usize, field: &Field) -> [Vector2<f64>; 3] {
+    pub(crate) fn along_side(&self, mesh: &Mesh, i: usize, field: &Field) -> [Vector2<f64>; 3] {
         let side = &self.sides[i];
         let [a, b] = mesh.ends(side.edge).map(|vertex| Vector2::from(field.vertices[vertex]));
         let number = mesh.triangle_edges()[side.edge.triangle][side.edge.local];

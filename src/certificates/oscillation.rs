@@ -13,7 +13,7 @@
 //!   opposite vertex but for the factor 1 - l: z = (1 - l) d(s). Its gradient is constant along the rays, and
 //!   |z|_a^2 = |T| int sigma(G) : G ds with G(s) = d (x) (-grad l) + d' (x) (grad l_b + s grad l).
 //!
-//! The integrals of oscillation are by quadrature, so a bound that contains one is not rigorous: [`Oscillation::reason`] says so.
+//! All integrals above are by quadrature, so a bound that contains one is not rigorous: [`Oscillation::reason`] says so.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

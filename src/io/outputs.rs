@@ -133,7 +133,7 @@ impl Series {
     ///
     /// # Errors
     /// A picture that can't be written.
-    pub fn draw(self) -> Result<(), Failure> {
+    pub(crate) fn draw(self) -> Result<(), Failure> {
         if self.scenes.len() < 2 {
             return Ok(());
         }

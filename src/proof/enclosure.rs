@@ -353,8 +353,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             self.held = Some(HeldByContact { springs, korn, factor: None });
         }
         let Some(HeldByContact { korn: Some(korn), factor, springs }) = &mut self.held else {
-            let by_contact = d.slides.is_some();
-            return Err(if by_contact { Unproved::HeldByContact } else { Unproved::NotHeld });
+            return Err(d.slides.as_ref().map_or(Unproved::NotHeld, |_| Unproved::HeldByContact));
         };
         let crude = crude_norms(system, korn, coercivity);
         let up_to = up(at.off / coercivity.sqrt());
@@ -407,14 +406,52 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             let known = (now, without);
             isolated = Some(isolated::isolate(known, &self.lines, &at.u, system, &rest)?);
         }
-        let rho = isolated.map_or(rho, |isolated| isolated.rho);
-        let exact = up(rho / coercivity.sqrt());
+        let found = Found {
+            rho,
+            isolated,
+            norm,
+            if_strained,
+            kappa,
+            coercivity,
+            is_pressed: pressed.edges().any(|is| is),
+        };
+        found.enclosure(system, &self.lines, (at, reported), korn)
+    }
+}
+
+/// A solution in the norm of A: how near it is, and what its enclosure is judged by.
+struct Found {
+    /// The radius of the ball that holds the solution, where there is no Coulomb's friction.
+    rho: f64,
+    /// The ball that holds one solution alone, with Coulomb's friction.
+    isolated: Option<Isolated>,
+    norm: f64,
+    if_strained: f64,
+    kappa: f64,
+    coercivity: f64,
+    /// Something of Gamma_C is pressed.
+    is_pressed: bool,
+}
+
+impl Found {
+    /// The bounds at the nodes and of all quantities, and whether they are finite and the rest of Gamma_C stays open.
+    fn enclosure(
+        self,
+        system: &System,
+        lines: &[Piece<PreciseBall>],
+        (at, reported): (&EnclosedResidual, &[[f64; 2]]),
+        korn: &Korn,
+    ) -> Result<Enclosure, Unproved> {
+        let Found { isolated, norm, if_strained, .. } = self;
+        let d = system.d;
+        let rho = isolated.map_or(self.rho, |isolated| isolated.rho);
+        let exact = up(rho / self.coercivity.sqrt());
         let radius = up(exact + at.moved);
         if !radius.is_finite() {
             return Err(Unproved::OutOfRange);
         }
         let mut nodes: Vec<f64> = korn.nodes.iter().map(|n| up(n * exact)).collect();
-        if !stays_off(d, &self.lines, &at.u, (&nodes, exact)) {
+        if !stays_off(d, lines, &at.u, (&nodes, exact)) {
             return Err(Unproved::HeldByContact);
         }
         let exactly = match &d.slides {
@@ -424,10 +461,10 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         widen(&mut nodes, &exactly, reported);
         let pressure = match isolated {
             Some(isolated) => isolated.pressure,
-            None if pressed.edges().any(|is| is) => rho,
+            None if self.is_pressed => rho,
             None => rho / 2.0,
         };
-        let intervals = at.intervals(d, &self.lines, (&exactly, &nodes), [rho, pressure], exact);
+        let intervals = at.intervals(d, lines, (&exactly, &nodes), [rho, pressure], exact);
         if !intervals.are_finite() {
             return Err(Unproved::OutOfRange);
         }
@@ -436,7 +473,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         let isolation = isolated.map(|isolated| isolation(isolated, at, radius, is_measured));
         let relative = is_measured.then(|| up(radius / norm));
         Ok(Enclosure {
-            kappa,
+            kappa: self.kappa,
             radius,
             relative,
             hardly_strains,
