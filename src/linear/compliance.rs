@@ -11,7 +11,7 @@ use std::ops::Range;
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{Accum, Col, Mat, Par};
+use faer::{Accum, Col, Mat, MatMut, Par};
 
 use super::factor::{Factor, Structure};
 use crate::linear::matrix::OutsidePattern;
@@ -173,7 +173,8 @@ impl<'a> Compliance<'a> {
             return Err(outside);
         }
         let q = reach.functionals();
-        let mut walked = Mat::zeros(q, q);
+        // Memory that is zero from the start: `Mat::zeros` writes entry by entry.
+        let mut walked = vec![0.0; q * q];
         for (place, r) in reach.supernodes.iter().enumerate() {
             let block = factor.block(r.supernode);
             let (diagonal, below) = block.split_at_row(block.ncols());
@@ -192,8 +193,9 @@ impl<'a> Compliance<'a> {
                 }
             }
             let range = r.functionals.clone();
+            let all = MatMut::from_column_major_slice_mut(&mut walked, q, q);
             triangular::matmul(
-                walked.as_mut().submatrix_mut(range.start, range.start, c, c),
+                all.submatrix_mut(range.start, range.start, c, c),
                 BlockStructure::TriangularLower,
                 Accum::Add,
                 x[place].transpose(),
@@ -204,10 +206,14 @@ impl<'a> Compliance<'a> {
                 Par::Seq,
             );
         }
-        let g = Mat::from_fn(q, q, |i, j| {
-            let (a, b) = (reach.places[i], reach.places[j]);
-            walked[(a.max(b), a.min(b))]
-        });
+        // Column by column: `Mat::from_fn` takes ten times the instructions.
+        let mut g = Mat::zeros(q, q);
+        for (j, &b) in reach.places.iter().enumerate() {
+            let below = &walked[b * q..(b + 1) * q];
+            for (g, &a) in g.col_as_slice_mut(j).iter_mut().zip(&reach.places) {
+                *g = if a >= b { below[a] } else { walked[a * q + b] };
+            }
+        }
         Ok(Compliance { structure, reach, x, g })
     }
 
