@@ -51,7 +51,7 @@ def tied(name, *laws):
 
 
 OWN = {"oblique": OBLIQUE, "slide": SLIDE, "small": SMALL, "rough": ROUGH,
-       "glued": tied("press_fit", "bonded"), "tied": tied("stack", "bonded", "sliding")}
+       "glued": tied("press_fit", "bonded"), "round": tied("press_fit", "sliding"), "tied": tied("stack", "bonded", "sliding")}
 FORCES = ["--set", 'certify.quantities=["force bottom", "force bottom x 0 0.25 ramp 0.1"]']
 ADAPTED = ["--set", 'adapt.target="10 %"', "--set", "adapt.max_unknowns=2000"]
 P2 = ["--set", "method.degree=2", "--set", "method.gamma0=auto"]
@@ -68,6 +68,7 @@ CASES = {
     "lug 1": ["cases/pin_lug.toml", "--set", "method.degree=1"], "lug 2": ["cases/pin_lug.toml", "--set", "method.degree=2"],
     "rough 1": ["rough"], "rough 2": ["rough", *P2], "tied 1": ["tied"], "tied 2": ["tied", "--set", "method.degree=2"],
     "glued 1": ["glued", "--set", "method.degree=1"], "glued 2": ["glued"],
+    "round 1": ["round", "--set", "method.degree=1"], "round 2": ["round"],
     "adapted 1": ["cases/corner.toml", *ADAPTED], "adapted 2": ["cases/corner.toml", *ADAPTED, *P2],
 }
 

@@ -136,12 +136,26 @@ def friction(w, shear, bound):
     return found
 
 
-def tied(own, other, d, glued, jump):
-    """A displacement on the first of two tied bodies, from that on the second one and what it is to be beyond that."""
+def tied(own, other, d, glued, jump, given=np.zeros(2, bool)):
+    """A displacement on the first of two tied bodies, from that on the second one and what it is to be beyond that; where d is oblique
+    and one component is given, the other one is moved."""
     axis = ((np.abs(d) == 1) & (d[:, ::-1] == 0)).any(1)
     along = np.where((d != 0) & axis[:, None], other + d * jump[:, :1], own)
-    slides = np.where(axis[:, None], along, nearest(own - other, d, jump[:, 0]) + other)
+    moved = np.where(given & ~axis[:, None], 0, d)
+    step = (dot(own - other, d) - jump[:, 0]) / np.where(axis, 1, dot(moved, d))
+    slides = np.where(axis[:, None], along, own - moved * step[:, None])
     return np.where(glued[:, None], other + jump, slides)
+
+
+def tied_between(own, other, d, glued, ends, jump, gap):
+    """The bulge on the first of two tied bodies: where d turns the jump with these values at the ends has the one with which the product with
+    d is the gap, with these values at the ends, and this bulge, all along the edge: two equations for its middle Bernstein coefficient."""
+    found = tied(own, other, d[:, 0], glued, jump)
+    on = (d[:, 0] != d[:, 1]).any(1)
+    d, ends, gap, bulge = d[on], ends[on], gap[on], jump[on, 0]
+    right = (gap + gap.sum(1)[:, None] + 4 * bulge[:, None] - dot(ends, d[:, ::-1])) / 2
+    found[on] = other[on] + (np.linalg.solve(d, right[:, :, None])[:, :, 0] - ends.mean(1)) / 2
+    return found
 
 
 class Body:
@@ -206,14 +220,17 @@ class Body:
         demand((self.law != 3) | (np.abs(self.shear) <= self.beside).all(1), "friction beyond its bound: edge")
         self.tied = np.isin(self.law, (1, 2))
         d = self.direction
-        demand(~self.tied | ((self.facing >= 0) & self.quadratic & (d[:, 0] == d[:, 1]).all(1)), "bodies that are tied in no way: edge")
-        demand((self.law != 2) | (d[:, 0] == [1, 0]).all(1), "glue along another direction than x: edge")
+        demand(~self.tied | ((self.facing >= 0) & self.quadratic), "bodies that are tied in no way: edge")
+        demand((self.law != 2) | (d == [1, 0]).all((1, 2)), "glue along another direction than x: edge")
+        turns, length = (d[:, 0] != d[:, 1]).any(1), dot(d, d)
+        demand((self.law != 1) | ~turns | (cross(d[:, 0], d[:, 1]) != 0) & ((length >= 0.25) & (length <= 4)).all(1),
+               "bodies that slide along a direction that turns by nothing, or has no length: edge")
 
     def tie(self):
         """v on the first bodies of tied pairs, from v on the second ones."""
         on = np.flatnonzero(self.tied)
         own, other = self.ends[on].ravel(), self.ends[self.facing[on]][:, ::-1].ravel()
-        d, glued = np.repeat(self.direction[on, 0], 2, 0), np.repeat(self.law[on] == 2, 2)
+        d, glued = self.direction[on].reshape(-1, 2), np.repeat(self.law[on] == 2, 2)
         jump = np.stack([self.numbers[on, 1], np.where(self.law[on, None] == 2, self.beside[on], 0)], 2).reshape(-1, 2)
         rows = np.unique(np.column_stack([own, other, d, glued, jump]), axis=0)
         demand(len(rows) == len(set(own)) and not set(own) & set(other), "a point that is tied to two places")
@@ -222,14 +239,17 @@ class Body:
         # Where a component is prescribed, the jump is exactly 0.
         moved = glued[:, None] | (d != 0)
         least = np.where(glued[:, None], jump, jump[:, :1])
-        exact = (glued | axis.any(1))[:, None] & (~moved | (least == 0)) & (~moved | ~self.frame[other].any(1)[:, None])
+        exact = ~moved | ((least == 0) & ~self.frame[other].any(1)[:, None])
+        # Along an oblique direction the other component is moved.
+        along = glued | axis.any(1)
+        exact = np.where(along[:, None], exact, ~self.given[own][:, ::-1])
         demand((exact | ~self.given[own]).all(1), "a tied point at a place that is prescribed")
-
-        demand(~moved | ~self.given[own] | (self.v[other] == self.value[own]), "a tied point off what is prescribed: point")
+        demand(~moved | ~self.given[own] | (self.v[other] == self.value[own]) | ~along[:, None],
+               "a tied point off what is prescribed: point")
         self.v = v = self.v.copy()
-        v[own] = tied(v[own], v[other], d, glued, jump)
-        bulge, other = self.bulge, self.facing[on]
-        bulge[on] = tied(bulge[on], bulge[other], self.direction[on, 0], self.law[on] == 2, self.data[on])
+        v[own] = tied(v[own], v[other], d, glued, jump, self.given[own])
+        bulge, facing, ends = self.bulge, self.facing[on], (v[own] - v[other]).reshape(-1, 2, 2)
+        bulge[on] = tied_between(bulge[on], bulge[facing], self.direction[on], self.law[on] == 2, ends, self.data[on], self.numbers[on, 1])
 
     def frames(self, whole, real, with_cuts):
         """v, and what is prescribed at points, along the axes or along the direction of a frame."""
@@ -460,17 +480,24 @@ class Body:
         first, second = place[self.pairs].T
         here = first >= 0
         first, second = first[here], second[here]
-        d = d.copy()
-        d[second] = d[first]
+        both = self.direction[outer]
+        both[second] = both[first][:, ::-1]
+        d = both[:, 0]
+        slides = (law == 1) & (both[:, 0] != both[:, 1]).any(1)
         supports = []
         axes = ((np.isin(role, (1, 3)), np.array([[1.0, 0.0]])), (np.isin(role, (2, 3)), np.array([[0.0, 1.0]])), (role == 7, d),
-                (np.isin(law, (1, 2)), d), (law == 2, turned(d)))
+                (np.isin(law, (1, 2)) & ~slides, d), (law == 2, turned(d)))
         for here, along in axes:
             along = np.broadcast_to(along, start.shape)
             # The same at both ends, and opposite; between tied bodies on both.
             same, opposite = wrench(along, cross((start + end) / 2, along)), wrench(0 * along, cross(end - start, along) / 6)
             same[first], opposite[first] = same[first] - same[second], opposite[first] + opposite[second]
             supports += [same[here], opposite[here]]
+        # Where they slide along a direction that turns, p d with one p.
+        work = cross(2 * start + end, both[:, 0]) + cross(start + 2 * end, both[:, 1])
+        along = wrench(both.mean(1), work / 6)
+        along[first] -= along[second]
+        supports.append(along[slides])
         at_start = wrench(f[:, 0] / 2, cross(2 * start + end, f[:, 0]) / 6)
         at_end = wrench(f[:, 1] / 2, cross(start + 2 * end, f[:, 1]) / 6)
         at_start[first], at_end[first] = at_start[first] + at_end[second], at_end[first] + at_start[second]
@@ -697,13 +724,15 @@ class Forces:
         """w on the first bodies of tied pairs, from w on the second ones and the motion at both ends of the edges."""
         body = self.body
         on = np.flatnonzero(body.tied)
-        points, bulge = points.copy(), bulge.copy()
+        points, bulge, glued, ends = points.copy(), bulge.copy(), body.law[on] == 2, []
         for k in range(2):
             own, other = body.ends[on, k], body.ends[body.facing[on], 1 - k]
-            glued = body.law[on] == 2
             jump = np.where(glued[:, None], rigid[on, k], np.stack([along[on, k], 0 * along[on, k]], 1))
-            points[own] = tied(points[own], points[other], body.direction[on, k], glued, jump)
-        bulge[on] = tied(bulge[on], bulge[body.facing[on]], body.direction[on, 0], body.law[on] == 2, np.zeros((len(on), 2)))
+            points[own] = tied(points[own], points[other], body.direction[on, k], glued, jump, body.given[own])
+            ends.append(points[own] - points[other] - rigid[on, k])
+        # Beyond a motion the jump is 0 along the direction.
+        gap = np.where((rigid[on] != 0).any((1, 2))[:, None], 0, along[on])
+        bulge[on] = tied_between(bulge[on], bulge[body.facing[on]], body.direction[on], glued, np.stack(ends, 1), np.zeros((len(on), 2)), gap)
         return points, bulge
 
     def dragged(self, points, bulge, rigid):

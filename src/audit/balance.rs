@@ -37,10 +37,8 @@ struct FreeForce {
 /// Its variation along the edge.
 #[derive(Clone, Copy)]
 enum Variation {
-    /// On Gamma_D, or between tied bodies, this direction.
-    Constant([f64; 2]),
-    /// There, this direction times 2 s - 1.
-    Linear([f64; 2]),
+    /// On Gamma_D, or between tied bodies, affine with these values at the ends.
+    Affine([[f64; 2]; 2]),
     /// On Gamma_C, the force that is there, at these ends.
     Pressure([bool; 2]),
     /// A support of the root of a part, against one component of its motion.
@@ -327,8 +325,7 @@ impl<S: Enclosing> OnEdges<'_, S> {
     /// The force of a hold at both ends of its edge.
     fn unit(&self, hold: FreeForce) -> [Vector2<S>; 2] {
         match hold.profile {
-            Variation::Constant(d) => [exactly(d); 2],
-            Variation::Linear(d) => [-exactly::<S>(d), exactly(d)],
+            Variation::Affine(ends) => ends.map(exactly),
             Variation::Stop(_) => [Vector2::zeros(); 2],
             Variation::Pressure(ends) => {
                 let force = self.certificate.push(hold.edge, self.points);
@@ -350,7 +347,8 @@ impl<S: Enclosing> OnEdges<'_, S> {
     /// Quantities that may change on edge `e`: tractions on Gamma_D, and each pressure on Gamma_C by a part of itself. Where
     /// the direction of contact turns it is the same at both ends, and stays so.
     fn candidates(&self, e: usize) -> impl Iterator<Item = FreeForce> {
-        let any = |along: [f64; 2]| vec![Variation::Constant(along), Variation::Linear(along)];
+        let any =
+            |d: [f64; 2]| [d, d.map(|d| -d)].map(|start| Variation::Affine([start, d])).to_vec();
         let axes = [[1.0, 0.0], [0.0, 1.0]];
         let edges = &self.certificate.edges;
         let first = match edges[e].role {
@@ -363,7 +361,10 @@ impl<S: Enclosing> OnEdges<'_, S> {
             Role::Contact { law: Law::Bonded { .. }, .. } => {
                 axes.into_iter().flat_map(any).collect()
             }
-            Role::Contact { law: Law::Sliding, along: Some([d, _]), .. } => any(d),
+            Role::Contact { law: Law::Sliding, along: Some([d, end]), .. } if d == end => any(d),
+            Role::Contact { law: Law::Sliding, along: Some([d, end]), .. } => {
+                vec![Variation::Affine(if e == first { [d, end] } else { [end, d] })]
+            }
             Role::Contact { pressure: [0.0, 0.0], .. } => Vec::new(),
             Role::Contact { along: Some([d, end]), .. } if d != end => {
                 vec![Variation::Pressure([true; 2])]

@@ -7,7 +7,7 @@ use super::balance::{Change, Closed, OnEdges, SpanningTree, Unbalanced};
 use super::certificate::{
     Certificate, Edge, Law, Owner, Piece, Role, Shape, exactly, opposite, support, turned,
 };
-use super::checks::{Rejection, wrong};
+use super::checks::{Rejection, VARIES, wrong};
 use super::forces::along;
 use super::on_contact::{OnContact, OnEdge, along_directions, along_the_normal};
 use crate::kernel::composite::{Affine, Composite, Frame, Loads, Wrench};
@@ -238,7 +238,7 @@ impl Certificate {
                 Ok(along_the_normal(&shape, normal, pressure, length))
             }
             Some([a, b]) if a != b && [given, law.shear()].iter().any(|[p, q]| p != q) => {
-                Err(wrong("edge", e, "a pressure that varies along a direction that turns"))
+                Err(wrong("edge", e, VARIES))
             }
             Some([a, b]) => {
                 let directions = ([a, b].map(exactly), a != b);
@@ -358,9 +358,16 @@ impl Balanced<f64> {
                     *force = now.map(|f| f.dot(&d) / d.dot(&d));
                 }
                 Role::Contact { pressure, law, .. } if law.is_tied() => {
+                    // Where the direction turns it is one, and so is the work on both ends.
+                    let work = [0, 1].map(|k| now[k].dot(&units[k]));
+                    let square = [0, 1].map(|k| units[k].dot(&units[k]));
+                    if units[0] != units[1] {
+                        *pressure = [(work[0] + work[1]) / (square[0] + square[1]); 2];
+                        continue;
+                    }
                     for k in 0..2 {
                         let unit = units[k];
-                        pressure[k] = now[k].dot(&unit) / unit.dot(&unit);
+                        pressure[k] = work[k] / square[k];
                         if let Law::Bonded { shear, .. } = law {
                             shear[k] = now[k].dot(&turned(unit)) / unit.dot(&unit);
                         }

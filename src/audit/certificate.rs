@@ -213,10 +213,10 @@ impl Law {
     }
 
     /// A displacement on the first body, from the vector `own` and from that on the second one: its jump is [g, h] along d and across,
-    /// or, where the bodies slide, nearest to its own with g along d.
+    /// or, where the bodies slide, nearest to its own with g along d; a component that is `given` stays, if d has another.
     pub(super) fn tie<S: Enclosing>(
         self,
-        own: Vector2<S>,
+        (own, given): (Vector2<S>, [bool; 2]),
         other: Vector2<S>,
         d: [f64; 2],
         [g, h]: [S; 2],
@@ -230,10 +230,50 @@ impl Law {
             (_, Some(_)) => Vector2::new(own[0], beyond(1, along(1))),
             (_, None) => {
                 let d = exactly::<S>(d);
-                own - d * (((own - other).dot(&d) - g) / d.dot(&d))
+                let off = (own - other).dot(&d) - g;
+                match given {
+                    [true, _] => Vector2::new(own[0], own[1] - off / d[1]),
+                    [_, true] => Vector2::new(own[0] - off / d[0], own[1]),
+                    _ => own - d * (off / d.dot(&d)),
+                }
             }
         }
     }
+
+    /// The bulge of a displacement on the first body along a whole edge, from `own` and that on the second one, where its `jump` at the
+    /// ends is tied to the `gap` along the directions `d` and the bulges of the gap and of the offset are [g, h].
+    pub(super) fn tie_between<S: Enclosing>(
+        self,
+        [own, other]: [Vector2<S>; 2],
+        jump: [Vector2<S>; 2],
+        d: [[f64; 2]; 2],
+        (gap, [g, h]): ([S; 2], [S; 2]),
+    ) -> Vector2<S> {
+        if d[0] == d[1] {
+            return self.tie((own, [false; 2]), other, d[0], [g, h]);
+        }
+        other + turning_bulge(jump, d.map(exactly), (gap, g))
+    }
+}
+
+/// The bulge of a quadratic jump j with j . d = g along a whole edge on which d is affine and turns, for a g with these values at the ends
+/// and this bulge, and a j with j . d = g at the ends.
+///
+/// With j = a d + t e at the ends, e being d turned to the left, and the middle Bernstein coefficients M of j and G of g, those of j . d - g
+/// between the ends are 0 if 2 M . d_0 = g_0 + 2 G - j_0 . d_1 and 2 M . d_1 = g_1 + 2 G - j_1 . d_0. As j_0 . d_1 = a_0 d_0 . d_1 + t_0 S
+/// and j_1 . d_0 = a_1 d_0 . d_1 - t_1 S, S = d_0 x d_1, only what the gap does is divided by S.
+fn turning_bulge<S: Enclosing>(
+    jump: [Vector2<S>; 2],
+    d: [Vector2<S>; 2],
+    (gap, bulge): ([S; 2], S),
+) -> Vector2<S> {
+    let (two, e) = (S::from(2), d.map(turned));
+    let (sine, cosine) = (d[0].perp(&d[1]), d[0].dot(&d[1]));
+    let slip = [0, 1].map(|k| jump[k].dot(&e[k]) / d[k].dot(&d[k]));
+    let doubled = gap[0] + gap[1] + bulge * S::from(4);
+    let [a, b] = [0, 1].map(|k| gap[k] + doubled - gap[k] / d[k].dot(&d[k]) * cosine);
+    let middle = e[0] * slip[1] + e[1] * slip[0] + (e[0] * b - e[1] * a) / sine;
+    (middle - jump[0] - jump[1]) / (two * two)
 }
 
 /// The axis along which d is a unit vector.
@@ -354,6 +394,11 @@ impl Certificate {
         }
     }
 
+    /// The components that are prescribed at a point.
+    pub(super) fn is_given(&self, point: usize) -> [bool; 2] {
+        self.at_own(point).map_or([false; 2], |(_, given)| given.map(|value| value.is_some()))
+    }
+
     /// A displacement at both ends of edge `e` of Gamma_C, and its bulge there: on a pair less that of the other body.
     pub(crate) fn jump<S: Enclosing>(
         &self,
@@ -376,7 +421,7 @@ impl Certificate {
     #[doc(hidden)]
     pub fn tied(&self) -> impl Iterator<Item = Tied> {
         self.edges.iter().enumerate().filter_map(|(edge, of)| match of.role {
-            Role::Contact { gap, along: Some([d, _]), law, .. } if law.is_tied() => {
+            Role::Contact { gap, along: Some(d), law, .. } if law.is_tied() => {
                 let other = *self.facing.get(&edge)?;
                 Some(Tied { edge, other, law, d, gap })
             }
@@ -413,11 +458,14 @@ impl Certificate {
         }
         for Tied { edge: e, other, law, d, gap } in self.tied() {
             let ends = self.edges[e].ends;
-            for (k, p) in ends.into_iter().enumerate() {
-                let there = points[self.edges[other].ends[1 - k]];
-                points[p] = law.tie(points[p], there, d, [gap[k], law.offset()[k]].map(S::exactly));
-            }
-            bulges[e] = law.tie(bulges[e], bulges[other], d, curved.data[e].map(S::exactly));
+            let jump = [0, 1].map(|k| {
+                let (p, there) = (ends[k], points[self.edges[other].ends[1 - k]]);
+                let gap = [gap[k], law.offset()[k]].map(S::exactly);
+                points[p] = law.tie((points[p], self.is_given(p)), there, d[k], gap);
+                points[p] - there
+            });
+            let data = (gap.map(S::exactly), curved.data[e].map(S::exactly));
+            bulges[e] = law.tie_between([bulges[e], bulges[other]], jump, d, data);
         }
         Shape { points, bulges: Some(bulges) }
     }
@@ -432,8 +480,8 @@ pub struct Tied {
     pub other: usize,
     /// How they are tied.
     pub law: Law,
-    /// The direction d, the same at both ends.
-    pub d: [f64; 2],
+    /// The direction d at both ends.
+    pub d: [[f64; 2]; 2],
     /// v . d at both ends.
     pub gap: [f64; 2],
 }

@@ -63,6 +63,9 @@ pub enum Rejection {
 
 const AXES: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 
+/// What an edge may not have, since p d is to be affine.
+pub(super) const VARIES: &str = "a pressure that varies along a direction that turns";
+
 /// v . d, if it is not w: to rounding where d is oblique, for there doubles can't be nearer.
 fn along(v: [f64; 2], d: [f64; 2], w: f64) -> Option<f64> {
     let [x, y] = [v[0] * d[0], v[1] * d[1]];
@@ -230,7 +233,7 @@ impl Certificate {
     fn check_laws(&self) -> Result<(), Rejection> {
         let (mut ties, mut seconds) = (BTreeMap::new(), BTreeSet::new());
         for (e, edge) in self.edges.iter().enumerate() {
-            let Role::Contact { gap, along, law, .. } = edge.role else { continue };
+            let Role::Contact { pressure, gap, along, law } = edge.role else { continue };
             if let Law::Friction { shear, bound } = law
                 && let Some(k) = (0..2).find(|&k| !(shear[k].abs() <= bound[k]))
             {
@@ -240,16 +243,22 @@ impl Certificate {
                 continue;
             }
             let is_right = |[d, end]: &[[f64; 2]; 2]| {
-                let along_x = matches!(law, Law::Sliding) || *d == AXES[0];
-                d == end && has_length(*d) && along_x && self.curved.is_some()
+                let along = match law {
+                    Law::Sliding => d == end || d[0] * end[1] != d[1] * end[0],
+                    _ => [d, end] == [&AXES[0]; 2],
+                };
+                has_length(*d) && has_length(*end) && along && self.curved.is_some()
             };
-            let (Some(&other), Some([d, _])) = (self.facing.get(&e), along.filter(is_right)) else {
-                return Err(wrong("edge", e, "expected two bodies, tied along one direction"));
+            let (Some(&other), Some(d)) = (self.facing.get(&e), along.filter(is_right)) else {
+                return Err(wrong("edge", e, "expected two bodies, tied along a direction"));
             };
+            if d[0] != d[1] && pressure[0] != pressure[1] {
+                return Err(wrong("edge", e, VARIES));
+            }
             for (k, p) in edge.ends.into_iter().enumerate() {
                 let second = self.edges[other].ends[1 - k];
                 let jump = [gap[k], law.offset()[k]];
-                let tie = (second, law.is_bonded(), d, jump);
+                let tie = (second, law.is_bonded(), d[k], jump);
                 seconds.insert(second);
                 if *ties.entry(p).or_insert(tie) != tie {
                     return Err(wrong("point", p, "is tied to two places"));
@@ -264,9 +273,10 @@ impl Certificate {
             let is_given = |c: usize| match given[c] {
                 None => true,
                 Some(_) if !is_moved(c) => axis(d).is_some(),
+                // The other component is moved.
+                Some(_) if !is_bonded && axis(d).is_none() => given[1 - c].is_none(),
                 Some(value) => {
-                    (is_bonded || axis(d).is_some())
-                        && jump[usize::from(is_bonded && c == 1)] == 0.0
+                    jump[usize::from(is_bonded && c == 1)] == 0.0
                         && there[c] == value
                         && !self.frames.contains_key(&second)
                 }

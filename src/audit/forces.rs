@@ -415,7 +415,8 @@ impl Certificate {
     ) -> Result<(Proof, Imbalance<S>), Rejection> {
         let has_forces = evidence.has_forces();
         let points = if has_forces { state.points.len() } else { 0 };
-        let bulges = if evidence.has_bulges() { self.edges.len() } else { 0 };
+        let bent = evidence.has_bulges() || self.tied().any(|Tied { d, .. }| d[0] != d[1]);
+        let bulges = if bent { self.edges.len() } else { 0 };
         let mut unbalanced = Imbalance::new(points, bulges);
         let proof = self.sum_beside(state, |t, sigma| {
             if has_forces {
@@ -571,27 +572,37 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         for Tied { edge, other, law, d, .. } in certificate.tied() {
             // w0 is 0 between tied bodies.
             let is_meant = target.boundary.is_some() && self.is_meant(edge, target);
+            // What the jump is beyond the motion, and the part of it along d where there is none.
+            let (mut beyond, mut gap) = ([Vector2::zeros(); 2], [zero; 2]);
             for (k, p) in certificate.edges[edge].ends.into_iter().enumerate() {
-                let jump = match target.motion.at(self.state.points[p]) {
+                let motion = target.motion.at(self.state.points[p]).filter(|_| is_meant);
+                let jump = match motion {
                     _ if !is_meant => [zero; 2],
                     Some(motion) if law.is_bonded() => motion.into(),
-                    Some(motion) => [component(motion, exactly(d)), zero],
+                    Some(motion) => [component(motion, exactly(d[k])), zero],
                     None if !law.is_bonded() && target.motion == Motion::Along(None) => [one, zero],
                     None => return Err(WrongLifting::Tied { edge }),
                 };
                 let (own, there) = (w.points[p], w.points[certificate.edges[other].ends[1 - k]]);
-                let tied = law.tie(own, there, d, jump);
-                let given = certificate.at_own(p).map_or([None; 2], |(_, given)| given);
+                let given = certificate.is_given(p);
+                let tied = law.tie((own, given), there, d[k], jump);
                 let same = |c: usize| {
                     tied[c].lower() == own[c].lower() && tied[c].upper() == own[c].upper()
                 };
-                if (0..2).any(|c| given[c].is_some() && !same(c)) {
+                if (0..2).any(|c| given[c] && !same(c)) {
                     return Err(WrongLifting::OnSupport { edge });
                 }
                 w.points[p] = tied;
+                beyond[k] = tied - there - motion.unwrap_or_else(Vector2::zeros);
+                gap[k] = if motion.is_some() { zero } else { jump[0] };
+            }
+            // Where d turns, the jump of an affine w has a bulge, too.
+            if d[0] != d[1] {
+                w.bulges.get_or_insert_with(|| vec![Vector2::zeros(); certificate.edges.len()]);
             }
             if let Some(bulges) = &mut w.bulges {
-                bulges[edge] = law.tie(bulges[edge], bulges[other], d, [zero; 2]);
+                let own = [bulges[edge], bulges[other]];
+                bulges[edge] = law.tie_between(own, beyond, d, (gap, [zero; 2]));
             }
         }
         Ok(())

@@ -204,6 +204,10 @@ impl Part {
     fn pushing(&self) -> [[f64; 2]; 2] {
         [self.pressure, [0.0; 2]]
     }
+
+    fn pressed(&self) -> [[f64; 2]; 2] {
+        [[-1.0; 2], [0.0; 2]]
+    }
 }
 
 /// The tractions on a part of a contact between tied bodies: of `value`, which is quadratic along it, the affine function with its force
@@ -213,6 +217,17 @@ fn tied([s, t]: [f64; 2], value: impl Fn(f64) -> Vector2<f64>) -> Part {
     let beyond = (middle - (start + end) / 2.0) * (2.0 / 3.0);
     let [p, q] = [start + beyond, end + beyond];
     Part { ends: [s, t], pressure: [p.x, q.x], shear: [p.y, q.y] }
+}
+
+/// As [`tied`], where the direction turns: constant on each half, with the same force and moment.
+fn halves([s, t]: [f64; 2], value: impl Fn(f64) -> Vector2<f64>) -> Vec<Part> {
+    let middle = (s + t) / 2.0;
+    let [p, q, r] = [s, middle, t].map(|s| value(s).x);
+    let part = |ends, pressure| Part { ends, pressure: [pressure; 2], shear: [0.0; 2] };
+    vec![
+        part([s, middle], (3.0 * p + 4.0 * q - r) / 6.0),
+        part([middle, t], (3.0 * r + 4.0 * q - p) / 6.0),
+    ]
 }
 
 impl Contact {
@@ -226,6 +241,11 @@ impl Contact {
         // Of straight sides they differ by rounding.
         if sides.len() > 1 && (directions[1] - directions[0]).amax() <= ROUNDING {
             directions = [directions[0]; 2];
+        }
+        // What a direction is off an axis is rounding; beside one that is exact, v may be prescribed across.
+        if geometry.law == Law::Sliding {
+            let exact = |x: f64| [0.0, x.signum()].into_iter().find(|y| (x - y).abs() <= ROUNDING);
+            directions = directions.map(|d| d.map(|x| exact(x).unwrap_or(x)));
         }
         let gap = [0, 1].map(|a| geometry.nodes[a].gap);
         let turns = directions[0] != directions[1];
@@ -295,7 +315,10 @@ impl Contact {
                     }
                     along * lambda - turned::<f64>(along) * (at(across) / piece.gamma)
                 };
-                parts.map(|ends| tied(ends, value)).collect()
+                let halved = turns && geometry.law == Law::Sliding;
+                let tied =
+                    |ends| if halved { halves(ends, value) } else { vec![tied(ends, value)] };
+                parts.flat_map(tied).collect()
             }
         };
         if contact.is_pair() {
@@ -333,8 +356,8 @@ impl Contact {
         self.gap_bulge = bulge.x;
     }
 
-    /// Gives glue the jump at its start that the contact `before` it has at its end, where this is the same place: of two nodes that
-    /// nearly face each other, each has a jump of its own.
+    /// Gives tied bodies the jump at the start that the contact `before` has at its end, and the direction of that, where this is the same
+    /// place: of two nodes that nearly face each other, each has its own, and those of straight sides differ by rounding.
     pub(crate) fn join(&mut self, mesh: &Mesh, before: &Contact) {
         let place = |side: &Side, k: usize| {
             let [a, b] = mesh.ends(side.edge).map(|vertex| Vector2::from(mesh.vertices()[vertex]));
@@ -342,7 +365,16 @@ impl Contact {
         };
         let (own, last) = (self.sides[0], before.sides[0]);
         let apart = (place(&own, 0) - place(&last, 1)).amax();
-        if [self.law, before.law] == [Law::Bonded; 2] && apart <= SAME_PLACE * own.length {
+        if self.is_tied() && self.law == before.law && apart <= SAME_PLACE * own.length {
+            let d = before.directions[1];
+            // At a corner they are two; on an edge a direction turns by less than a right angle.
+            if (self.directions[0] - d).amax() > 2.0 * SAME_PLACE {
+                return;
+            }
+            if !self.turns() && (self.directions[1] - d).amax() <= ROUNDING {
+                self.directions[1] = d;
+            }
+            self.directions[0] = d;
             self.gap[0] = before.gap[1];
             self.offset.0[0] = before.offset.0[1];
         }
@@ -536,10 +568,11 @@ impl Contact {
         self.moments(i, [from, to], hats, Part::tractions)
     }
 
-    /// The force int p, which is not positive; none where two bodies are tied.
+    /// The force int p, which is not positive; where bodies slide along a direction that turns, of the pressure 1, and none where tied
+    /// bodies have the force and the moment of the discrete solution.
     pub(crate) fn force(&self) -> f64 {
         if self.is_tied() {
-            return 0.0;
+            return if self.turns() { -self.length } else { 0.0 };
         }
         let force = |part: &Part| {
             let ([s, t], [p, q]) = (part.ends, part.pressure);
@@ -548,18 +581,22 @@ impl Contact {
         self.parts.iter().map(force).sum()
     }
 
-    /// int p d . r and int (p d + q e) . r over side `i` for a motion that is affine along its edge.
+    /// int p d . r, p as in [`Contact::force`], and int (p d + q e) . r over side `i` for a motion that is affine along its edge.
     pub(crate) fn against(&self, i: usize, ends: [Vector2<f64>; 2]) -> [f64; 2] {
         let hats = |s: f64| [1.0 - s, s];
-        [Part::pushing, Part::tractions].map(|tractions| {
+        let of_force = if self.is_tied() { Part::pressed } else { Part::pushing };
+        [of_force, Part::tractions].map(|tractions| {
             let [a, b] = self.moments(i, [0.0, 1.0], hats, tractions);
             a.dot(&ends[0]) + b.dot(&ends[1])
         })
     }
 
-    /// Multiplies the pressure.
-    pub(crate) fn scale(&mut self, factor: f64) {
-        self.parts.iter_mut().flat_map(|part| &mut part.pressure).for_each(|p| *p *= factor);
+    /// Gives the contact more of what [`Contact::force`] is of, `times` as much: where it may open by `most` of it or less.
+    pub(crate) fn add(&mut self, times: f64, most: f64) {
+        let tied = self.is_tied();
+        for p in self.parts.iter_mut().flat_map(|part| &mut part.pressure) {
+            *p = if tied { *p - times } else { *p * (1.0 + times.clamp(-most, most)) };
+        }
     }
 
     /// The Bernstein coefficients along the contact of a field on side `i`.

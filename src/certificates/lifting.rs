@@ -486,8 +486,8 @@ impl<'a> Lifter<'a> {
                 let [own_data, data] =
                     [p, q].map(|p| certificate.at_own(p).map_or([None; 2], |(_, given)| given));
                 let motion = target.motion.at(Vector2::from(certificate.vertices[p]));
-                let motion = motion.unwrap_or(Vector2::from(d));
-                let moves = |c: usize| law.is_bonded() || d[c] != 0.0;
+                let motion = motion.unwrap_or(Vector2::from(d[k]));
+                let moves = |c: usize| law.is_bonded() || d[k][c] != 0.0;
                 for c in (0..2).filter(|&c| own_data[c].is_some() && moves(c)) {
                     let value = if meant { own[c] - motion[c] } else { own[c] };
                     if data[c].is_some() && there[c] != value {

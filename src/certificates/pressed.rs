@@ -8,7 +8,8 @@
 //! triangle, the difference would cost more the finer the mesh is.
 //!
 //! Where contact alone stops a motion, y is one up to that, and exists only if p balances the loads: each edge's pressure is
-//! multiplied by 1 + sum c_k m_k, m_k the mean of d . r_k on the edge with the weight p for the motions r_k.
+//! multiplied by 1 + sum c_k m_k, m_k the mean of d . r_k on the edge with the weight p for the motions r_k. Where bodies slide and do not
+//! open along a direction that turns, sum c_k m_k is added to it, with the weight 1.
 
 use nalgebra::Vector2;
 
@@ -178,6 +179,6 @@ fn balance(parts: &mut ProblemParts, (bodies, motions): (&Parts, &[FreeMotion]),
         factors.iter_mut().zip(vector).for_each(|(factor, v)| *factor += along * v);
     }
     for (edge, (_, means)) in parts.contact.iter_mut().zip(&edges) {
-        edge.scale(1.0 + dot(means, &factors).clamp(-MOST, MOST));
+        edge.add(dot(means, &factors), MOST);
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 
-use super::certificate::{Certificate, Edge, Law, Role, place};
+use super::certificate::{Certificate, Edge, Law, Role, Tied, is_oblique, place};
 use super::errors::CertifyError;
 
 /// Ties the bodies of a certificate.
@@ -20,22 +20,17 @@ pub(super) fn tie(certificate: &mut Certificate) -> Result<(), CertifyError> {
     let mut known: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
     for e in 0..certificate.edges.len() {
         agree(certificate, e, &mut known);
-        let Role::Contact { gap, along: Some([d, _]), law, .. } = certificate.edges[e].role else {
-            continue;
-        };
-        let Some(&other) = certificate.facing.get(&e).filter(|_| law.is_tied()) else { continue };
-        let [stiff, soft] = [moduli[e], moduli[other]];
-        // The part of a jump that goes to the first body.
-        let share = soft / (stiff + soft);
-        let jump = |k: usize| match law {
-            Law::Bonded { offset, .. } => [gap[k], offset[k]],
-            _ => [gap[k], 0.0],
-        };
+    }
+    let tied: Vec<Tied> = certificate.tied().collect();
+    for &Tied { edge, other, law, d, gap } in &tied {
+        let share = share(&moduli, edge, other);
+        let offset = law.offset();
         for k in 0..2 {
-            let points = [certificate.edges[e].ends[k], certificate.edges[other].ends[1 - k]];
+            let points = [certificate.edges[edge].ends[k], certificate.edges[other].ends[1 - k]];
             let [own, there] = points.map(|p| certificate.at_own(p));
             let (Some((own, given)), Some((there, held))) = (own, there) else { continue };
-            let off = off(law, own, there, d, jump(k));
+            let both = [0, 1].map(|c| given[c].is_some() && held[c].is_some());
+            let off = off(law, (own, there, both), d[k], [gap[k], offset[k]]);
             let mut moved = [Vector2::from(own), Vector2::from(there)];
             for c in 0..2 {
                 let share = match (given[c], held[c]) {
@@ -63,14 +58,24 @@ pub(super) fn tie(certificate: &mut Certificate) -> Result<(), CertifyError> {
                 }
             }
         }
-        if let Some(curved) = &mut certificate.curved {
-            let [own, there] = [e, other].map(|e| curved.bulges[e]);
-            let off = off(law, own, there, d, curved.data[e]);
-            curved.bulges[e] = (Vector2::from(own) - off * share).into();
-            curved.bulges[other] = (Vector2::from(there) + off * (1.0 - share)).into();
-        }
+    }
+    // On the first bodies it is what that on the second ones makes it.
+    let bulges = certificate.shape::<f64>().bulges;
+    let (Some(bulges), Some(curved)) = (bulges, &mut certificate.curved) else { return Ok(()) };
+    for Tied { edge, other, .. } in tied {
+        let off = Vector2::from(curved.bulges[edge]) - bulges[edge];
+        let share = share(&moduli, edge, other);
+        let there = Vector2::from(curved.bulges[other]);
+        curved.bulges[edge] = (bulges[edge] + off * (1.0 - share)).into();
+        curved.bulges[other] = (there + off * (1.0 - share)).into();
     }
     Ok(())
+}
+
+/// The part of a jump between two edges that goes to the first body.
+fn share(moduli: &[f64], edge: usize, other: usize) -> f64 {
+    let [stiff, soft] = [moduli[edge], moduli[other]];
+    soft / (stiff + soft)
 }
 
 /// Gives the jump at the ends of a tied edge the numbers that it has there on the edge before, from which it differs by rounding.
@@ -97,14 +102,21 @@ fn agree(certificate: &mut Certificate, e: usize, known: &mut BTreeMap<usize, [f
 /// Prescribed displacements and jumps that differ by less do so by rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// The part of the jump that is too much.
-fn off(law: Law, own: [f64; 2], there: [f64; 2], d: [f64; 2], [g, h]: [f64; 2]) -> Vector2<f64> {
+/// The part of the jump that is too much; none of it in a component that is prescribed on `both` bodies, if they slide along another, too.
+fn off(
+    law: Law,
+    (own, there, both): ([f64; 2], [f64; 2], [bool; 2]),
+    d: [f64; 2],
+    [g, h]: [f64; 2],
+) -> Vector2<f64> {
     let jump = Vector2::from(own) - Vector2::from(there);
-    match law {
-        Law::Bonded { .. } => jump - Vector2::new(g, h),
-        _ => {
-            let d = Vector2::from(d);
-            d * ((jump.dot(&d) - g) / d.dot(&d))
-        }
+    if law.is_bonded() {
+        return jump - Vector2::new(g, h);
     }
+    let along = match both {
+        [true, false] if is_oblique(d) => Vector2::new(0.0, d[1]),
+        [false, true] if is_oblique(d) => Vector2::new(d[0], 0.0),
+        _ => Vector2::from(d),
+    };
+    along * ((jump.dot(&Vector2::from(d)) - g) / along.dot(&along))
 }

@@ -3,7 +3,7 @@
 //!
 //! A setting is a line of TOML, so its value has the type that it has in the file; only a bare word, a path or an
 //! expression needs no quotes (`method.gamma0=auto`, `boundary.bottom.contact.gap=0.1*x`). A table is merged into the table of
-//! the file, any other value replaces that of the file, and a later setting wins over an earlier one. The reader of the case
+//! the file, any other value replaces that of the file, or its alternative, and a later setting wins over an earlier one. The reader of the case
 //! sees no difference between setting and file, except for the place of a mistake.
 
 use std::path::Path;
@@ -121,10 +121,22 @@ fn deepest(error: &toml::de::Error, text: &str) -> Option<usize> {
     Some(line.as_ptr() as usize - text.as_ptr() as usize)
 }
 
-/// Merges one table into another, that of the key `path` (the whole file if empty).
+/// Tables, by the last part of their names, with two keys of which one at most may be there.
+const ALTERNATIVES: [(&str, [&str; 2]); 2] =
+    [("friction", ["tresca", "coulomb"]), ("method", ["gamma0", "kappa"])];
+
+/// Merges one table into another, that of the key `path` (the whole file if empty). A key takes the place of its alternative.
 fn merge<'s>(below: &mut DeTable<'s>, above: DeTable<'s>, path: &str) -> Result<(), String> {
+    let table = path.rsplit('.').next();
     for (key, mut value) in above {
         let name = &**key.get_ref();
+        let is_here =
+            |group: &&(&str, [&str; 2])| table == Some(group.0) && group.1.contains(&name);
+        for other in ALTERNATIVES.iter().find(is_here).map_or(&[][..], |(_, keys)| keys) {
+            if *other != name {
+                below.remove(*other);
+            }
+        }
         let path = if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
         match (below.get_mut(name).map(|old| old.get_mut()), value.get_mut()) {
             (Some(DeValue::Table(old)), DeValue::Table(new)) => {
@@ -262,5 +274,33 @@ mod tests {
         for other in ["1e-3", ".5", "true", "nan", "[0, 1]", "\"a\"", "a b", "1000,5", ""] {
             assert_eq!(with_quotes(&format!("key={other}")), format!("key={other}"));
         }
+    }
+
+    #[test]
+    fn a_key_takes_the_place_of_its_alternative_and_of_no_other() {
+        let text = "boundary.a.contact.friction = { coulomb = 0.3 }\n\
+                    method = { kappa = 0.5, degree = 2 }\nboundary.coulomb.normal = 0";
+        let settings = [
+            "boundary.a.contact.friction={tresca=\"1\"}",
+            "method.gamma0=0.1",
+            "boundary.tresca.normal=0",
+        ];
+        let settings = settings.map(str::to_owned);
+        let source = Source { file: Path::new(""), text, settings: &settings, functions: &[] };
+        let layers = source.layers();
+        let entries = source.entries(&layers).unwrap();
+        let keys = |path: &str| {
+            let below = |table: &DeTable, key: &str| match table.get(key).map(Spanned::get_ref) {
+                Some(DeValue::Table(table)) => table.clone(),
+                _ => DeTable::new(),
+            };
+            let table = path.split('.').fold(entries.clone(), |table, key| below(&table, key));
+            let mut keys: Vec<String> = table.keys().map(|key| key.get_ref().to_string()).collect();
+            keys.sort();
+            keys
+        };
+        assert_eq!(keys("boundary.a.contact.friction"), ["tresca"]);
+        assert_eq!(keys("method"), ["degree", "gamma0"]);
+        assert_eq!(keys("boundary"), ["a", "coulomb", "tresca"]);
     }
 }

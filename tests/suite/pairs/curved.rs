@@ -8,7 +8,7 @@ use signorini::contact::residual::add_internal_forces;
 use signorini::model::Space;
 
 use super::*;
-use crate::common::case;
+use crate::common::{case, expression};
 
 /// A quarter of a ring of modulus 1 from radius 1 to 2.002 in one of modulus 2 from 1.998 to 3, with these numbers of edges on the
 /// quarter.
@@ -128,6 +128,40 @@ fn control_stress_that_is_not_scaled_to_the_length_of_the_piece_is_noticed() {
     println!("mean pressure {right}, without the ratios {wrong}");
     assert!((right - 1.0).abs() <= MEAN_OF_P2, "{right}");
     assert!((wrong - 1.0).abs() > 3.0 * MEAN_OF_P2, "{wrong}");
+}
+
+/// The rings, which slide and do not open, drawn apart by as much as they overlap, and pulled outside along x.
+fn pulled(edges: [usize; 2]) -> Problem {
+    let pull = |at: [f64; 2]| [1e-3 * at[0], 0.0];
+    let mut problem = rings(edges, false)
+        .with("outer.top", Condition::traction(move |x| pull(x)[0], move |x| pull(x)[1]));
+    problem.pairs[0].law = Law::Sliding;
+    problem.pairs[0].clearance = Some(expression("0.004"));
+    problem
+}
+
+#[test]
+fn the_bound_of_rings_that_slide_and_pull_is_above_the_error_and_falls_with_the_mesh() {
+    let of = |edges| {
+        let all = [Degree::One, Degree::Two].map(|degree| {
+            let problem = pulled(edges);
+            let solution = proved(&problem, &method(degree));
+            certify(&problem, &solution).unwrap()
+        });
+        // On one mesh both degrees have one problem, but for the middle of the gap; J(v) - J(u) is half the square of the error.
+        let [energy, known] = [0, 1].map(|k| all[k].proof.energy[1]);
+        let least = known - all[1].proof.bound.powi(2) / 2.0;
+        let errors = [least, known].map(|of_u| (2.0 * (energy - of_u)).sqrt());
+        let [one, two] = [0, 1].map(|k| all[k].relative);
+        let found = [one, two, all[0].bound / errors[0], all[0].bound / errors[1]];
+        println!("{edges:?}: {found:?}");
+        found
+    };
+    let found = [[8, 11], [16, 22], [32, 44]].map(of);
+    for pair in found.windows(2) {
+        assert!(pair[1][0] * 1.7 <= pair[0][0] && pair[1][1] * 2.0 <= pair[0][1], "{found:?}");
+    }
+    assert!(found.iter().all(|[.., least, most]| *least >= 1.0 && *most <= 2.0), "{found:?}");
 }
 
 /// How far the displacements of both orders of the bodies are apart, with pieces changed.
