@@ -75,7 +75,7 @@ def test_of(entry):
     if "unit" in entry:
         return ("-p", CRATES[package(entry)], "--lib"), entry["unit"]
     if "program" in entry:
-        return ("-p", "props", "--test", "program"), f"{entry['program']}::check"
+        return ("-p", "props", "--lib"), f"program::{entry['program']}::check"
     return (("--test", "suite"), entry["test"]) if "test" in entry else (None, None)
 
 

@@ -103,18 +103,18 @@ pub const ITEMS: &[Item] = &[
         "that (11) holds for w; from |.|_a to |.|_1 it is the continuity of a(., .): hypotheses"),
     item("(20)", "(18) and (19) in (17), and the last estimate", &[], "(17), (18) and (19), which are its hypotheses"),
     item("Theorem 3.5", "the rate of convergence", &[("study/src/interpolation.rs", "pub fn bound(")],
-        "Korn's inequality: numbers and rates are of |.|_a; for P1, nu = 1/2, isotropic A and exact integrals the number is proved on the page (theory.md, 9.6), on c_T of (22) as quoted, and compared with errors of the solver; for other nu and P2 (22)-(24) are hypotheses, and the rates are observed for two solutions on finitely many meshes"),
+        "Korn's inequality: numbers and rates are of |.|_a; for P1, nu = 1/2, isotropic A and exact integrals the number is proved on the page (theory.md, 9.6), on c_T of (22) as quoted, and compared with errors of the solver (`tests/suite/convergence.rs`); for other nu and P2 (22)-(24) are hypotheses, and the rates are observed there on finitely many meshes"),
     item("(21)", "h^(1/2 + nu), C independent of h and u", &[],
-        "as Theorem 3.5; the rate is observed for one solution with nu < 1/2 on finitely many meshes"),
+        "as Theorem 3.5; the rate is observed at corners (nu < 1/2) by `tests/suite/convergence.rs`"),
     item("(22)-(24)", "interpolation estimates",
         &[("study/src/interpolation.rs", "pub fn gradient_constant_squared<"), ("study/src/interpolation.rs", "pub fn trace_constant_squared<")],
         "the L^2 part of (22); (22) for P1 and nu = 1/2 but on quadratics: c_T is Kobayashi's; (23) but on polynomials: Wirtinger's inequality; the trace inequality but on affine functions: it is proved on the page (theory.md, 9.6) and not run; an A that is not isotropic; 0 < nu < 1/2 is proved on the page (theory.md, 9.7) and not run; P2: Brenner and Scott; Ern and Guermond; Hild and Renard; Fritz, Hueeber and Wohlmuth"),
     item("Corollary 3.6", "the rate of the normal stress", &[("study/src/a_priori.rs", "pub fn corollary_bound<")],
         "(22) and (24): hypotheses; that sigma_n(u) is square integrable"),
     item("(25)", "|gamma^1/2 sigma_n(u - u^h)| falls at the same rate", &[],
-        "(22) and (24): hypotheses; the rate is observed for one solution on finitely many meshes"),
+        "(22) and (24): hypotheses; the rate is observed by `tests/suite/convergence.rs`"),
     item("Remark 3.7", "quadratic elements", &[("src/kernel/element.rs", "impl Element<6, 3> for P2")],
-        "(22)-(24) for quadratic elements; the rate 3/2 is observed for one solution, in the energy norm; (25) for nu > 1/2"),
+        "(22)-(24) for quadratic elements; the rates 3/2 and 2 are observed by `tests/suite/convergence.rs`; (25) for nu > 1/2"),
 ];
 
 impl Item {

@@ -44,7 +44,7 @@ is not met), or *fails*. Other checks assemble on random bodies, solve, or compa
   these very files.
 - **all cases**: each of at most 2^20 cases is run. **draws**: a harness on random draws, *and no more is known*.
 
-Each harness of Kani has a false twin, which must fail. Receipts are in `props/receipts`, written by `props receipt`,
+Each harness of Kani has a false twin, which must fail. Receipts are in `props/receipts`, written by `.ci/kani_receipt.py`,
 `.ci/rocq.py` and `.ci/smt.py`. The whole solver is compared with FEniCSx, which shares nothing with it but the case files
 (`reference/`): what the rows can't see. What the program promises beyond the paper is tested: enclosures and certificates beside
 exact rationals in `props/tests/program`, the rest in `tests/suite`. CONTRIBUTING.md says how engines are run and a row is added.
@@ -62,7 +62,7 @@ proofs again with fractions and nothing else, and that each tree is the one whos
 of the predicate it can't see. What Rocq has proved needs neither. For the rows that assemble on meshes, the definitions written
 out in `props/src/naive.rs`, `bodies.rs` and `discrete.rs`; exact elimination (`elimination.rs`), the counts of roundings in
 `claims/assembled/compare.rs`, the number types in `numbers`, and the stand-in of the model checker (`harness.rs`). Random bodies
-have lambda and mu or a tensor that couples all strains. Exact solutions that are not affine (rows 8, 11, 12, 15) are of isotropic
+have lambda and mu or a tensor that couples all strains. Exact solutions that are not affine (row 8) are of isotropic
 bodies; `tests/suite/tensor.rs` has others.
 
 ## Errata of the paper

@@ -4,6 +4,9 @@
 //! a [`Verdict`]. Engines run it: `proof` over symbols, `draws` over rationals and doubles, and the `harness`es of the
 //! model checker. [`claims`] are the rows of the ledger `VERIFY.md`.
 
+#[cfg(all(test, not(kani)))]
+extern crate self as props;
+
 #[cfg(not(kani))]
 pub mod audit;
 #[cfg(not(kani))]
@@ -43,5 +46,9 @@ pub mod solvers;
 #[cfg(not(kani))]
 pub mod statement;
 pub mod verdict;
+
+#[cfg(all(test, not(kani)))]
+#[path = "../tests/program/main.rs"]
+mod program;
 
 pub use verdict::{Ordered, Verdict};

@@ -6,19 +6,16 @@
 //! 1/gamma0* = mu_max(S K^-1 S^T) and lambda_min = 1/(1 + gamma0 mu_max(S A^-1 S^T)) (docs/theory.md, 2.4).
 
 use std::f64::consts::PI;
-use std::fmt::Write;
-use std::path::Path;
 
 use faer::{Mat, Side};
 use signorini::contact::Discretization;
-use signorini::io::Case;
 use signorini::kernel::{Material, Plane};
 use signorini::linear::factor::Factor;
 use signorini::linear::matrix;
 use signorini::linear::matrix::{LowerTriangle, Neighbours, Numbering};
 use signorini::linear::ordering::nested_dissection;
 use signorini::model::Degree;
-use signorini::model::{Diagonal, Mesh, Perturbation, Problem, Rectangle, Structured, Trapezoid};
+use signorini::model::{Diagonal, Mesh, Problem, Rectangle, Trapezoid};
 use signorini::solve::{Gamma0, Method, discretize_any};
 
 use crate::claim::text;
@@ -27,7 +24,7 @@ use crate::problems::{self, cells, floor, held, mapped, unloaded};
 /// What went wrong, in words.
 type Result<T> = std::result::Result<T, String>;
 
-/// A body of the table.
+/// A body with its name.
 pub struct Specimen {
     /// What it is.
     pub name: String,
@@ -47,66 +44,12 @@ fn material(lambda: f64, plane: Plane) -> Material<f64> {
     Material::lame(lambda, 1.0, plane)
 }
 
-/// Cells of a rectangle, `n` along each side.
-fn rectangle(width: f64, n: usize, diagonal: Diagonal) -> Rectangle {
-    Rectangle { width, height: 1.0, nx: n, ny: n, diagonal }
-}
-
 /// The trapezoid (-3, 0), (3, 0), (0, 4), (e, 4), which attains the limit as e goes to 0.
 pub fn trapezoid(e: f64) -> Result<Problem> {
     let vertices = vec![[-3.0, 0.0], [3.0, 0.0], [0.0, 4.0], [e, 4.0]];
     let sides = [("bottom", [0, 1]), ("top", [2, 3])];
     let mesh = problems::mesh(vertices, vec![[0, 1, 2], [1, 3, 2]], sides)?;
     Ok(clamped(mesh, material(1.0, Plane::Strain), &["top"]))
-}
-
-/// The bodies of the table.
-///
-/// # Errors
-/// A mesh or a case that can't be read.
-fn specimens() -> Result<Vec<Specimen>> {
-    let mut all = Vec::new();
-    let mut add = |name: &str, problem| all.push(Specimen { name: name.to_owned(), problem });
-    let strain = || material(1.0, Plane::Strain);
-    let body = |structured: Structured, perturbation, material, sides: &[&str]| {
-        let mesh = structured.mesh(perturbation).map_err(text)?;
-        Ok::<_, String>(clamped(mesh, material, sides))
-    };
-    let rectangle_of = |width, n, diagonal| Structured::Rectangle(rectangle(width, n, diagonal));
-    for n in [2, 16] {
-        let square = rectangle_of(1.0, n, Diagonal::Right);
-        add(&format!("square, n = {n}"), body(square, None, strain(), &["top"])?);
-    }
-    for n in [4, 16] {
-        let square = rectangle_of(1.0, n, Diagonal::Crossed);
-        add(&format!("square, crossed, n = {n}"), body(square, None, strain(), &["top"])?);
-    }
-    let square = rectangle_of(1.0, 8, Diagonal::Right);
-    for amount in [0.2, 0.35] {
-        let moved = Some(Perturbation { amount, seed: 1 });
-        let name = format!("square, n = 8, vertices moved by up to {amount}");
-        add(&name, body(square, moved, strain(), &["top"])?);
-    }
-    add("cells 4:1, n = 8", body(rectangle_of(4.0, 8, Diagonal::Right), None, strain(), &["top"])?);
-    for lambda in [0.0, 100.0] {
-        let name = format!("square, n = 8, lambda = {lambda}");
-        add(&name, body(square, None, material(lambda, Plane::Strain), &["top"])?);
-    }
-    for lambda in [1.0, 100.0] {
-        let name = format!("square, n = 8, plane stress, lambda = {lambda}");
-        add(&name, body(square, None, material(lambda, Plane::Stress), &["top"])?);
-    }
-    for n in [8, 16] {
-        let wedge = Structured::Trapezoid(Trapezoid { omega: 0.75 * PI, n });
-        let name = format!("wedge of 3 pi/4, n = {n}");
-        add(&name, body(wedge, None, strain(), &["right", "top"])?);
-    }
-    for e in [0.1, 0.01] {
-        add(&format!("two triangles, e = {e}"), trapezoid(e)?);
-    }
-    let disk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/disk.toml");
-    add("cases/disk.toml, a Gmsh mesh", Case::read(&disk).map_err(text)?.problem);
-    Ok(all)
 }
 
 /// Small bodies for exact arithmetic; the third one's vertices are moved to multiples of 1/32.
@@ -254,72 +197,4 @@ pub fn smallest_eigenvalue(problem: &Problem, degree: Degree, kappa: f64) -> Res
     let a = matrix::assemble(&d, &order.numbering, &order.neighbours).map_err(text)?;
     let mu = largest(&a, &order.stress_rows(&d, DIAMETER))?;
     Ok(1.0 / (1.0 + d.gamma0 * mu))
-}
-
-/// The values of kappa in the table.
-const KAPPAS: [f64; 2] = [0.5, 0.9];
-
-/// A row of the table.
-pub struct Row {
-    /// The body.
-    pub name: String,
-    degree: Degree,
-    /// 1/C_h and gamma0*.
-    pub limits: Limits,
-    /// kappa with lambda_min.
-    pub eigenvalues: [(f64, f64); 2],
-}
-
-impl Row {
-    fn new(specimen: &Specimen, degree: Degree) -> Result<Row> {
-        let Specimen { name, problem } = specimen;
-        let limits = limits(problem, degree, DIAMETER)?;
-        let mut eigenvalues = KAPPAS.map(|kappa| (kappa, 0.0));
-        for (kappa, smallest) in &mut eigenvalues {
-            *smallest = smallest_eigenvalue(problem, degree, *kappa)?;
-        }
-        Ok(Row { name: name.clone(), degree, limits, eigenvalues })
-    }
-}
-
-/// All rows.
-///
-/// # Errors
-/// A mesh or a case that can't be read.
-pub fn rows() -> Result<Vec<Row>> {
-    let mut rows = Vec::new();
-    for specimen in specimens()? {
-        rows.push(Row::new(&specimen, Degree::One)?);
-        rows.push(Row::new(&specimen, Degree::Two)?);
-    }
-    Ok(rows)
-}
-
-/// The file `docs/figures/sharpness.csv`.
-pub fn table(rows: &[Row]) -> String {
-    let mut text = "body,triangles,1/C_h,gamma0*,gamma0* C_h".to_owned();
-    for kappa in KAPPAS {
-        let _ = write!(text, ",\"lambda_min, 1 - kappa = {:.1}\"", 1.0 - kappa);
-    }
-    text += "\n";
-    for row in rows {
-        let Limits { proved, sharp } = row.limits;
-        let [half, most] = row.eigenvalues.map(|(_, smallest)| smallest);
-        let _ = writeln!(
-            text,
-            "\"{}\",P{},{},{},{:.3},{half:.3},{most:.3}",
-            row.name,
-            row.degree.number(),
-            digits(proved),
-            digits(sharp),
-            row.limits.ratio()
-        );
-    }
-    text
-}
-
-/// Four significant digits.
-fn digits(x: f64) -> String {
-    let places = (3.0 - x.abs().log10().floor()).max(0.0) as usize;
-    format!("{x:.places$}")
 }

@@ -10,6 +10,7 @@ use crate::common::exact::{
     corner, moved, on_square, on_trapezoid, singular, smooth, smooth_with_gap,
 };
 use crate::common::*;
+use approx::assert_relative_eq;
 use signorini::certificates::proof::Role;
 use signorini::certificates::{Continuous, Rejection, certify, certify_field};
 use signorini::io::Case;
@@ -310,7 +311,7 @@ fn the_normal_as_a_direction_is_the_normal() {
         }
     }
     let along_a_direction = certificate.evaluate::<Ball>().unwrap().bound;
-    assert!((along_a_direction / along_the_normal - 1.0).abs() < 1e-11);
+    assert_relative_eq!(along_a_direction, along_the_normal, max_relative = 1e-11);
     // Control: in another direction the same tractions have no friction to balance them, or v goes through.
     for edge in &mut certificate.edges {
         if let Role::Contact { along, .. } = &mut edge.role {

@@ -36,6 +36,18 @@ pub fn folder(test: &str, edits: &[[&str; 2]]) -> PathBuf {
     with_files(test, &[("case.toml", &edited(edits))])
 }
 
+/// A fresh folder with the case of a shoe that a point holds, and its mesh.
+pub fn shoe(test: &str) -> PathBuf {
+    let case = r#"
+title = "Shoe"
+mesh.gmsh = "pivot.msh"
+material = { young = 1, poisson = 0.3 }
+point.pivot.displacement = ["0", "-0.01"]
+boundary.foot.contact.gap = "0.002*x"
+"#;
+    with_files(test, &[("pivot.msh", include_str!("../meshes/pivot.msh")), ("case.toml", case)])
+}
+
 /// A fresh folder with these files in it.
 pub fn with_files(test: &str, files: &[(&str, &str)]) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("command").join(test);
@@ -451,15 +463,7 @@ fn cases_that_cannot_be_solved_or_written_end_with_exit_code_1() {
 #[test]
 fn a_case_without_a_certificate_has_all_other_results_and_exit_code_3() {
     // A point is held, which a true solution does not feel.
-    let case = r#"
-title = "Shoe"
-mesh.gmsh = "pivot.msh"
-material = { young = 1, poisson = 0.3 }
-point.pivot.displacement = ["0", "-0.01"]
-boundary.foot.contact.gap = "0.002*x"
-"#;
-    let mesh = include_str!("../meshes/pivot.msh");
-    let folder = with_files("no-certificate", &[("pivot.msh", mesh), ("case.toml", case)]);
+    let folder = shoe("no-certificate");
     fs::create_dir_all(folder.join("out/case")).unwrap();
     fs::write(folder.join("out/case/certificate.json"), "of an earlier run").unwrap();
     let output = signorini(&folder, &["solve", "case.toml", "--certificate"]);

@@ -4,11 +4,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
+use faer::Mat;
 use signorini::certificates::Continuous;
 use signorini::exact::{Errors, Exact};
 use signorini::io::certificate::{self, Header};
 use signorini::io::{Case, Expression};
 use signorini::kernel::{Material, Plane};
+use signorini::linear::matrix::LowerTriangle;
 use signorini::model::Degree;
 use signorini::model::{Condition, Diagonal, Mesh, Problem, Rectangle, SharedFunction, Space};
 use signorini::solve::{ContactQuadrature, Gamma0, Method};
@@ -263,4 +265,18 @@ pub mod exact {
     pub fn moved(ladder: Ladder) -> Ladder {
         Ladder { perturbation: Some(Perturbation { amount: 0.2, seed: 1 }), ..ladder }
     }
+}
+
+/// All entries of a symmetric matrix.
+pub fn dense(lower: &LowerTriangle) -> Mat<f64> {
+    let n = lower.starts.len() - 1;
+    let mut all = Mat::zeros(n, n);
+    for column in 0..n {
+        for at in lower.starts[column]..lower.starts[column + 1] {
+            let row = lower.rows[at];
+            all[(row, column)] = lower.values[at];
+            all[(column, row)] = lower.values[at];
+        }
+    }
+    all
 }

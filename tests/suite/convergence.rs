@@ -26,8 +26,9 @@ use signorini::contact::{Discretization, EdgeRule, Piece, residual};
 use signorini::exact::{Errors, Exact};
 use signorini::kernel::P2;
 use signorini::model::Degree;
-use signorini::model::{Space, loads};
+use signorini::model::{Problem, Space, loads};
 use signorini::nalgebra::Vector2;
+use signorini::results::Solution;
 use signorini::solve::iterate::Evaluated;
 use signorini::solve::{Gamma0, Settings, solve_discrete};
 use study::a_priori;
@@ -235,6 +236,19 @@ fn theorem_3_4_and_corollary_3_6_bound_the_errors_on_every_mesh_at_every_kappa()
     }
 }
 
+/// The constants of the interpolation estimates on a mesh.
+fn constants(problem: &Problem, solution: &Solution, ladder: &Ladder) -> Interpolation {
+    let space = Space::new(&problem.mesh, Degree::One);
+    let contact = assemble(problem, &space, solution.gamma.gamma).unwrap();
+    Interpolation::new(&space, &contact, ladder.solution.material())
+}
+
+/// |u|_2
+fn seminorm(problem: &Problem, exact: &Exact) -> f64 {
+    let all = seminorms(&Space::new(&problem.mesh, Degree::One), &**exact).unwrap();
+    all.iter().map(|u| u * u).sum::<f64>().sqrt()
+}
+
 #[test]
 fn theorem_3_5_bounds_the_error_by_a_number_and_the_second_derivatives() {
     // The bound grows as 1 / (1 - kappa).
@@ -244,9 +258,16 @@ fn theorem_3_5_bounds_the_error_by_a_number_and_the_second_derivatives() {
         let (levels, kappas) = if in_h2 { (3, vec![0.1, 0.5, 0.9]) } else { (1, vec![0.5]) };
         for level in 0..levels {
             for &kappa in &kappas {
-                let (level, _, _) = at_kappa(&ladder, level, kappa).solve(level).unwrap();
+                let (level, problem, solution) =
+                    at_kappa(&ladder, level, kappa).solve(level).unwrap();
                 let left = a_priori::left(level.kappa, &level.errors);
                 let ratio = level.proved.map(|proved| proved / left);
+                if let Some(proved) = level.proved {
+                    // Both are integrals known to 1e-9; the second is a number times |u|_2.
+                    let constant = constants(&problem, &solution, &ladder).constant(level.kappa);
+                    let uniform = constant * seminorm(&problem, &ladder.solution);
+                    assert!(proved <= uniform * (1.0 + 1e-9), "{what}: {proved} {uniform}");
+                }
                 println!("{what}, kappa {kappa}: {ratio:.2?}");
                 assert_eq!(ratio.is_some(), in_h2, "{what}");
                 assert!(
@@ -263,17 +284,15 @@ fn the_number_of_theorem_3_5_is_5_legs_of_the_triangles_and_the_seminorms_are_kn
     // lambda = mu = 1, right isosceles triangles with legs of 1/4, kappa = 1/2.
     let ladder = at_kappa(&on_square(&singular(0.5), Degree::One, 4), 0, 0.5);
     let (_, problem, solution) = ladder.solve(0).unwrap();
-    let space = Space::new(&problem.mesh, Degree::One);
-    let contact = assemble(&problem, &space, solution.gamma.gamma).unwrap();
-    let constants = Interpolation::new(&space, &contact, ladder.solution.material());
-    assert_relative_eq!(4.0 * constants.constant(0.5), 5.073, epsilon = 1e-3);
-    let seminorm = |exact: &Exact| {
-        let all = seminorms(&space, &**exact).unwrap();
-        all.iter().map(|u| u * u).sum::<f64>().sqrt()
-    };
+    assert_relative_eq!(
+        4.0 * constants(&problem, &solution, &ladder).constant(0.5),
+        5.073,
+        epsilon = 1e-3
+    );
     // Found by another program.
-    assert_relative_eq!(seminorm(&smooth(4.0, 3.0, 1.0 / 3.0)), 42.479, epsilon = 1e-3);
-    assert_relative_eq!(seminorm(&singular(0.5)), 0.98103, epsilon = 1e-5);
+    let (smooth, singular) = (smooth(4.0, 3.0, 1.0 / 3.0), singular(0.5));
+    assert_relative_eq!(seminorm(&problem, &smooth), 42.479, epsilon = 1e-3);
+    assert_relative_eq!(seminorm(&problem, &singular), 0.98103, epsilon = 1e-5);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The enclosure of the exact solution of (8) that comes with every solve.
 
+use approx::assert_abs_diff_eq;
 use signorini::kernel::{Material, Plane};
 use signorini::linear::system::System;
 use signorini::model::Degree;
@@ -303,6 +304,6 @@ fn the_relative_radius_is_relative_to_the_energy_norm_or_the_body_hardly_strains
         let enclosure = solution.enclosure.unwrap();
         let norm = solution.quantities.energy.sqrt();
         let relative = enclosure.relative.unwrap();
-        assert!((relative * norm / enclosure.radius - 1.0).abs() < 1e-9);
+        assert_abs_diff_eq!(relative * norm / enclosure.radius, 1.0, epsilon = 1e-9);
     }
 }

@@ -1,6 +1,7 @@
 //! Reads files that the installed Gmsh has just written, in text and binary. A fresh Gmsh shows what the committed files in
 //! `tests/meshes` can't: that the format is still the one that is read here.
 
+use approx::assert_abs_diff_eq;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -63,11 +64,11 @@ fn fresh_text_and_binary_files_give_the_same_mesh() {
 #[ignore = "needs gmsh: run by .ci/run"]
 fn a_fresh_disk_is_half_a_disk_that_touches_the_floor() {
     let disk = read(&mesh("cases/disk.geo", "disk.msh", &[]));
-    assert!((area(&disk) - std::f64::consts::FRAC_PI_2).abs() < 0.01);
+    assert_abs_diff_eq!(area(&disk), std::f64::consts::FRAC_PI_2, epsilon = 0.01);
     // The contact arc reaches to 30 degrees on both sides; the free arcs from there to 90.
-    assert!((length(&disk, "contact") - std::f64::consts::FRAC_PI_3).abs() < 1e-3);
-    assert!((length(&disk, "free") - 2.0 * std::f64::consts::FRAC_PI_3).abs() < 1e-2);
-    assert!((length(&disk, "top") - 2.0).abs() < 1e-12);
+    assert_abs_diff_eq!(length(&disk, "contact"), std::f64::consts::FRAC_PI_3, epsilon = 1e-3);
+    assert_abs_diff_eq!(length(&disk, "free"), 2.0 * std::f64::consts::FRAC_PI_3, epsilon = 1e-2);
+    assert_abs_diff_eq!(length(&disk, "top"), 2.0, epsilon = 1e-12);
     assert!(disk.vertices().contains(&[0.0, 0.0]));
 }
 

@@ -362,7 +362,7 @@ fn a_whole_force_is_spread_over_its_boundary_also_beside_a_component_that_is_hel
     for solution in [&in_code, &in_case] {
         // The tolerance of the solver is 1e-10 of the loads.
         let force = solution.quantities.contact_force;
-        assert!((force - 3.0).abs() < 1e-9, "{force}");
+        assert_abs_diff_eq!(force, 3.0, epsilon = 1e-9);
     }
     assert!(in_code.quantities.reactions["left"][0].abs() < 1e-9);
     assert!(

@@ -2,6 +2,7 @@
 //! let it reach.
 
 use crate::common::*;
+use approx::assert_abs_diff_eq;
 use faer::linalg::solvers::Solve;
 use faer::{Col, Mat};
 use signorini::contact::Discretization;
@@ -90,7 +91,7 @@ fn newton_iterate(d: &Discretization, set: &[usize]) -> Vec<[f64; 2]> {
 fn plain_newton_cycles_where_the_solver_ends() {
     let (problem, method) = cycling();
     let d = discretize(&problem, &method).unwrap();
-    assert!((d.kappa() - 0.03).abs() < 1e-15);
+    assert_abs_diff_eq!(d.kappa(), 0.03, epsilon = 1e-15);
     let mut set = vec![5];
     let mut visited = Vec::new();
     let mut energies = Vec::new();

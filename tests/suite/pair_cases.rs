@@ -1,5 +1,6 @@
 //! Cases with pairs: what is read of them, and from which meshes.
 
+use approx::assert_abs_diff_eq;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -103,7 +104,7 @@ fn blocks_that_touch_are_read_as_a_pair_and_refused_without_one() {
     assert!(case.problem.conditions.values().all(|c| !matches!(c, Condition::Contact { .. })));
     let pieces = &pieces(&case)[0];
     let length: f64 = pieces.iter().map(|piece| piece.length).sum();
-    assert!((length - 0.5).abs() < 1e-14, "{length}");
+    assert_abs_diff_eq!(length, 0.5, epsilon = 1e-14);
     assert!(pieces.iter().all(|piece| piece.gap.iter().all(|gap| gap.abs() < 1e-15)));
     let refused = read(&folder, &mesh, "boundary.up.contact = {}\n").err().unwrap();
     assert!(refused.contains("expected one vertex there (mesh.merge makes them one), or two bodies that are a [[pair]]"), "{refused}");
@@ -165,7 +166,7 @@ fn keys_of_a_pair_are_read_and_set_by_its_number() {
     let case = parse(&[]).unwrap();
     let pair = &case.problem.pairs[0];
     assert!(pair.clearance.is_none() && pair.reach.is_none() && pair.law == Law::Contact);
-    assert!((pieces(&case)[0][0].gap[0] - 0.01).abs() < 1e-15);
+    assert_abs_diff_eq!(pieces(&case)[0][0].gap[0], 0.01, epsilon = 1e-15);
     let case =
         parse(&["pair.0.clearance=0.1*x", "pair.0.reach=0.2", "pair.0.law=sliding"]).unwrap();
     let pair = &case.problem.pairs[0];

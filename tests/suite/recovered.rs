@@ -16,6 +16,7 @@
 //! `cargo test` runs the two coarser meshes; `cargo test --test suite recovered:: -- --ignored --nocapture` all, with the table
 //! of docs/figures/recovered.csv.
 
+use approx::assert_abs_diff_eq;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
 
@@ -327,7 +328,7 @@ fn the_recovered_pressure_has_its_orders_on_four_meshes() {
 fn exact_pressures_are_those_of_hertz_and_balance_the_force() {
     for x in [0.0, 0.2, 0.45] {
         let hertz = E_STAR / 2.0 * (A * A - x * x).sqrt();
-        assert!((rounded_pressure(0.0, x) - hertz).abs() < 1e-6, "{x}");
+        assert_abs_diff_eq!(rounded_pressure(0.0, x), hertz, epsilon = 1e-6);
     }
     for b in [0.0, B] {
         let force: f64 = rounded(b).iter().map(|punch| punch[1]).sum();

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::command::{signorini, with_files};
+use super::command::{shoe, signorini, with_files};
 
 /// What the command prints, with this exit code.
 fn said(folder: &Path, arguments: &[&str], code: i32) -> String {
@@ -234,14 +234,7 @@ boundary.right.contact.obstacle = "east"
 
 #[test]
 fn a_shoe_on_a_pivot_without_loads_is_held_by_what_it_presses() {
-    let case = r#"
-mesh.gmsh = "pivot.msh"
-material = { young = 1, poisson = 0.3 }
-point.pivot.displacement = ["0", "-0.01"]
-boundary.foot.contact.gap = "0.002*x"
-"#;
-    let mesh = include_str!("../meshes/pivot.msh");
-    let folder = with_files("pivot", &[("pivot.msh", mesh), ("case.toml", case)]);
+    let folder = shoe("pivot");
     said(&folder, &["solve", "case.toml", "--quiet"], 0);
     let result = result(&folder, "out/case");
     assert_eq!((&result["verdict"], &result["method"]["slides"]), (&"proved".into(), &0.into()));

@@ -2,6 +2,7 @@
 //! which Newton's method takes its longest. That both routes of the solver end at the same displacement is a property of
 //! `properties::conditions`.
 
+use approx::assert_abs_diff_eq;
 use signorini::io::Case;
 use signorini::kernel::{Material, Plane};
 use signorini::linear::system::System;
@@ -133,7 +134,7 @@ fn a_sliver_spoils_itself_only_where_gamma_is_local() {
         let expected = peak(&whole, Gamma0::Auto);
         // All triangles on the floor are alike, so one gamma0 and local ones are the same.
         let same = peak(&whole, Gamma0::local(0.5).unwrap());
-        assert!((same - expected).abs() <= 1e-9 * expected, "{same} {expected}");
+        assert_abs_diff_eq!(same, expected, epsilon = 1e-9 * expected);
         let spoilt = with_a_sliver(1e-4);
         let [one, local] = [Gamma0::Auto, Gamma0::Local(0.5)].map(|g| peak(&spoilt, g));
         assert!((local / expected - 1.0).abs() < 0.01, "{degree:?} {local} {expected}");

@@ -287,6 +287,12 @@ fn sections<S: Ordered>(p: [S; 2], m: [S; 2], shift: [S; 2]) -> Verdict {
             ensure!(is_bound || e.by_p[i][j] == upper.hessian[i][j] - lower.hessian[i][j]);
         }
     }
+    // The gradient is homogeneous in the data: what both derivatives say of it.
+    for (i, gradient) in e.gradient.into_iter().enumerate() {
+        let tangent =
+            (0..2).fold(zero, |sum, j| sum + e.by_p[i][j] * p[j] + e.by_bound[i][j] * m[j]);
+        ensure!(tangent == gradient);
+    }
     ensure!(if is_bound { e.sticks == zero } else { e.sticks == upper.active - lower.active });
     ensure!(e.sticks + e.slides <= S::from(1));
     Verdict::Holds(if e.slides == zero {
@@ -316,22 +322,6 @@ pub fn sections_with_an_affine_bound_are_their_definition<S: Ordered>(
 pub fn control_sections_with_the_bound_of_one_end<S: Ordered>([p0, p1, m0, m1]: [S; 4]) -> Verdict {
     given!(m0 > S::from(0) && m1 > S::from(0));
     sections([p0, p1], [m0, m1], [m0, m0])
-}
-
-/// P is the bound times this at the ends of an edge: sticking, sliding and cut, both ways.
-const SHARES: [[f64; 2]; 6] =
-    [[0.5, -0.25], [2.0, 1.5], [-3.0, -1.5], [0.0, 2.0], [2.0, -2.0], [-4.0, 0.0]];
-
-/// How far the derivatives with respect to P and m are from those of the gradient in the direction of (P, m), which is the
-/// gradient itself: clip is homogeneous. `factor` multiplies the second one.
-fn tangent_error(p: [f64; 2], m: [f64; 2], factor: f64) -> f64 {
-    let e = P1::exact_friction(p, m);
-    let error = |a: usize| {
-        let by_p = e.by_p[a][0] * p[0] + e.by_p[a][1] * p[1];
-        let by_m = e.by_bound[a][0] * m[0] + e.by_bound[a][1] * m[1];
-        (by_p + factor * by_m - e.gradient[a]).abs()
-    };
-    error(0) + error(1)
 }
 
 harnesses! {
@@ -373,41 +363,6 @@ harnesses! {
         let (a, b, m): (i8, i8, i8) = (any(), any(), any());
         let v = [a, b, m].map(|v| Whole(i32::from(v)));
         assert!(!control_twice_the_clip_is_firmly_nonexpansive(v).fails());
-    }
-    /// Sections of an edge, with a bound that grows along it: with both derivatives the integrals are homogeneous.
-    holds tangent_of_friction_times_its_data_is_the_gradient_on_six_edges() {
-        for [a, b] in SHARES {
-            assert!(tangent_error([8.0 * a, 16.0 * b], [8.0, 16.0], 1.0) < 1e-12);
-        }
-    }
-    /// The false twin: without what the bound does.
-    fails control_tangent_of_friction_without_the_bound_on_six_edges([]) {
-        for [a, b] in SHARES {
-            assert!(tangent_error([8.0 * a, 16.0 * b], [8.0, 16.0], 0.0) < 1e-12);
-        }
-    }
-    /// Sections of an edge with a constant bound, by the integrals of contact.
-    holds sections_have_the_moments_of_the_clip_on_six_edges() {
-        for [a, b] in SHARES {
-            let e = P1::exact_friction([8.0 * a, 8.0 * b], [8.0; 2]);
-            let upper = P1::exact([8.0 * a + 8.0, 8.0 * b + 8.0]);
-            let lower = P1::exact([8.0 * a - 8.0, 8.0 * b - 8.0]);
-            for i in 0..2 {
-                let expected = upper.gradient[i] - lower.gradient[i] - 4.0;
-                assert!((e.gradient[i] - expected).abs() < 1e-12);
-            }
-        }
-    }
-    /// The false twin: the clip of the ends, interpolated.
-    fails control_sections_have_the_moments_of_the_clip_of_the_ends([]) {
-        for [a, b] in SHARES {
-            let e = P1::exact_friction([8.0 * a, 8.0 * b], [8.0; 2]);
-            let q = [clip(8.0 * a, 8.0), clip(8.0 * b, 8.0)];
-            for i in 0..2 {
-                let expected = (2.0 * q[i] + q[1 - i]) / 6.0;
-                assert!((e.gradient[i] - expected).abs() < 1e-12);
-            }
-        }
     }
 }
 

@@ -151,37 +151,6 @@ pub fn plane_stress_has_its_own_lambda<S: Ordered>([lambda, mu, xx, yy, xy]: [S;
     Verdict::Holds("always")
 }
 
-/// Plane strain: sigma_zz = lambda tr(eps), and the von Mises stress with it is (3/2) s:s of the deviator s.
-pub fn plane_strain_has_a_stress_across_the_plane<S: Ordered>(
-    [lambda, mu, exx, eyy, exy]: [S; 5],
-) -> Verdict {
-    let (zero, two, three) = (S::from(0), S::from(2), S::from(3));
-    given!(mu > zero && lambda + mu > zero);
-    let material = Material::lame(lambda, mu, Plane::Strain);
-    let stress = material.stress(gradient([exx, exy, exy, eyy]));
-    let zz = material.stress_zz(stress);
-    ensure!(zz == lambda * (exx + eyy));
-    let [xx, yy, xy] = stress.components();
-    let mean = (xx + yy + zz) / three;
-    let (a, b, c) = (xx - mean, yy - mean, zz - mean);
-    let deviator = a * a + b * b + c * c + two * xy * xy;
-    ensure!(two * material.von_mises_squared(stress) == three * deviator);
-    Verdict::Holds("always")
-}
-
-/// Young's modulus and Poisson's ratio: the bar that is pulled along x and free across it.
-pub fn young_and_poisson_are_those_of_a_bar<S: Ordered>([young, poisson, e]: [S; 3]) -> Verdict {
-    let (zero, one, two) = (S::from(0), S::from(1), S::from(2));
-    given!(young > zero && poisson > -one && two * poisson < one);
-    let plate = Material::young_poisson(young, poisson, Plane::Strain);
-    let (lambda, mu) = (plate.lambda(), plate.mu());
-    // sigma = lambda tr I + 2 mu eps in three dimensions, eps = e diag(1, -nu, -nu)
-    let trace = e * (one - two * poisson);
-    ensure!(lambda * trace + two * mu * e == young * e);
-    ensure!(lambda * trace - two * mu * poisson * e == zero);
-    Verdict::Holds("always")
-}
-
 /// The trace inequality on an edge with the ends b, c of the triangle with the values a, b, c of an affine w:
 /// |w|_E^2 = |E| (b^2 + b c + c^2)/3, |w|_T^2 = |T| (a^2 + b^2 + c^2 + a b + b c + c a)/6.
 fn trace_inequality<S: Ordered>([a, b, c]: [S; 3], constant: S) -> Verdict {

@@ -10,8 +10,8 @@
 //! d . Q(n) d with the acoustic tensor Q(n), and A_nnnn for d = n; over unit vectors d it is at most the largest eigenvalue of
 //! Q(n).
 
+use signorini::kernel::Material;
 use signorini::kernel::contact_edge::traction_stiffness;
-use signorini::kernel::{Material, Plane, Squares, Stress};
 use signorini::nalgebra::{Matrix2, Vector2};
 
 use crate::bodies::square;
@@ -22,10 +22,10 @@ use crate::verdict::{Ordered, Verdict};
 use crate::{ensure, given};
 
 /// eps_xx, eps_yy and 2 eps_xy
-type Strain<S> = [S; 3];
+pub type Strain<S> = [S; 3];
 
 /// a : A b
-fn form<S: Ordered>([c11, c12, c16, c22, c26, c66]: [S; 6], a: Strain<S>, b: Strain<S>) -> S {
+pub fn form<S: Ordered>([c11, c12, c16, c22, c26, c66]: [S; 6], a: Strain<S>, b: Strain<S>) -> S {
     a[0] * (c11 * b[0] + c12 * b[1] + c16 * b[2])
         + a[1] * (c12 * b[0] + c22 * b[1] + c26 * b[2])
         + a[2] * (c16 * b[0] + c26 * b[1] + c66 * b[2])
@@ -36,12 +36,13 @@ fn strain_along<S: Ordered>(d: [S; 2], n: [S; 2]) -> Strain<S> {
     [d[0] * n[0], d[1] * n[1], d[0] * n[1] + d[1] * n[0]]
 }
 
-/// u with this strain.
-fn gradient<S: Ordered>([xx, yy, twice]: Strain<S>) -> Matrix2<S> {
+/// The gradient of a displacement with this strain.
+pub fn gradient<S: Ordered>([xx, yy, twice]: Strain<S>) -> Matrix2<S> {
     Matrix2::new(xx, twice, S::from(0), yy)
 }
 
-fn tensor<S: Ordered>(c: &[S]) -> Material<S> {
+/// The law with these coefficients.
+pub fn tensor<S: Ordered>(c: &[S]) -> Material<S> {
     Material::tensor(take(&c[..6]), None)
 }
 
@@ -65,17 +66,6 @@ pub fn stress_is_the_tensor_times_the_strain<S: Ordered>(v: [S; 13]) -> Verdict 
     let (a, b, c) = (sxx - syy, syy - zz, zz - sxx);
     let twice = a * a + b * b + c * c + S::from(6) * sxy * sxy;
     ensure!(S::from(2) * material.von_mises_squared(stress) == twice);
-    Verdict::Holds("always")
-}
-
-/// Lamé's coefficients are a tensor, and that tensor's own.
-pub fn lambda_and_mu_are_a_tensor<S: Ordered>([lambda, mu, xx, xy, yx, yy]: [S; 6]) -> Verdict {
-    let isotropic = Material::lame(lambda, mu, Plane::Strain);
-    let tensor = tensor(&isotropic.stiffness());
-    ensure!(isotropic.is_isotropic() && isotropic.in_plane() == isotropic);
-    ensure!(tensor.lambda() == lambda && tensor.mu() == mu);
-    let gradient = Matrix2::new(xx, xy, yx, yy);
-    ensure!(tensor.stress(gradient) == isotropic.stress(gradient));
     Verdict::Holds("always")
 }
 
@@ -246,84 +236,6 @@ pub fn the_whole_traction_is_bounded_by_the_largest_eigenvalue<S: Ordered>(
     Verdict::Holds("always")
 }
 
-/// The tensor with these K, M, G and L of [`Squares`]: C = T^T L D L^T T, T from (xx, yy, 2 xy) to (xx + yy, xx - yy, 2 xy).
-fn of_squares<S: Ordered>([k, m, g, a, b, c]: [S; 6]) -> [S; 6] {
-    let columns = [[1, 1, 0], [1, -1, 0], [0, 0, 1]];
-    // L^T T, a row each.
-    let rows =
-        [[S::from(1), a, b], [S::from(0), S::from(1), c], [S::from(0), S::from(0), S::from(1)]];
-    let rows = rows.map(|row| {
-        [0, 1, 2]
-            .map(|j: usize| (0..3).fold(S::from(0), |s, i| s + row[i] * S::from(columns[i][j])))
-    });
-    let entry = |i: usize, j: usize| {
-        k * rows[0][i] * rows[0][j] + m * rows[1][i] * rows[1][j] + g * rows[2][i] * rows[2][j]
-    };
-    [entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)]
-}
-
-/// sigma:eps, and a : C^-1 b for stresses a and b, as sums of squares with these moduli.
-pub fn the_energies_of_any_tensor_are_sums_of_squares<S: Ordered>(v: [S; 12]) -> Verdict {
-    let ([k, m, g, ..], zero): ([S; 6], _) = (take(&v[..6]), S::from(0));
-    given!(k > zero && m > zero && g > zero);
-    let c = of_squares(take(&v[..6]));
-    let squares = Squares { bulk: k, shear: m, beyond: Some((g, [v[3], v[4], v[5]])) };
-    let [a, b]: [Strain<S>; 2] = [take(&v[6..9]), take(&v[9..])];
-    let material = Material::tensor(c, None);
-    let [s, t] = [a, b].map(|strain| material.stress(gradient(strain)));
-    let of_a = squares.parts(s);
-    ensure!(of_a[2] == S::from(2) * k * (a[0] + a[1] + v[3] * (a[0] - a[1]) + v[4] * a[2]));
-    ensure!(squares.per_moduli(squares.products(s, t)) == S::from(4) * form(c, a, b));
-    ensure!(squares.of_stress(s) == form(c, a, a));
-    Verdict::Holds("always")
-}
-
-/// The moduli that the kernel finds are those that the tensor is made of, so that all are positive where A is elliptic.
-pub fn the_moduli_of_a_tensor_are_found<S: Ordered>(v: [S; 6]) -> Verdict {
-    let ([k, m, g, a, b, c], zero) = (v, S::from(0));
-    given!(k > zero && m > zero && g > zero);
-    let found = Material::tensor(of_squares(v), None).squares();
-    ensure!(found.pivots() == [k, m, g]);
-    ensure!(found.beyond == Some((g, [a, b, c])));
-    Verdict::Holds("always")
-}
-
-/// A symmetric tensor that is turned by the angle with this cosine and sine.
-fn turned<S: Ordered>([cos, sin]: [S; 2], [xx, yy, xy]: [S; 3]) -> [S; 3] {
-    let twice = S::from(2) * cos * sin * xy;
-    [
-        cos * cos * xx + sin * sin * yy - twice,
-        sin * sin * xx + cos * cos * yy + twice,
-        cos * sin * (xx - yy) + (cos * cos - sin * sin) * xy,
-    ]
-}
-
-/// A body that is turned: the turned strain has the turned stress.
-pub fn a_tensor_that_is_turned_has_the_stress_of_before<S: Ordered>(v: [S; 11]) -> Verdict {
-    let (c, [xx, yy, xy]): ([S; 6], [S; 3]) = (take(&v[..6]), take(&v[6..9]));
-    let (two, by): (_, [S; 2]) = (S::from(2), take(&v[9..]));
-    given!(by[0] * by[0] + by[1] * by[1] == S::from(1));
-    let material = Material::tensor(c, None);
-    let stress = material.stress(gradient([xx, yy, two * xy]));
-    let [txx, tyy, txy] = turned(by, [xx, yy, xy]);
-    let found = material.turned(by).stress(gradient([txx, tyy, two * txy]));
-    ensure!(found == Stress::new(turned(by, stress.components())));
-    Verdict::Holds("always")
-}
-
-/// And so has the stress across the plane.
-pub fn a_tensor_that_is_turned_has_the_stress_across_the_plane_of_before<S: Ordered>(
-    [p, q, r, xx, yy, xy, cos, sin]: [S; 8],
-) -> Verdict {
-    let (zero, one) = (S::from(0), S::from(1));
-    given!(cos * cos + sin * sin == one);
-    let material = Material::tensor([one, zero, zero, one, zero, one], Some([p, q, r]));
-    let after = Stress::new(turned([cos, sin], [xx, yy, xy]));
-    let found = material.turned([cos, sin]).stress_zz(after);
-    ensure!(found == material.stress_zz(Stress::new([xx, yy, xy])));
-    Verdict::Holds("always")
-}
-
 /// A positive tensor on the horizontal edge, n = e_y, with another constant than A_nnnn.
 fn bounded_by<S: Ordered>(v: [S; 9], constant: impl Fn(&Material<S>) -> S) -> Verdict {
     let zero = S::from(0);
@@ -367,18 +279,11 @@ fn with_a_root_at_the_end(v: &mut [Exact]) {
     v[5] = v[5].abs() * Exact::from(100);
 }
 
-/// A unit vector at the end, from the last component: (1 - t^2, 2 t)/(1 + t^2).
-fn unit_at_the_end(v: &mut [Exact]) {
-    let count = v.len();
-    [v[count - 2], v[count - 1]] = v[count - 1].on_circle();
-}
-
 /// The checks of row 9 about tensors.
 pub fn checks() -> Vec<Check> {
     statements! {
         proved + tested stress_is_the_tensor_times_the_strain[c11, c12, c16, c22, c26, c66, xx, xy, yx, yy, p, q, r]
             about "(1)";
-        proved + tested lambda_and_mu_are_a_tensor[lambda, mu, xx, xy, yx, yy];
         proved + tested shapes_of_any_tensor_are_their_definitions[c11, c12, c16, c22, c26, c66, gx, gy, hx, hy, nx, ny, dx, dy];
         proved + tested the_acoustic_tensor_is_the_energy_of_a_strain_along_two_directions[c11, c12, c16, c22, c26, c66, nx, ny, dx, dy];
         tested normal_stress_is_bounded_by_the_energy_of_any_tensor[c11, c12, c16, c22, c26, c66, xx, yy, xy, nx, ny]
@@ -393,12 +298,6 @@ pub fn checks() -> Vec<Check> {
             about "Lemma 3.2", "(11)" hints(|v| vec![v[3], v[4], across(take(&v[..5]))]) prepared(with_a_root);
         proved + tested the_whole_traction_is_bounded_by_the_largest_eigenvalue[c11, c16, c66, dx, dy, energy, r]
             about "Lemma 3.2", "(11)" prepared(with_a_root_at_the_end);
-        proved + tested the_energies_of_any_tensor_are_sums_of_squares[k, m, g, a, b, c, exx, eyy, exy, fxx, fyy, fxy];
-        proved + tested the_moduli_of_a_tensor_are_found[k, m, g, a, b, c];
-        proved + tested a_tensor_that_is_turned_has_the_stress_of_before[c11, c12, c16, c22, c26, c66, xx, yy, xy, cos, sin]
-            prepared(unit_at_the_end);
-        proved + tested a_tensor_that_is_turned_has_the_stress_across_the_plane_of_before[p, q, r, xx, yy, xy, cos, sin]
-            prepared(unit_at_the_end);
         refuted control_lambda_plus_two_mu_of_the_nearest_law[l11, l21, l22, l31, l32, l33, xx, yy, xy]
             fails "yy * yy <= constant(&material) * form(c, eps, eps)";
         refuted control_half_the_trace_of_the_acoustic_tensor[l11, l21, l22, l31, l32, l33, xx, yy, xy]

@@ -242,7 +242,7 @@ mod tests {
             let unknowns = statement.variables.len();
             let paths = explore(unknowns, statement.symbolic);
             // Each point is compared with all paths, of which some statements have hundreds.
-            for _ in 0..(1000 / paths.len()).clamp(5, 100) {
+            for _ in 0..(200 / paths.len()).clamp(3, 20) {
                 let point: Vec<BigRational> = (0..unknowns).map(|_| random.rational()).collect();
                 let on: Vec<&Path> = paths.iter().filter(|path| lies_on(path, &point)).collect();
                 assert_eq!(on.len(), 1, "{} at {}", statement.name, place(&statement, &point));
@@ -260,7 +260,7 @@ mod tests {
         let mut random = Random::new(8);
         for statement in statements() {
             let paths = explore(statement.variables.len(), statement.symbolic);
-            for path in paths.iter().step_by(paths.len() / 50 + 1) {
+            for path in paths.iter().step_by(paths.len() / 12 + 1) {
                 if let Some(mut point) = sample(path, &mut random, 20) {
                     point.truncate(statement.variables.len());
                     assert_eq!(path.verdict, verdict_at(statement.symbolic, &point));

@@ -6,7 +6,6 @@ use proptest::prelude::*;
 use signorini::exact::Errors;
 use study::a_priori;
 
-use props::claims::rates;
 use props::claims::theorem_3_4::scaled_sides;
 use props::numbers::Exact;
 use props::proof::{prove, refute};
@@ -222,6 +221,4 @@ checks! {
     control_9_5_with_half_the_constant => refute(&statement!(control_9_5_with_half_the_constant, [c, x, r, w], fails "x <= (r + w) / S::from(2)"));
     the_bounds_that_the_solver_calls_are_roots_of_these => draws::hold(400, numbers(), &["always"], |draw| called(draw, |kappa| kappa));
     control_kappa_for_its_root_in_doubles => draws::reject(numbers(), |draw| called(draw, |kappa| kappa * kappa));
-    the_projection_is_nearer_than_the_discrete_solution_and_the_interpolant => rates::projection_is_the_nearest();
-    control_the_interpolant_is_as_near_as_the_projection => rates::interpolant_is_as_near();
 }

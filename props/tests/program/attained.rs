@@ -31,8 +31,8 @@ use signorini::proof::enclosure;
 use signorini::proof::korn::{Hold, Korn, Term};
 use signorini::solve::{Gamma0, Method, Settings, discretize_any, solve, solve_discrete};
 
-use crate::enclosure::factor_of;
-use crate::solved::{Draw as Floor, bodies};
+use super::enclosure::factor_of;
+use super::solved::{Draw as Floor, bodies};
 use props::claim::{Outcome, noticed, text};
 use props::claims::one_solution::{NARROW_TRAPEZOID, eigenvector, share_of_12};
 use props::problems::{cells, diagonals, floor, held, mesh, problem, unloaded};

@@ -1,5 +1,5 @@
 //! The enclosure that every solve reports, in balls and in doubles, beside the exact solution u^h of the discrete problem, or a
-//! point that is a thousand times nearer to it (`props::claims::one_solution`).
+//! point that is a thousand times nearer to it (`certified`).
 
 use std::sync::Arc;
 
@@ -19,11 +19,11 @@ use signorini::solve::{
     ContactQuadrature, Gamma0, Method, Settings, SolveError, discretize_any, solve_discrete,
 };
 
-use crate::{at_points, pressed, rounding};
+use super::{at_points, certified, pressed, rounding};
 use props::claim::{Outcome, noticed, text};
 use props::claims::one_solution::{
-    self, BETWEEN, Certifier, Draw, IRRATIONAL, NARROW, P1, P1_BY_POINTS, P2_BY_POINTS, Solved,
-    WIDE, power, problems, problems_by_contact, triangle,
+    BETWEEN, Certifier, Draw, IRRATIONAL, NARROW, P1, P1_BY_POINTS, P2_BY_POINTS, Solved, WIDE,
+    power, problems, problems_by_contact, triangle,
 };
 use props::discrete::{CUT, Nodal, exactly};
 use props::elimination::square;
@@ -103,8 +103,9 @@ fn enclosed(degree: Degree, draw: &Draw, quadrature: ContactQuadrature, asked: A
         }
         Verdict::Holds("within")
     };
-    let of_certificate = one_solution::Asked { share: asked.share, tenth: None };
-    let found = certifier.compared(&found, of_certificate, draw.by_contact, &radii, beside);
+    let of_certificate = certified::Asked { share: asked.share, tenth: None };
+    let by_contact = draw.by_contact;
+    let found = certified::compared(&certifier, &found, of_certificate, by_contact, &radii, beside);
     found.unwrap_or_else(Verdict::Fails)
 }
 

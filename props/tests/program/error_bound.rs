@@ -11,11 +11,11 @@ use signorini::kernel::{Ball, Material, Plane, PreciseBall};
 use signorini::model::Degree;
 use signorini::nalgebra::Matrix2;
 
-use crate::by_hand::{
+use super::by_hand::{
     CLASSES, balanced, draws_of, duality_gap, evaluated, evaluated_with_supports,
 };
-use crate::refusals::{refusals, refusals_of_supports};
-use crate::solved::{
+use super::refusals::{refusals, refusals_of_supports};
+use super::solved::{
     self, above_the_rationals, between_the_vertices, costs, energies_agree, known_to_rounding,
     patches, raised_by_a_perturbation, scaled,
 };

@@ -9,7 +9,7 @@ use signorini::certificates::proof::{Certificate, Lift, Role};
 use signorini::kernel::Ball;
 use signorini::nalgebra::Vector2;
 
-use crate::by_hand::{self, draws_of, sixteenth, to_double};
+use super::by_hand::{self, draws_of, sixteenth, to_double};
 use props::bodies::whole;
 use props::naive::{Hooke, Line, Tensor, integral_of_affine};
 use props::numbers::Exact;

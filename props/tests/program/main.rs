@@ -2,7 +2,7 @@
 //! error and of forces, balls and double-doubles, directions of contact. Data are drawn by `props::draws`; each check has a
 //! control, a planted mistake that it must reject.
 //!
-//! A part of it alone: `cargo test -p props --test program balls::`.
+//! A part of it alone: `cargo test -p props program::balls::`.
 
 /// Tests by their names: `NAME => OUTCOME;`.
 macro_rules! checks {
@@ -26,13 +26,17 @@ mod at_points;
 mod attained;
 mod balls;
 mod by_hand;
+mod certified;
 mod directions;
+mod edges;
 mod enclosure;
 mod error_bound;
 mod forces;
 mod geometry;
+mod material;
 mod pressed;
 mod quantities;
 mod refusals;
 mod rounding;
+mod sharpness;
 mod solved;

@@ -7,7 +7,7 @@ use signorini::certificates::quantities::Name;
 use signorini::kernel::Ball;
 use signorini::model::Degree;
 
-use crate::solved::{Draw, bodies};
+use super::solved::{Draw, bodies};
 use props::claim::Outcome;
 use props::numbers::Exact;
 use props::proof::{prove, refute};

@@ -8,7 +8,7 @@ use signorini::certificates::Rejection::{
 use signorini::certificates::proof::{Certificate, Claim as Said, Edge, Law, Role};
 use signorini::kernel::{Ball, Material, Plane, PreciseBall};
 
-use crate::by_hand::{Draw, supported};
+use super::by_hand::{Draw, supported};
 use props::claim::{Outcome, text};
 
 /// One thing that the theorem does not allow, how it is planted, and whether this is the reason.

@@ -290,11 +290,11 @@ mod tests {
         let layers = source.layers();
         let entries = source.entries(&layers).unwrap();
         let keys = |path: &str| {
-            let below = |table: &DeTable, key: &str| match table.get(key).map(Spanned::get_ref) {
+            let below = |table: DeTable<'static>, key| match table.get(key).map(Spanned::get_ref) {
                 Some(DeValue::Table(table)) => table.clone(),
                 _ => DeTable::new(),
             };
-            let table = path.split('.').fold(entries.clone(), |table, key| below(&table, key));
+            let table = path.split('.').fold(entries.clone(), below);
             let mut keys: Vec<String> = table.keys().map(|key| key.get_ref().to_string()).collect();
             keys.sort();
             keys

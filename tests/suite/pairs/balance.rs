@@ -1,12 +1,13 @@
 //! Forces and moments of the two sides cancel, and the stress that is subtracted is at most kappa times the energy.
 
+use approx::assert_abs_diff_eq;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use signorini::linear::matrix;
-use signorini::linear::matrix::{LowerTriangle, Neighbours, Numbering};
+use signorini::linear::matrix::{Neighbours, Numbering};
 
 use super::*;
-use crate::common::{DEGREES, Random};
+use crate::common::{DEGREES, Random, dense};
 
 /// Two blocks with any cells, moduli and places of inner nodes, held at their far sides; of an inner node the place is moved by up to
 /// a fifth of a cell.
@@ -105,19 +106,6 @@ fn loads_reactions_and_the_force_of_the_other_body_balance_on_each_body() {
     }
 }
 
-pub(super) fn dense(lower: &LowerTriangle) -> Mat<f64> {
-    let n = lower.starts.len() - 1;
-    let mut all = Mat::zeros(n, n);
-    for column in 0..n {
-        for at in lower.starts[column]..lower.starts[column + 1] {
-            let row = lower.rows[at];
-            all[(row, column)] = lower.values[at];
-            all[(column, row)] = lower.values[at];
-        }
-    }
-    all
-}
-
 /// The largest eigenvalue of the stress that A subtracts, beside a(., .).
 fn largest_share(d: &Discretization) -> f64 {
     let neighbours = Neighbours::across(&d.space, &d.contact);
@@ -148,7 +136,7 @@ fn the_stress_that_is_subtracted_is_at_most_kappa_times_the_energy() {
             let problem = drawn(seed, law);
             let free = Method { allow_noncoercive: true, ..with_kappa(degree, 1.0) };
             let mut d = discretize(&problem, &free).unwrap();
-            assert!((d.kappa() - 1.0).abs() <= 1e-12);
+            assert_abs_diff_eq!(d.kappa(), 1.0, epsilon = 1e-12);
             let share = largest_share(&d);
             most = most.max(share);
             assert!(share <= 1.0 + 1e-9, "{seed} {law:?} {degree:?}: {share}");

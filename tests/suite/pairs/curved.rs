@@ -1,5 +1,6 @@
 //! Curved boundaries: rings that are pressed into each other, and cylinders; the gap is that between the smooth boundaries.
 
+use approx::{assert_abs_diff_eq, assert_relative_eq};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use signorini::certificates::{Target, adapt, certify};
@@ -126,7 +127,7 @@ fn control_stress_that_is_not_scaled_to_the_length_of_the_piece_is_noticed() {
     let [right, wrong] =
         [mean(&|d| with_stress(d, |_, _| 1.0)), mean(&|d| with_stress(d, without))];
     println!("mean pressure {right}, without the ratios {wrong}");
-    assert!((right - 1.0).abs() <= MEAN_OF_P2, "{right}");
+    assert_abs_diff_eq!(right, 1.0, epsilon = MEAN_OF_P2);
     assert!((wrong - 1.0).abs() > 3.0 * MEAN_OF_P2, "{wrong}");
 }
 
@@ -321,7 +322,7 @@ fn cylinders_of_unlike_size_and_stiffness_press_as_hertz_says() {
         let mesh = d.space.mesh();
         let force = s.boundaries[0].force;
         // The sum of pressures, whose directions turn by a thirtieth.
-        assert!((force / half_force - 1.0).abs() < 1e-4, "{force} {half_force}");
+        assert_relative_eq!(force, half_force, max_relative = 1e-4);
         // The pressure near the middle, over Hertz's there; and the half width by the second moment.
         let (mut central, mut expected, mut moment) = (0.0, 0.0, 0.0);
         let within = |x: f64| {
@@ -465,7 +466,7 @@ fn the_formula_for_a_pin_in_a_hole_carries_its_load() {
         };
         let sum: f64 = (0..n).map(vertical).sum();
         // The midpoint rule at a square root.
-        assert!((2.0 * sum - 1.0).abs() < 1e-5, "{sum}");
+        assert_abs_diff_eq!(2.0 * sum, 1.0, epsilon = 1e-5);
     }
 }
 

@@ -1,12 +1,13 @@
 //! Forces between tied and rough bodies: the true ones lie between their numbers, and what is tampered with is refused.
 
+use approx::assert_abs_diff_eq;
 use signorini::certificates::forces::{Evidence, Motion, WrongLifting};
 use signorini::certificates::proof::Role;
 use signorini::certificates::quantities::Name;
 use signorini::certificates::{Certificate, Continuous, format};
 use signorini::kernel::Ball;
 
-use super::certified::{certified, rough, squares, tied};
+use super::certified::{certified, held_beside_glue, rough, squares, tied};
 use super::*;
 use crate::common::{DEGREES, encoded, expression};
 
@@ -187,12 +188,7 @@ fn forces_beside_tied_bodies_that_are_tampered_with_are_refused() {
 #[test]
 fn a_point_that_is_held_and_tied_has_one_w() {
     for degree in DEGREES {
-        // The walls of the upper body are held where they meet the glue, those of the lower one are free.
-        let wall = || Condition::displacement(|_| 0.0, |[_, y]| 0.05 * y);
-        let problem = tied([4, 6], [1.0, 2.0], Law::Bonded)
-            .with("upper.left", wall())
-            .with("upper.right", wall())
-            .with("upper.top", Condition::displacement(|_| 0.0, |_| 0.05));
+        let problem = held_beside_glue();
         let c = certified(&problem, degree);
         // The lower body moves where the upper one is held.
         let [low, high] = interval(&c, Name::ContactComponent(1), FIRST);
@@ -244,6 +240,6 @@ fn forces_beside_friction_that_are_tampered_with_are_refused() {
         elsewhere.liftings[shear].0.motion = Motion::Along(Some(far));
         let price = (width(&elsewhere) - width(evidence)) / 2.0;
         // int 0.005 + 0.014 x over the unit interval.
-        assert!((price - 0.012).abs() <= 1e-9, "{price}");
+        assert_abs_diff_eq!(price, 0.012, epsilon = 1e-9);
     }
 }

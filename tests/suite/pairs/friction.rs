@@ -1,15 +1,16 @@
 //! Friction between two bodies: a stiff one is a rough obstacle, the names of the bodies do not matter, what sticks is glued along the
 //! boundary, forces cancel, friction alone holds a body, and Coulomb's law has one solution near.
 
+use approx::{assert_abs_diff_eq, assert_relative_eq};
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use signorini::contact::Friction;
 use signorini::linear::matrix;
 use signorini::linear::matrix::{Neighbours, Numbering};
 
-use super::balance::{dense, largest_beside};
+use super::balance::largest_beside;
 use super::*;
-use crate::common::DEGREES;
+use crate::common::{DEGREES, dense};
 
 /// Two unit blocks, the lower one of modulus 1; the upper one is pressed down, turned and dragged by its top.
 fn dragged(cells: [usize; 2], modulus: f64, friction: &Friction, swapped: bool) -> Problem {
@@ -109,7 +110,7 @@ fn the_law_holds_and_what_one_body_bears_the_other_does() {
             assert!(sticks > 0 && slides > 0, "{sticks} {slides}");
             let of = &s.boundaries[0];
             let friction = of.friction.unwrap();
-            assert!((friction.sticks + friction.slides - of.length).abs() < 1e-12);
+            assert_abs_diff_eq!(friction.sticks + friction.slides, of.length, epsilon = 1e-12);
             assert!(friction.dissipated > 0.0);
             let force = Vector2::from(of.resultant);
             let reaction = |name: &str| Vector2::from(s.quantities.reactions[name]);
@@ -246,8 +247,21 @@ fn cylinders(cells: [usize; 2], drag: f64, mu: f64) -> Problem {
 
 #[test]
 fn dragged_cylinders_stick_and_slide_as_cattaneo_and_mindlin_say() {
+    // On 14 and 10 edges to a.
+    are_mindlins(&[(Degree::One, [68, 52], 0.033), (Degree::Two, [48, 36], 0.01)]);
+}
+
+#[test]
+#[ignore = "half a minute: run by .ci/run"]
+fn dragged_cylinders_on_finer_meshes_stick_and_slide_as_cattaneo_and_mindlin_say() {
+    // On 24 edges to a.
+    are_mindlins(&[(Degree::One, [116, 88], 0.015)]);
+}
+
+/// Of P1 and P2 on these cells; by moments what sticks is off by that much of c at most.
+fn are_mindlins(of: &[(Degree, [usize; 2], f64)]) {
     let mu = 0.3;
-    for (degree, cells) in [(Degree::One, [116, 88]), (Degree::Two, [48, 36])] {
+    for &(degree, cells, most) in of {
         let problem = cylinders(cells, 0.0033, mu);
         let s = proved(&problem, &method(degree));
         let [shear, force] = s.boundaries[0].resultant.map(f64::abs);
@@ -300,11 +314,10 @@ fn dragged_cylinders_stick_and_slide_as_cattaneo_and_mindlin_say() {
             s.newton.factorizations
         );
         // The shear stress is c - |x| to the power 1/2 above the bound there, and what sticks ends short of that by a part of an edge:
-        // by half of one of the coarser body at most. On 24 edges to a that is 3 % of c.
+        // by half of one of the coarser body at most.
         let edge = 0.4 * 0.09 / (0.6 * cells[1] as f64 / 2.0);
         assert!((stuck_on - c).abs() <= edge / 2.0 && off[1].abs() <= 1e-2, "{degree:?}: {off:?}");
         // By moments c is short by a twenty-fifth of an edge of the coarser body with P2, by a fifth of one with P1.
-        let most = if degree == Degree::One { 0.015 } else { 0.01 };
         assert!(off[2].abs() <= most && off[0] < 1.2 * off[2], "{degree:?}: {off:?}");
         // The control: as if all of it slid.
         assert!((second / (mu * force * a * a / 4.0) - 1.0).abs() > 0.1);
@@ -331,10 +344,8 @@ fn below_a_coefficient_there_is_one_solution_for_all_loads() {
     for (cells, ratio, expected) in [
         ([7, 11], 1.0, [0.124, 0.154]),
         ([14, 22], 1.0, [0.086, 0.107]),
-        ([28, 44], 1.0, [0.061, 0.075]),
         ([7, 11], 10.0, [0.136, 0.045]),
         ([14, 22], 10.0, [0.094, 0.030]),
-        ([28, 44], 10.0, [0.066, 0.021]),
     ] {
         let isolation = |mu: f64| {
             let problem = squares(cells, ratio, Friction::Coulomb(mu))
@@ -415,7 +426,7 @@ fn the_limits_of_round_bodies_are_those_of_dense_algebra() {
 fn near_a_solution_there_is_one_for_small_and_large_coefficients_after_few_factorisations() {
     let mut most = 0;
     for mu in [0.1, 0.3, 0.6, 1.0] {
-        for (cells, ratio) in [([7, 11], 1.0), ([14, 22], 10.0), ([28, 44], 1.0)] {
+        for (cells, ratio) in [([7, 11], 1.0), ([14, 22], 10.0), ([22, 14], 1.0)] {
             let problem = dragged(cells, ratio, &Friction::Coulomb(mu), false);
             let s = proved(&problem, &method(Degree::One));
             let enclosure = s.enclosure.as_ref().unwrap();
@@ -452,10 +463,10 @@ fn a_square_on_a_rough_obstacle_has_the_limits_of_another_program() {
 }
 
 #[test]
-fn few_factorisations_lead_to_a_solution_of_fifty_problems() {
+fn few_factorisations_lead_to_a_solution_of_thirty_problems() {
     let mut counts = [Vec::new(), Vec::new()];
     for (degree, counts) in DEGREES.into_iter().zip(&mut counts) {
-        for mu in [0.1, 0.2, 0.3, 0.6, 1.0] {
+        for mu in [0.1, 0.3, 1.0] {
             let friction = Friction::Coulomb(mu);
             let floor = |n| (format!("{n} cells"), under_a_rough_obstacle(n, &friction));
             let pair = |(cells, ratio)| {
@@ -472,7 +483,7 @@ fn few_factorisations_lead_to_a_solution_of_fifty_problems() {
         }
     }
     let [of_one, of_two] = counts;
-    assert!(of_one.len() == 25 && of_one.iter().all(|&count| count <= 30), "{of_one:?}");
+    assert!(of_one.len() == 15 && of_one.iter().all(|&count| count <= 30), "{of_one:?}");
     // Of P2 three take more: 38, 39 and 63.
     assert!(of_two.iter().filter(|&&count| count > 30).count() <= 3, "{of_two:?}");
     assert!(of_two.iter().all(|&count| count <= 70), "{of_two:?}");
@@ -566,7 +577,7 @@ fn a_step_that_changes_nothing_leaves_everything_where_it_is() {
         // Where it slides, the stress of the method is at the bound up to the error of the mesh.
         assert!(off < 0.01, "{off:e}");
         let shear = |s: &Solution| s.boundaries[0].resultant[0];
-        assert!((shear(&second) / shear(&first) - 1.0).abs() < 0.05);
+        assert_relative_eq!(shear(&second), shear(&first), max_relative = 0.05);
     }
 }
 

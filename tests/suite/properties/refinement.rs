@@ -7,11 +7,10 @@
 
 use std::sync::Arc;
 
-use faer::{Mat, Side};
+use faer::Side;
 use signorini::contact::{Discretization, EdgeRule};
 use signorini::kernel::{Material, Plane};
 use signorini::linear::factor::Factor;
-use signorini::linear::matrix::LowerTriangle;
 use signorini::linear::system::System;
 use signorini::model::Degree;
 use signorini::model::{Condition, Diagonal, Problem, Rectangle};
@@ -26,7 +25,7 @@ use signorini::solve::{Gamma0, Method, Settings, SolveError, discretize, solve_d
 
 use super::bodies::on_bodies;
 use super::{Outcome, field, one, properties, text};
-use crate::common::{constant, unit_material};
+use crate::common::{constant, dense, unit_material};
 
 /// The squared norm of a functional where no component is prescribed.
 fn free_square(d: &Discretization, functional: &[[f64; 2]]) -> f64 {
@@ -405,20 +404,6 @@ fn beam(cells: usize) -> Result<Problem, String> {
         .with_body_force(|_| 0.0, move |_| -weight)
         .with("left", Condition::clamped())
         .with("bottom", floor))
-}
-
-/// All entries of a symmetric matrix.
-fn dense(lower: &LowerTriangle) -> Mat<f64> {
-    let n = lower.starts.len() - 1;
-    let mut all = Mat::zeros(n, n);
-    for column in 0..n {
-        for at in lower.starts[column]..lower.starts[column + 1] {
-            let row = lower.rows[at];
-            all[(row, column)] = lower.values[at];
-            all[(column, row)] = lower.values[at];
-        }
-    }
-    all
 }
 
 /// The condition number by the eigenvalues of the dense matrix, and those that the routes report, of the body with its moduli
