@@ -40,10 +40,6 @@ fn main() -> std::process::ExitCode {
             println!("VERIFY.md follows it: cargo run -p props -- ledger > VERIFY.md");
             true
         }),
-        ["sharpness"] => props::sharpness::rows().map_err(std::io::Error::other).map(|rows| {
-            print!("{}", props::sharpness::table(&rows));
-            true
-        }),
         _ => {
             eprintln!("props ledger       print VERIFY.md");
             eprintln!("props audit [ROW [CHECK]]  run every check, or those of a row, or one");
@@ -55,7 +51,6 @@ fn main() -> std::process::ExitCode {
             eprintln!(
                 "props receipt LOG  keep the output of cargo kani as a receipt in props/receipts"
             );
-            eprintln!("props sharpness    print the table of docs/parameters.md: limits of gamma0");
             return ExitCode::from(2);
         }
     };
