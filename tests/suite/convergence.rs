@@ -289,7 +289,7 @@ fn the_number_of_theorem_3_5_is_5_legs_of_the_triangles_and_the_seminorms_are_kn
         5.073,
         epsilon = 1e-3
     );
-    let seminorm = |exact| seminorm(&problem, exact);
+    let seminorm = |exact: &Exact| seminorm(&problem, exact);
     // Found by another program.
     assert_relative_eq!(seminorm(&smooth(4.0, 3.0, 1.0 / 3.0)), 42.479, epsilon = 1e-3);
     assert_relative_eq!(seminorm(&singular(0.5)), 0.98103, epsilon = 1e-5);

@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use faer::{Mat, Side};
+use faer::Side;
 use signorini::contact::{Discretization, EdgeRule};
 use signorini::kernel::{Material, Plane};
 use signorini::linear::factor::Factor;
