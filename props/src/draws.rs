@@ -2,7 +2,8 @@
 //! failures remembered in `props/regressions/`, a file for each check, and replayed before its next draws.
 //!
 //! The seed is fixed unless the environment gives another one: `PROPS_SEED=random` draws one, `PROPS_SEED=<number>`
-//! takes that; a failure prints it. Each check draws from it and its own name, so no two see the same data.
+//! takes that; a failure prints it. Each check draws from it and its own name, so no two see the same data. `PROPS_DRAWS=10` draws
+//! ten times as many for each statement and harness.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -39,6 +40,12 @@ pub fn seed() -> u64 {
         }
         Ok(text) => text.parse().expect("PROPS_SEED is 'random' or a number"),
     })
+}
+
+/// How many times as many draws of statements and of harnesses there shall be: `PROPS_DRAWS`, or 1.
+pub fn times() -> u32 {
+    let asked = std::env::var("PROPS_DRAWS");
+    asked.map_or(1, |text| text.parse().expect("PROPS_DRAWS is a number"))
 }
 
 thread_local! {
@@ -172,7 +179,7 @@ fn hold_until<D: Debug>(
     Ok(format!("{drawn} draws{replayed}: {}", counts.join(", ")))
 }
 
-/// The control of [`hold`]: some draw must make the predicate fail. It takes as many as it needs, at most
+/// The control of [`hold`]: some draw must make the predicate fail. It takes as many as it needs, at most four times
 /// [`DRAWS_OF_DOUBLES`].
 ///
 /// # Errors
@@ -182,14 +189,14 @@ pub fn reject<D: Debug>(
     predicate: impl Fn(&D) -> Verdict,
 ) -> Result<String, String> {
     let mut runner = runner(1, 0);
-    for draw in 0..DRAWS_OF_DOUBLES {
+    for draw in 0..4 * DRAWS_OF_DOUBLES {
         let tree = strategy.new_tree(&mut runner).map_err(|why| why.to_string())?;
         let data = tree.current();
         if let Verdict::Fails(why) = Exact::scope(|| predicate(&data)) {
             return Ok(format!("rejected at draw {draw}: {why}"));
         }
     }
-    Err(format!("the planted mistake was not rejected in {DRAWS_OF_DOUBLES} draws"))
+    Err(format!("the planted mistake was not rejected in {} draws", 4 * DRAWS_OF_DOUBLES))
 }
 
 /// A small rational number as numerator and denominator; ties and zeros are frequent.
@@ -275,10 +282,10 @@ const EDGES: &[f64] = &[
 ];
 
 /// Draws of the unknowns of a statement.
-pub const DRAWS: u32 = 500;
+pub const DRAWS: u32 = 200;
 
-/// The same over doubles.
-pub const DRAWS_OF_DOUBLES: u32 = 20_000;
+/// The same over doubles; and of a control over anything, at most four times as many.
+pub const DRAWS_OF_DOUBLES: u32 = 5_000;
 
 fn at_ratios(statement: &Statement, values: &[(i64, i64)]) -> Verdict {
     Exact::scope(|| {
@@ -295,7 +302,7 @@ fn at_ratios(statement: &Statement, values: &[(i64, i64)]) -> Verdict {
 pub fn hold_exactly(statement: &Statement) -> Result<String, String> {
     let strategy = ratios(statement.variables.len());
     let until = [ROUNDS_OF_RATIOS, ENOUGH_RATIOS];
-    hold_until(until, DRAWS, strategy, statement.classes, |v| at_ratios(statement, v))
+    hold_until(until, times() * DRAWS, strategy, statement.classes, |v| at_ratios(statement, v))
 }
 
 /// Tests a statement over all finite doubles.
@@ -304,7 +311,7 @@ pub fn hold_exactly(statement: &Statement) -> Result<String, String> {
 /// As [`hold`].
 pub fn hold_in_doubles(statement: &Statement) -> Result<String, String> {
     let strategy = doubles(statement.variables.len());
-    hold(DRAWS_OF_DOUBLES, strategy, statement.classes, |v| (statement.doubles)(v))
+    hold(times() * DRAWS_OF_DOUBLES, strategy, statement.classes, |v| (statement.doubles)(v))
 }
 
 /// The control of [`hold_in_doubles`]: the conclusion that the statement names fails.

@@ -81,8 +81,8 @@ mod stand_in {
     use crate::proof::sampler::Random;
 
     /// So many draws shall meet the assumptions of a harness, out of so many at most, and so many must.
-    const ENOUGH: u32 = 20_000;
-    const MOST: u32 = 200_000;
+    const ENOUGH: u32 = 5_000;
+    const MOST: u32 = 50_000;
     const LEAST: u32 = 100;
     /// All values are run where they are no more than this.
     const ALL: u64 = 1 << 20;
@@ -217,7 +217,8 @@ mod stand_in {
         fn run_on_draws(&self) -> Result<String, String> {
             SOURCE.set(Source::Random(Random::new(crate::draws::seed())));
             let (mut draws, mut met) = (0, 0);
-            while met < ENOUGH && draws < MOST {
+            let times = crate::draws::times();
+            while met < times * ENOUGH && draws < times * MOST {
                 match self.run_once() {
                     End::Passed => met += 1,
                     End::NotAssumed => {}

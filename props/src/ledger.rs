@@ -38,8 +38,8 @@ is not met), or *fails*. Other checks assemble on random bodies, solve, or compa
 - **proof**, polynomials over Q: every comparison forks the path, and each path that fails contradicts itself, by a certificate (a sum of
   products of facts and squares that is positive and zero): the statement holds over every ordered field, so over the reals. 11/6
   are its paths and those that are refuted; the sixteen digits are a hash of the tree of its questions, answers and ends.
-- **exact**, rationals: random data without a tolerance; 500 draws of a statement, and more until 100 meet its hypothesis.
-- **doubles**: 20,000 random finite doubles with edge values and ties; or a comparison with exact rationals and a stated bound.
+- **exact**, rationals: random data without a tolerance; 200 draws of a statement, and more until 100 meet its hypothesis.
+- **doubles**: 5,000 random finite doubles with edge values and ties; or a comparison with exact rationals and a stated bound.
 - **Kani**: the bounded model checker has decided a harness for all numbers that it ranges over, and the newest receipt was made of
   these very files.
 - **all cases**: each of at most 2^20 cases is run. **draws**: a harness on random draws, *and no more is known*.

@@ -84,11 +84,9 @@ const MOVED: f64 = 0.15;
 
 #[test]
 fn p1_converges_with_rate_1_where_the_solution_is_in_h2() {
-    for (what, solution) in [
-        ("(a) 3 2, c = 1/3", smooth(3.0, 2.0, 1.0 / 3.0)),
-        ("(b) c = 1/2", singular(0.5)),
-        ("(b) c = 1/3", singular(1.0 / 3.0)),
-    ] {
+    for (what, solution) in
+        [("(a) 3 2, c = 1/3", smooth(3.0, 2.0, 1.0 / 3.0)), ("(b) c = 1/3", singular(1.0 / 3.0))]
+    {
         let ladder = on_square(&solution, Degree::One, COARSEST);
         let expected = |band| {
             [
@@ -164,7 +162,7 @@ fn p2_converges_with_rate_3_2_at_least_where_the_solution_is_in_h5_2() {
 
 #[test]
 fn p1_and_p2_converge_with_rate_alpha_at_a_corner_and_no_faster() {
-    for omega in [0.75, 2.0 / 3.0, 0.6] {
+    for omega in [0.75, 0.6] {
         let (solution, alpha) = corner(omega);
         for degree in DEGREES {
             let ladder = on_trapezoid(&solution, omega, degree, COARSEST);

@@ -223,7 +223,7 @@ mod row {
     /// lambda^h in doubles lies within rounding of (9) with equality: l (u_n - g + gamma (l - sigma_n)) = 0, relative to
     /// its largest term.
     fn complementarity_in_doubles() -> Outcome {
-        draws::hold(20_000, draws::doubles(4), &["pressed", "open"], |v| {
+        draws::hold(5_000, draws::doubles(4), &["pressed", "open"], |v| {
             let point = point([v[0], v[1], v[2], v[3].abs()]);
             let moderate = |x: f64| x == 0.0 || (x.abs() > 1e-60 && x.abs() < 1e60);
             given!(v.iter().all(|&x| moderate(x)) && point.gamma > 0.0);

@@ -187,25 +187,36 @@ fn reach_classes(statement: &Statement, paths: &[Path]) -> Result<(), String> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::OnceLock;
+
     use super::*;
-    use crate::claim::Subject;
+    use crate::claim::{Engine, Subject};
     use crate::numbers::Exact;
     use crate::verdict::Ordered;
     use crate::{claims, ensure, given, statement};
 
-    /// All statements of all claims, controls included.
+    /// All statements of which this engine is asked, controls included.
     fn statements() -> Vec<Statement> {
         let claims = claims::all();
-        let subjects = claims.iter().flat_map(|c| &c.checks).map(|check| check.subject);
-        let mut all: Vec<Statement> = subjects
-            .filter_map(|subject| match subject {
-                Subject::Statement(statement) => Some(statement),
+        let checks = claims.iter().flat_map(|c| &c.checks);
+        let mut all: Vec<Statement> = checks
+            .filter_map(|check| match (check.subject, check.engine) {
+                (Subject::Statement(statement), Engine::Proof) => Some(statement),
                 _ => None,
             })
             .collect();
         all.sort_by_key(|s| s.name);
         all.dedup_by_key(|s| s.name);
         all
+    }
+
+    /// They with their paths, found once for all tests.
+    fn explored() -> &'static [(Statement, Vec<Path>)] {
+        static EXPLORED: OnceLock<Vec<(Statement, Vec<Path>)>> = OnceLock::new();
+        EXPLORED.get_or_init(|| {
+            let paths = |s: &Statement| explore(s.variables.len(), s.symbolic);
+            statements().into_iter().map(|s| (s, paths(&s))).collect()
+        })
     }
 
     /// The point with the values of the inverse variables, or nothing where a divisor is zero.
@@ -238,18 +249,17 @@ mod tests {
     #[test]
     fn every_random_point_lies_on_exactly_one_path_and_has_its_verdict() {
         let mut random = Random::new(7);
-        for statement in statements() {
+        for (statement, paths) in explored() {
             let unknowns = statement.variables.len();
-            let paths = explore(unknowns, statement.symbolic);
             // Each point is compared with all paths, of which some statements have hundreds.
-            for _ in 0..(200 / paths.len()).clamp(3, 20) {
+            for _ in 0..(400 / paths.len()).clamp(5, 40) {
                 let point: Vec<BigRational> = (0..unknowns).map(|_| random.rational()).collect();
                 let on: Vec<&Path> = paths.iter().filter(|path| lies_on(path, &point)).collect();
-                assert_eq!(on.len(), 1, "{} at {}", statement.name, place(&statement, &point));
+                assert_eq!(on.len(), 1, "{} at {}", statement.name, place(statement, &point));
                 let verdict = verdict_at(statement.symbolic, &point);
                 assert_eq!(on[0].verdict, verdict, "{}", statement.name);
                 if verdict != Verdict::Fails("division by zero") {
-                    assert_eq!(verdict, over_rationals(&statement, &point), "{}", statement.name);
+                    assert_eq!(verdict, over_rationals(statement, &point), "{}", statement.name);
                 }
             }
         }
@@ -258,8 +268,7 @@ mod tests {
     #[test]
     fn points_drawn_on_a_path_have_its_verdict() {
         let mut random = Random::new(8);
-        for statement in statements() {
-            let paths = explore(statement.variables.len(), statement.symbolic);
+        for (statement, paths) in explored() {
             for path in paths.iter().step_by(paths.len() / 12 + 1) {
                 if let Some(mut point) = sample(path, &mut random, 20) {
                     point.truncate(statement.variables.len());

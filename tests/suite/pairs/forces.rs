@@ -40,7 +40,7 @@ fn near_each_other(
     degree: Degree,
     (rate, most): (f64, f64),
 ) {
-    let true_ones = values(&of([66, 42]));
+    let true_ones = values(&of([44, 28]));
     let mut last = [f64::INFINITY; 4];
     for cells in [[11, 7], [22, 14]] {
         let c = certified(&of(cells), degree);

@@ -402,9 +402,9 @@ fn limits(d: &Discretization) -> [f64; 2] {
 
 #[test]
 fn the_limits_of_round_bodies_are_those_of_dense_algebra() {
-    // About 6 and 5 edges on half the width of contact, and more. The limits are proved to a thousandth, of eigenvalues, and from below; to
+    // About 6 and 5 edges on half the width of contact, and 11 and 7. The limits are proved to a thousandth, of eigenvalues, and from below; to
     // some percent where the estimate of an eigenvalue stops at the next one, as in the last.
-    for (cells, least) in [([22, 18], 0.997), ([44, 33], 0.997), ([41, 26], 0.97)] {
+    for (cells, least) in [([22, 18], 0.997), ([41, 26], 0.97)] {
         let (problem, method) = (cylinders(cells, 0.0033, 0.3), with_kappa(Degree::One, 0.5));
         let s = proved(&problem, &method);
         let found = s.enclosure.as_ref().unwrap().isolation.unwrap().limits;
@@ -473,7 +473,7 @@ fn few_factorisations_lead_to_a_solution_of_thirty_problems() {
                 let said = format!("{cells:?} cells, E2/E1 = {ratio}");
                 (said, dragged(cells, ratio, &friction, false))
             };
-            let pairs = [([7, 11], 1.0), ([7, 11], 10.0), ([14, 22], 10.0)].map(pair);
+            let pairs = [([7, 11], 1.0), ([7, 11], 10.0), ([11, 7], 10.0)].map(pair);
             for (said, problem) in [8, 16].map(floor).into_iter().chain(pairs) {
                 let (s, _) = solve(&problem, &method(degree), &Settings::default()).unwrap();
                 let count = s.newton.factorizations;
