@@ -104,6 +104,7 @@ pub fn minimise(
         let step = body.step(soft)?;
         let Some(t) = line_search(edges, &body.y(), soft, &step) else { return Ok(-step.slope) };
         body.advance(t, &step);
+        let before = residual.norm;
         at = derivatives(edges, 1.0, &body.y());
         residual = body.residual(&at);
         residuals.push(residual.norm);
@@ -113,12 +114,14 @@ pub fn minimise(
         let residual_at =
             |stiffness: f64| body.residual(&derivatives(edges, stiffness, &body.y())).norm;
         taken += 1;
+        // The last stage ends in as many steps as rounding takes.
+        let ends = stiffness >= 1.0 && residual.norm <= DONE * before;
         if stiffness < 1.0 && residual_at(stiffness) <= DONE * residual_at(stiffer) {
             if taken < MOST_OF_A_STAGE {
                 factor = f64::min(factor * factor, STIFFENING);
             }
             (from, stiffness, taken) = (stiffness, stiffer, 0);
-        } else if taken >= MOST_OF_A_STAGE && from > 0.0 && factor > LEAST_STIFFENING {
+        } else if taken >= MOST_OF_A_STAGE && from > 0.0 && !ends && factor > LEAST_STIFFENING {
             factor = factor.sqrt();
             (stiffness, taken) = (from * factor, 0);
         }
