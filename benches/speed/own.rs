@@ -298,7 +298,7 @@ pub fn two_bodies() -> String {
         "## Two bodies
 
 Instructions for each unknown of the whole command, with proof and files, beside one body on a rigid obstacle (of the cases: unknowns,
-factorisations). A body that the other one alone holds is factored with it in each step.
+factorisations). A body that the other one alone holds is factored on a few springs of contact.
 
 {}",
         table(&["two bodies", "one", "ratio"], &PAIRS.map(row))

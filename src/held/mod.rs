@@ -3,6 +3,7 @@
 pub(crate) mod clearance;
 pub(crate) mod corners;
 pub(crate) mod grip;
+pub(crate) mod holding;
 #[doc(hidden)]
 pub mod rigid;
 #[doc(hidden)]

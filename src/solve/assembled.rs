@@ -1,6 +1,6 @@
 //! The assembled route: Newton's method on the displacement itself, the tangent A + B^T Psi'' B factored where Psi'' has changed. This
-//! route is the cheaper one where contact edges are many beside the body (strips, graded meshes), and the only one where A
-//! alone is singular or nearly so: only contact holds the body, and the tangent includes its springs.
+//! route is the cheaper one where contact edges are many beside the body (strips, graded meshes), and the only one where supports hardly
+//! hold the body: the tangent includes the springs of contact.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -11,11 +11,10 @@ use super::SolveError;
 use super::accuracy::{Pass, Route};
 use super::body::{
     Body, ContactEnergy, Derivatives, Residual, Step, all_springs, derivatives, does_again,
-    no_springs, times,
+    no_springs, springs_beside_shear, supported, times,
 };
 use super::iterate::{Evaluation, Iterate, has_few_digits};
 use super::newton::{self, Until};
-use crate::contact::piece::Stretch;
 use crate::held::clearance;
 use crate::held::rigid::Parts;
 use crate::kernel::DoubleDouble;
@@ -67,12 +66,6 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
         clearance::free_where(d, &parts, &pressing).len() > slides.basis.len()
     }
 
-    /// The Hessian with a little of the springs of all edges.
-    fn supported(&self, at: &Derivatives) -> Vec<DMatrix<f64>> {
-        let all = all_springs(self.system.d, at.stiffness);
-        at.hessian.iter().zip(&all.hessian).map(|(h, all)| h + SUPPORT * all).collect()
-    }
-
     fn factor(&mut self, at: &Derivatives, residual: f64) -> Result<&Factored, SolveError> {
         // What needs more than doubles has springs so stiff that a small change of them is not small beside the body.
         let residuals = [if self.precisely { 0.0 } else { self.used_at }, residual];
@@ -91,7 +84,7 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
                     self.factorizations += 1;
                 }
                 if coercive && matches!(factored, Err(SolveError::NotPositiveDefinite)) {
-                    hessian = self.supported(at);
+                    hessian = supported(self.system.d, at);
                     factored = self.system.factor(&hessian);
                     self.factorizations += 1;
                     if matches!(factored, Err(SolveError::NotPositiveDefinite)) {
@@ -190,25 +183,15 @@ impl Full<'_, '_, '_, '_, '_> {
 
     /// How much stiffer contact is than the body, by the power method on A^-1 B^T Psi'' B; A is what was factored last.
     fn stiffness(&self, at: &Derivatives) -> Result<f64, SolveError> {
-        let Some((factor, _)) = &self.route.factored else { return Ok(self.springs()) };
+        let Some((factor, _)) = &self.route.factored else {
+            return Ok(springs_beside_shear(self.route.system.d));
+        };
         Ok(newton::largest_eigenvalue(self.route.system.numbering.count, |x| {
             let mut force = vec![0.0; x.len()];
             self.route.system.add_forces(&at.hessian_times(&self.values_of_p0(x)), &mut force);
             factor.solve(&mut force);
             force
         }))
-    }
-
-    /// How much stiffer than the body in shear, the sum of |E| / (gamma mu), the springs of all pieces are: what is known where
-    /// the body has no compliance, because nothing else holds it.
-    fn springs(&self) -> f64 {
-        let d = self.route.system.d;
-        let mu = |stretch: &Stretch| d.problem.material.of(stretch.edge.triangle).mu();
-        let stiffer = d.contact.iter().map(|piece| {
-            let softest = piece.geometry.stretches.iter().map(mu).fold(f64::INFINITY, f64::min);
-            piece.length / (piece.gamma * softest)
-        });
-        stiffer.sum::<f64>().max(1.0)
     }
 
     /// Moves what is carried by `t` times a step. `false` if nothing is, or if P has too few digits left somewhere: then nothing is
@@ -271,7 +254,7 @@ impl Body for Full<'_, '_, '_, '_, '_> {
                 Err(error) => return Err(error),
             }
         }
-        let springs = self.springs();
+        let springs = springs_beside_shear(self.route.system.d);
         let pulling = all_springs(edges, 1.0 / springs).pulling(&self.at.p);
         let step = self.step(&pulling)?;
         self.advance(1.0, &step);
@@ -309,9 +292,3 @@ impl Body for Full<'_, '_, '_, '_, '_> {
         }
     }
 }
-
-/// The share of the springs of all edges that is added to a tangent which has no factor: the edges that are in contact at an
-/// iterate need not hold the body that those of the solution hold. The step goes downhill all the same. The share is far below
-/// 1, to leave the way to the other edges open, and far above the rounding of the tangent; 1e-3 does as well, and 0 leaves
-/// bodies unsolved.
-const SUPPORT: f64 = 1e-6;

@@ -8,6 +8,7 @@ use nalgebra::DMatrix;
 
 use super::SolveError;
 use crate::contact::discretization::Discretization;
+use crate::contact::piece::Stretch;
 use crate::kernel::{DoubleDouble, Response};
 
 /// The pieces of Gamma_C as Newton's method needs them.
@@ -138,6 +139,29 @@ pub fn derivatives(
 pub(crate) fn all_springs(edges: &impl ContactEnergy, stiffness: f64) -> Derivatives {
     let closed: Vec<f64> = (0..edges.count()).flat_map(|e| edges.closed(e)).collect();
     derivatives(edges, stiffness, &closed)
+}
+
+/// How much stiffer than the body in shear, the sum of |E| / (gamma mu), the springs of all pieces are: what is known where the body has
+/// no compliance, because nothing else holds it.
+pub(super) fn springs_beside_shear(d: &Discretization) -> f64 {
+    let mu = |stretch: &Stretch| d.problem.material.of(stretch.edge.triangle).mu();
+    let stiffer = d.contact.iter().map(|piece| {
+        let softest = piece.geometry.stretches.iter().map(mu).fold(f64::INFINITY, f64::min);
+        piece.length / (piece.gamma * softest)
+    });
+    stiffer.sum::<f64>().max(1.0)
+}
+
+/// The share of the springs of all pieces that is added to a tangent which has no factor: the pieces that are in contact at an
+/// iterate need not hold the body that those of the solution hold. The step goes downhill all the same. The share is far below
+/// 1, to leave the way to the other pieces open, and far above the rounding of the tangent; 1e-3 does as well, and 0 leaves
+/// bodies unsolved.
+const SUPPORT: f64 = 1e-6;
+
+/// The Hessian `at` an iterate with a little of the springs of all pieces.
+pub(super) fn supported(edges: &impl ContactEnergy, at: &Derivatives) -> Vec<DMatrix<f64>> {
+    let all = all_springs(edges, at.stiffness);
+    at.hessian.iter().zip(&all.hessian).map(|(h, all)| h + SUPPORT * all).collect()
 }
 
 /// Those where none acts but what cannot let go.

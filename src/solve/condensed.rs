@@ -9,6 +9,12 @@
 //!   s = w - Psi'(y) this is dw = R t - s, (I + R^T G R) t = R^T G s: symmetric, with no eigenvalue below 1,
 //! - DJ d = -s . dy, d^T A d = dw . G dw.
 //!
+//! **Where contact alone holds the body** A has no factor. Factored is K = A + B^T D B, with the springs D of a few pieces
+//! ([`Shift`]) that pull as well as push. With dw for the change of the contact forces and dy for that of y, the equation A d + B^T dw = -r is
+//! K d + B^T (dw - D dy) = -r: what the factor and G see are the forces less those of the springs that are too many. A step solves with
+//! H - D in place of H, of which the pieces with D <= H have nothing: H - D = R E R^T with E = diag(I, -I), dw - D dy = R t - s,
+//! (E + R^T G R) t = R^T G s. That matrix has a Cholesky factor with the signs of E if the tangent is positive definite.
+//!
 //! A first pass starts from the lift of the prescribed data with w = 0. Digits are lost where the body bends far without
 //! contact, as G w nearly cancels P(u) + X^T v. A second pass recovers them from the u and w of the first and their true
 //! residual: all terms are small there, and nothing cancels.
@@ -21,25 +27,74 @@ use std::sync::Arc;
 use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
-use faer::{Col, Mat, Par};
+use faer::{Col, ColRef, Mat, Par};
 use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
 use super::accuracy::{Pass, Route};
-use super::body::{Body, ContactEnergy, Derivatives, Residual, Step, derivatives};
+use super::body::{
+    Body, ContactEnergy, Derivatives, Residual, Step, all_springs, blocks, derivatives,
+    springs_beside_shear, supported,
+};
 use super::iterate::{Evaluation, Iterate, NOISE};
 use super::newton::{self, Until};
 use crate::contact::Discretization;
+use crate::held::holding::holding;
 use crate::kernel::DoubleDouble;
 use crate::linear::compliance::{Compliance, Reach};
-use crate::linear::dense::{cholesky, norm};
+use crate::linear::dense::{norm, quasidefinite};
 use crate::linear::factor::Factor;
 use crate::linear::system::System;
 use crate::model::mesh::ROUNDED;
 
+/// The springs of some pieces of Gamma_C that hold the body while it is factored, by the number of the piece: none where it is held
+/// without contact.
+#[derive(Clone, Debug, Default)]
+pub struct Shift(BTreeMap<usize, DMatrix<f64>>);
+
+impl Shift {
+    /// Those of as few pieces as hold the body.
+    pub fn of(d: &Discretization) -> Self {
+        if d.slides.is_none() {
+            return Shift::default();
+        }
+        let all = all_springs(d, 1.0).hessian;
+        let held = holding(d, |e, i| all[e][(i, i)] > 0.0);
+        Shift(held.into_iter().map(|e| (e, all[e].clone())).collect())
+    }
+
+    fn is_none(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// L of A + B^T D B.
+    ///
+    /// # Errors
+    /// As [`Factor::with`].
+    pub fn factor(&self, system: &System) -> Result<Arc<Factor>, SolveError> {
+        if self.is_none() {
+            return Factor::with(&system.structure, &system.matrix).map(Arc::new);
+        }
+        let of = |e: usize| self.0.get(&e).cloned().unwrap_or_else(|| DMatrix::zeros(0, 0));
+        system.factor(&(0..system.d.contact.len()).map(of).collect::<Vec<_>>())
+    }
+
+    /// sum <- sum + t D y
+    fn add(&self, d: &Discretization, t: f64, y: &[f64], sum: &mut [f64]) {
+        for (&e, springs) in &self.0 {
+            let values = d.contact[e].functionals();
+            for (a, i) in values.clone().enumerate() {
+                let force = |(b, j): (usize, usize)| springs[(a, b)] * y[j];
+                sum[i] += t * values.clone().enumerate().map(force).sum::<f64>();
+            }
+        }
+    }
+}
+
 /// The body, factored, and the forces of contact on it.
 pub struct Condensed<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
+    shift: Shift,
     factor: Arc<Factor>,
     compliance: Compliance<'a>,
     /// The entries of B^T: the functional, and the row among those that are not empty.
@@ -53,13 +108,13 @@ pub struct Condensed<'a, 'd, 'p> {
 }
 
 impl<'a, 'd, 'p> Condensed<'a, 'd, 'p> {
-    /// With the factor of A and without contact yet.
+    /// With the factor of A and the shift, and without contact yet.
     ///
     /// # Errors
     /// As [`Compliance::new`].
     pub fn new(
         system: &'a System<'d, 'p>,
-        factor: Arc<Factor>,
+        (shift, factor): (Shift, Arc<Factor>),
         reach: &'a Reach,
         reference: f64,
     ) -> Result<Self, SolveError> {
@@ -73,13 +128,14 @@ impl<'a, 'd, 'p> Condensed<'a, 'd, 'p> {
         });
         let w = vec![0.0; reach.functionals()];
         let rows = place.len();
-        Ok(Condensed { system, factor, compliance, forces, rows, reference, w, first: true })
+        let first = true;
+        Ok(Condensed { system, shift, factor, compliance, forces, rows, reference, w, first })
     }
 }
 
 impl Route for Condensed<'_, '_, '_> {
     fn factor_of_a(&self) -> Option<Arc<Factor>> {
-        Some(Arc::clone(&self.factor))
+        self.shift.is_none().then(|| Arc::clone(&self.factor))
     }
 
     fn factorizations(&self) -> usize {
@@ -98,19 +154,22 @@ impl Route for Condensed<'_, '_, '_> {
         v.iter_mut().for_each(|v| *v = -*v);
         self.factor.forward(&mut v);
         let mut y = at.p.clone();
-        for (y, change) in y.iter_mut().zip(self.compliance.transpose_times(&v)) {
-            *y += change.into();
+        let dy = self.compliance.transpose_times(&v);
+        for (y, change) in y.iter_mut().zip(&dy) {
+            *y += (*change).into();
         }
+        self.shift.add(self.system.d, 1.0, &dy, &mut self.w);
         let soft = self.first;
-        let all = Functionals { g: &self.compliance.g, forces: &self.forces, w: &self.w };
+        let (g, forces, w, shift) = (&self.compliance.g, &self.forces[..], &self.w, &self.shift);
+        let all = Functionals { g, forces, w, shift };
         let p = soft.then(|| self.start(&y, until)).flatten();
         let mut body = Reduced::new(self, all, y, p);
         let left = newton::minimise(self.system.d, &mut body, soft, residuals, until)?;
-        let change = body.change;
+        let Reduced { change, taken, .. } = body;
         self.compliance.subtract(&change, &mut v);
         let energy: f64 = v.iter().map(|v| v * v).sum();
-        for (w, change) in self.w.iter_mut().zip(&change) {
-            *w += change;
+        for (w, (change, taken)) in self.w.iter_mut().zip(change.iter().zip(&taken)) {
+            *w += change + taken;
         }
         self.first = false;
         self.factor.backward(&mut v);
@@ -129,7 +188,7 @@ impl Condensed<'_, '_, '_> {
         if let Some(p) = self.system.course.p(d) {
             return Some(p);
         }
-        let some = SomePieces::of(d)?;
+        let some = SomePieces::of(d).filter(|_| self.shift.is_none())?;
         let chosen: Vec<usize> =
             some.pieces.iter().flat_map(|&e| d.contact[e].functionals()).collect();
         let mut place = vec![None; y.len()];
@@ -139,7 +198,7 @@ impl Condensed<'_, '_, '_> {
             forces.filter_map(|&(i, row, entry)| Some((place[i]?, row, entry))).collect();
         let own = Mat::from_fn(chosen.len(), chosen.len(), |i, j| g[(chosen[i], chosen[j])]);
         let w: Vec<f64> = chosen.iter().map(|&i| self.w[i]).collect();
-        let functionals = Functionals { g: &own, forces: &forces, w: &w };
+        let functionals = Functionals { g: &own, forces: &forces, w: &w, shift: &Shift::default() };
         let of_some = chosen.iter().map(|&i| y[i]).collect();
         let mut body = Reduced::new(self, functionals, of_some, None);
         let until = Until { residual: until.residual.max(ROUGHLY), ..until };
@@ -216,6 +275,7 @@ struct Functionals<'r> {
     g: &'r Mat<f64>,
     forces: &'r [(usize, usize, f64)],
     w: &'r [f64],
+    shift: &'r Shift,
 }
 
 /// Newton's unknown, the change of w in this pass, with the values of P that belong to it. The change has digits of its own:
@@ -228,7 +288,10 @@ struct Reduced<'r, 'a, 'd, 'p> {
     p: Option<Vec<f64>>,
     /// The magnitudes that y was computed from.
     start: Vec<f64>,
+    /// What the factor sees of the change.
     change: Vec<f64>,
+    /// The rest, D dy.
+    taken: Vec<f64>,
     dw: Vec<f64>,
 }
 
@@ -240,8 +303,8 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
         p: Option<Vec<f64>>,
     ) -> Self {
         let start = y.iter().map(|y| y.head().abs()).collect();
-        let change = vec![0.0; y.len()];
-        Reduced { route, of, y, p, start, change, dw: Vec::new() }
+        let (change, taken) = (vec![0.0; y.len()], vec![0.0; y.len()]);
+        Reduced { route, of, y, p, start, change, taken, dw: Vec::new() }
     }
 
     /// All functionals take part.
@@ -250,7 +313,7 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
     }
 
     fn times_compliance(&self, v: &[f64]) -> Vec<f64> {
-        let product = self.of.g * Col::from_fn(v.len(), |i| v[i]);
+        let product = self.of.g * ColRef::from_slice(v);
         product.iter().copied().collect()
     }
 
@@ -264,15 +327,50 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
     }
 
     /// The columns of R with the functionals of their pieces.
-    fn roots(at: &Derivatives) -> Vec<(Range<usize>, DVector<f64>)> {
-        let of = |(values, h): (Range<usize>, &DMatrix<f64>)| {
-            root(h.clone()).into_iter().map(move |column| (values.clone(), column))
+    fn roots(&self, hessian: &[DMatrix<f64>]) -> Roots {
+        let (mut columns, mut negative) = (Vec::new(), Vec::new());
+        for (e, (values, h)) in blocks(hessian).enumerate() {
+            let (signed, rest, of) = match self.of.shift.0.get(&e) {
+                Some(springs) => (&mut negative, springs - h, springs),
+                None => (&mut columns, h.clone(), h),
+            };
+            let of_piece = root(rest, &of.diagonal()).into_iter();
+            signed.extend(of_piece.map(|column| (values.clone(), column)));
+        }
+        let positive = columns.len();
+        columns.append(&mut negative);
+        Roots { columns, positive }
+    }
+
+    /// L of E + R^T G R = L E L^T.
+    fn factored(&self, roots: &Roots) -> Result<Mat<f64>, SolveError> {
+        let mut system = self.stiffened(&roots.columns);
+        let mut negative = roots.positive..system.nrows();
+        for i in negative.clone() {
+            system[(i, i)] -= 2.0;
+        }
+        quasidefinite(system.as_mut(), roots.positive).map_err(|_| SolveError::Singular)?;
+        let is_loose = |i: usize| !(system[(i, i)] * system[(i, i)] > LOOSE);
+        if negative.any(is_loose) { Err(SolveError::Singular) } else { Ok(system) }
+    }
+
+    /// R and L of the tangent with the Hessian `at` an iterate. Where contact holds the body, and what is in contact does not, a little of
+    /// the springs of all pieces is added.
+    fn tangent(&self, at: &Derivatives) -> Result<(Roots, Mat<f64>), SolveError> {
+        let of = |hessian: &[DMatrix<f64>]| {
+            let roots = self.roots(hessian);
+            self.factored(&roots).map(|factor| (roots, factor))
         };
-        at.blocks().flat_map(of).collect()
+        match of(&at.hessian) {
+            Err(SolveError::Singular) if !self.of.shift.is_none() => {
+                of(&supported(self.route.system.d, at))
+            }
+            tangent => tangent,
+        }
     }
 
     /// The lower triangle of I + R^T G R.
-    fn stiffened(&self, roots: &[(Range<usize>, DVector<f64>)]) -> Mat<f64> {
+    fn stiffened(&self, roots: &[Root]) -> Mat<f64> {
         match roots.iter().map(|(values, _)| values.len()).max() {
             None => Mat::zeros(0, 0),
             Some(..=2) => self.stiffened_by::<2>(roots),
@@ -284,7 +382,7 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
 
     /// [`Reduced::stiffened`] where a piece has up to W functionals, column by column: G R is added up from columns of G, which are
     /// contiguous.
-    fn stiffened_by<const W: usize>(&self, roots: &[(Range<usize>, DVector<f64>)]) -> Mat<f64> {
+    fn stiffened_by<const W: usize>(&self, roots: &[Root]) -> Mat<f64> {
         let mut system = Mat::zeros(roots.len(), roots.len());
         // Entries beyond those of a piece are zero.
         let mut gr = vec![0.0; self.y.len() + W];
@@ -292,9 +390,12 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
             |root: &DVector<f64>| std::array::from_fn(|k| root.get(k).copied().unwrap_or(0.0));
         let entries: Vec<(usize, [f64; W])> =
             roots.iter().map(|(values, root)| (values.start, filled(root))).collect();
-        for (j, (values, root)) in roots.iter().enumerate() {
-            // The rows of pieces before that of this column are above the diagonal.
-            let first = values.start;
+        // Rows before those of this column and of all that follow are above the diagonal.
+        let mut firsts: Vec<usize> = entries.iter().map(|(start, _)| *start).collect();
+        for j in (1..firsts.len()).rev() {
+            firsts[j - 1] = firsts[j - 1].min(firsts[j]);
+        }
+        for ((j, (values, root)), first) in roots.iter().enumerate().zip(firsts) {
             let rows = first..self.y.len();
             gr[rows.clone()].fill(0.0);
             for (functional, &factor) in values.clone().zip(root) {
@@ -314,8 +415,8 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
     }
 
     fn s(&self, at: &Derivatives) -> Vec<f64> {
-        let w = self.of.w.iter().zip(&self.change);
-        w.zip(&at.gradient).map(|((w, change), g)| (w - g) + change).collect()
+        let w = self.of.w.iter().zip(self.change.iter().zip(&self.taken));
+        w.zip(&at.gradient).map(|((w, (change, taken)), g)| (w - g) + (change + taken)).collect()
     }
 }
 
@@ -332,7 +433,8 @@ impl Body for Reduced<'_, '_, '_, '_> {
             for (a, i) in values.enumerate() {
                 let spread: f64 =
                     (0..hessian.nrows()).map(|b| hessian[(a, b)].abs() * size(b)).sum();
-                magnitudes.push(self.of.w[i].abs() + at.gradient[i].abs() + spread);
+                let forces = self.of.w[i].abs() + self.taken[i].abs() + at.gradient[i].abs();
+                magnitudes.push(forces + spread);
             }
         }
         Residual {
@@ -341,10 +443,18 @@ impl Body for Reduced<'_, '_, '_, '_> {
         }
     }
 
-    /// The body without contact is where it is already; the stiffness is by the power method on R^T G R.
+    /// The body without contact is where it is already; the stiffness is by the power method on R^T G R. Where contact alone holds the
+    /// body, it goes to where soft springs of all pieces hold it, which pull as well as push.
     fn start(&mut self, edges: &impl ContactEnergy) -> Result<Option<f64>, SolveError> {
+        if self.p.is_none() && !self.of.shift.is_none() {
+            let springs = springs_beside_shear(self.route.system.d);
+            let pulling = all_springs(edges, 1.0 / springs).pulling(&self.y);
+            let step = self.step(&pulling)?;
+            self.advance(1.0, &step);
+            return Ok(Some(springs));
+        }
         let at = derivatives(edges, 1.0, &self.y);
-        let roots = Self::roots(&at);
+        let roots = self.roots(&at.hessian).columns;
         let stiffness = newton::largest_eigenvalue(roots.len(), |x| {
             let mut rx = vec![0.0; self.y.len()];
             for ((values, column), x) in roots.iter().zip(x) {
@@ -357,7 +467,7 @@ impl Body for Reduced<'_, '_, '_, '_> {
         });
         // Without contact the body bends so far that condensing loses all digits: contact holds the body, and the tangent
         // must know it.
-        if !(stiffness * ROUNDED <= 1.0) {
+        if self.of.shift.is_none() && !(stiffness * ROUNDED <= 1.0) {
             return Err(SolveError::Singular);
         }
         let Some(p) = self.p.take() else {
@@ -373,15 +483,16 @@ impl Body for Reduced<'_, '_, '_, '_> {
         if self.is_whole() {
             self.route.system.enters_step();
         }
-        let columns = Self::roots(at);
         let s = self.s(at);
+        let (Roots { columns, positive }, factor) = self.tangent(at)?;
         let gs = self.times_compliance(&s);
-        let mut system = self.stiffened(&columns);
         let mut t =
             Col::from_fn(columns.len(), |i| product(&columns[i].1, &gs[columns[i].0.clone()]));
-        cholesky(system.as_mut()).map_err(|_| SolveError::Singular)?;
-        let (l, mut column) = (system.as_ref(), t.as_mat_mut());
+        let (l, mut column) = (factor.as_ref(), t.as_mat_mut());
         solve_lower_triangular_in_place(l, column.as_mut(), Par::Seq);
+        for i in positive..columns.len() {
+            column[(i, 0)] = -column[(i, 0)];
+        }
         solve_upper_triangular_in_place(l.transpose(), column.as_mut(), Par::Seq);
         let mut dw: Vec<f64> = s.iter().map(|s| -s).collect();
         for (i, (values, column)) in columns.iter().enumerate() {
@@ -391,7 +502,11 @@ impl Body for Reduced<'_, '_, '_, '_> {
         }
         let dy: Vec<f64> = self.times_compliance(&dw).into_iter().map(|v| -v).collect();
         let slope = -s.iter().zip(&dy).map(|(s, dy)| s * dy).sum::<f64>();
-        let curvature = -dw.iter().zip(&dy).map(|(dw, dy)| dw * dy).sum::<f64>();
+        // d^T A d is that of K less dy . D dy.
+        let mut taken = vec![0.0; dy.len()];
+        self.of.shift.add(self.route.system.d, 1.0, &dy, &mut taken);
+        let all = dw.iter().zip(&taken).map(|(dw, taken)| dw + taken);
+        let curvature = -all.zip(&dy).map(|(dw, dy)| dw * dy).sum::<f64>();
         self.dw = dw;
         Ok(Step { dy, slope, curvature })
     }
@@ -400,21 +515,34 @@ impl Body for Reduced<'_, '_, '_, '_> {
         for (change, dw) in self.change.iter_mut().zip(&self.dw) {
             *change += t * dw;
         }
+        self.of.shift.add(self.route.system.d, t, &step.dy, &mut self.taken);
         for (y, dy) in self.y.iter_mut().zip(&step.dy) {
             *y += (t * dy).into();
         }
     }
 }
 
+/// A column of R, with the functionals of its piece.
+type Root = (Range<usize>, DVector<f64>);
+
+/// R, where H - D = R E R^T: so many columns whose sign is positive, and those whose sign is not.
+struct Roots {
+    columns: Vec<Root>,
+    positive: usize,
+}
+
+/// The stiffness, beside that of the body on the springs of the shift, below which a motion counts as free.
+const LOOSE: f64 = 1e-10;
+
 /// The product of a column with the values of its piece.
 fn product(column: &DVector<f64>, values: &[f64]) -> f64 {
     column.iter().zip(values).map(|(a, b)| a * b).sum()
 }
 
-/// The columns of R with H = R R^T for a positive semidefinite H, by Cholesky; those of pivots that are zero to rounding are left
-/// out.
-fn root(mut h: DMatrix<f64>) -> Vec<DVector<f64>> {
-    let (count, diagonal) = (h.nrows(), h.diagonal());
+/// The columns of R with H = R R^T for a positive semidefinite H, by Cholesky; those of pivots that are zero to the rounding of this
+/// `diagonal` are left out.
+fn root(mut h: DMatrix<f64>, diagonal: &DVector<f64>) -> Vec<DVector<f64>> {
+    let count = h.nrows();
     let mut columns = Vec::with_capacity(count);
     for k in 0..count {
         if h[(k, k)] <= f64::EPSILON * diagonal[k] {

@@ -4,20 +4,17 @@
 //!   as there are contact functionals,
 //! - assembled: one factorisation for each Newton step.
 //!
-//! Both give the same numbers. Where A alone has no factor or a bad one although the method is coercive, the assembled route
-//! is taken all the same: there contact holds the body.
-
-use std::sync::Arc;
+//! Both give the same numbers. Where supports hardly hold the body, so that A has no factor or a bad one although the method is
+//! coercive, the assembled route is taken all the same: contact may hold it. Coulomb's friction has no condensed route.
 
 use super::accuracy::{self, Outcome, Route};
 use super::assembled::Assembled;
-use super::condensed::Condensed;
+use super::condensed::{Condensed, Shift};
 use super::coulomb::Coulomb;
 use super::course::Phase;
 use super::times::{Stopwatch, Times};
 use super::{Settings, SolveError};
 use crate::linear::compliance::Reach;
-use crate::linear::factor::Factor;
 use crate::linear::system::System;
 use crate::memory;
 use crate::proof::enclosure::Verifier;
@@ -81,7 +78,7 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
     pub fn routes(&self) -> &'static [RouteName] {
         let [condensed, assembled] = self.predicted;
         let d = self.system.d;
-        if d.slides.is_none() && !d.has_coulomb() && condensed <= assembled {
+        if !d.has_coulomb() && condensed <= assembled {
             &[RouteName::Condensed, RouteName::Assembled]
         } else {
             &[RouteName::Assembled]
@@ -127,15 +124,16 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
         memory::check(8 * entries as u64)?;
         let mut watch = Stopwatch::start();
         system.course.enters(Phase::Factor);
-        let factor = match Factor::with(&system.structure, &system.matrix) {
+        let shift = Shift::of(system.d);
+        let factor = match shift.factor(system) {
             Err(SolveError::NotPositiveDefinite) if system.d.kappa() < 1.0 => {
                 return Err(SolveError::Singular);
             }
-            factored => Arc::new(factored?),
+            factored => factored?,
         };
         times.factor += watch.lap();
         system.course.enters(Phase::Condense);
-        let route = Condensed::new(system, factor, &self.reach, self.reference)?;
+        let route = Condensed::new(system, (shift, factor), &self.reach, self.reference)?;
         times.compliance += watch.lap();
         Ok(route)
     }

@@ -2,12 +2,18 @@
 //! equilibrium, and from the same bodies on supports that happen to carry nothing.
 
 use approx::assert_abs_diff_eq;
-use signorini::contact::{Discretization, EdgeRule, contact_line};
+use signorini::contact::{Discretization, EdgeRule, Friction, contact_line};
 use signorini::kernel::{Material, Plane};
+use signorini::linear::system::System;
 use signorini::model::Degree;
-use signorini::model::{Condition, DataError, Mesh, Obstacle, PointSupport, Problem, Side, Space};
+use signorini::model::{
+    Condition, DataError, Diagonal, Mesh, Obstacle, PointSupport, Problem, Side, Space,
+};
 use signorini::results::{RouteName, Solution};
-use signorini::solve::{Course, Method, Settings, SolveError, solve, solve_along};
+use signorini::solve::accuracy::Outcome;
+use signorini::solve::{
+    Course, Method, Settings, SolveError, Times, discretize, route, solve, solve_along,
+};
 
 use crate::common::*;
 
@@ -23,10 +29,48 @@ fn block_under(mesh: Mesh, [fx, fy]: [f64; 2], parts: Vec<(&'static str, Conditi
 
 fn solved(problem: &Problem, degree: Degree) -> Solution {
     let (s, _) = solve(problem, &method(degree, EXACT), &Settings::default()).unwrap();
-    assert_eq!(s.method.route, RouteName::Assembled);
+    // A small body has contact all around it.
+    assert_eq!(s.method.route == RouteName::Condensed, s.newton.factorizations == 1);
     assert!(s.newton.residual <= 1e-10 && s.method.forward_error <= 1e-10);
     assert!(s.newton.iterations() <= 25);
     s
+}
+
+/// A body that contact alone holds, by a route.
+fn by(name: RouteName, system: &System) -> Outcome {
+    route::by(name, system, &Settings::default(), &mut Times::default()).unwrap()
+}
+
+#[test]
+fn a_body_that_contact_holds_is_factored_once_and_both_routes_find_the_same() {
+    // Far from the walls before the loads press, without friction and with it, and squeezed.
+    let far = Condition::contact(|_| 0.3);
+    let floor = Condition::contact(|[x, _]| 0.01 * (x - 0.6) * (x - 0.6));
+    let flat = || ("bottom", Condition::contact(|_| 0.0));
+    let body = |force, parts| block_under(skewed_square(6, Diagonal::Crossed), force, parts);
+    let rough = Friction::tresca(|_| 0.05);
+    let problems = [
+        body([-0.02, -0.1], vec![("bottom", floor), ("left", far)]),
+        body([0.01, -0.1], vec![flat()]).with_friction("bottom", rough),
+        body([0.0; 2], vec![flat(), ("top", Condition::contact(|_| -0.01))]),
+    ];
+    for problem in problems {
+        for degree in DEGREES {
+            let d = discretize(&problem, &method(degree, EXACT)).unwrap();
+            let system = System::new(&d).unwrap();
+            let [one, each] = [RouteName::Condensed, RouteName::Assembled].map(|r| by(r, &system));
+            assert_eq!(one.factorizations, 1);
+            assert!(each.factorizations > 1, "the control");
+            let [few, many] = [&one, &each].map(|outcome| outcome.residuals.len());
+            assert!(few <= many + 2, "{few} steps condensed, {many} assembled");
+            let size = each.u.as_flattened().iter().fold(0.0, |m: f64, u| m.max(u.abs()));
+            for (a, b) in one.u.as_flattened().iter().zip(each.u.as_flattened()) {
+                // Both are proved to 1e-9 or better, and this near as measured.
+                assert_abs_diff_eq!(a, b, epsilon = 1e-11 * size);
+            }
+            assert!(one.radius() <= 2.0 * each.radius().max(1e-13), "the same is proved");
+        }
+    }
 }
 
 #[test]
