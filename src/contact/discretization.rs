@@ -234,6 +234,10 @@ impl<'a> Discretization<'a> {
 
     fn internal_forces_by(&self, u: &(impl Nodal<f64> + ?Sized)) -> Functional {
         let mut forces = Functional::zero(self.space.nodes().len());
+        // The lift of no prescribed displacement.
+        if u.is_zero() {
+            return forces;
+        }
         let itself = |triangle| triangle;
         each_stress(&self.space, &self.problem.material, itself, u, |point| {
             let &StressPoint { nodal, slopes, gradient, weight, .. } = point;

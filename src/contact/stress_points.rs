@@ -17,6 +17,9 @@ pub(crate) trait Nodal<S> {
 
     /// The first component at a node: of a body of revolution the radial one, which no rigid motion has.
     fn radial(&self, node: usize) -> S;
+
+    /// All values are zero.
+    fn is_zero(&self) -> bool;
 }
 
 impl<S: Scalar> Nodal<S> for [[S; 2]] {
@@ -27,6 +30,10 @@ impl<S: Scalar> Nodal<S> for [[S; 2]] {
 
     fn radial(&self, node: usize) -> S {
         self[node][0]
+    }
+
+    fn is_zero(&self) -> bool {
+        self.as_flattened().iter().all(|&u| u == S::from(0))
     }
 }
 

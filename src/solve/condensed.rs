@@ -27,8 +27,7 @@ use std::sync::Arc;
 use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
-use faer::reborrow::ReborrowMut;
-use faer::{Col, ColRef, Mat, MatMut, MatRef, Par};
+use faer::{Col, ColRef, Mat, Par};
 use nalgebra::{DMatrix, DVector};
 
 use super::SolveError;
@@ -344,24 +343,20 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
     }
 
     /// L of E + R^T G R = L E L^T.
-    fn factored(&self, roots: &Roots) -> Result<Vec<f64>, SolveError> {
-        let count = roots.columns.len();
-        let mut values = self.stiffened(&roots.columns);
-        let mut system = MatMut::from_column_major_slice_mut(&mut values, count, count);
-        for i in roots.positive..count {
+    fn factored(&self, roots: &Roots) -> Result<Mat<f64>, SolveError> {
+        let mut system = self.stiffened(&roots.columns);
+        let mut negative = roots.positive..system.nrows();
+        for i in negative.clone() {
             system[(i, i)] -= 2.0;
         }
-        quasidefinite(system.rb_mut(), roots.positive).map_err(|_| SolveError::Singular)?;
+        quasidefinite(system.as_mut(), roots.positive).map_err(|_| SolveError::Singular)?;
         let is_loose = |i: usize| !(system[(i, i)] * system[(i, i)] > LOOSE);
-        match (roots.positive..count).any(is_loose) {
-            true => Err(SolveError::Singular),
-            false => Ok(values),
-        }
+        if negative.any(is_loose) { Err(SolveError::Singular) } else { Ok(system) }
     }
 
     /// R and L of the tangent with the Hessian `at` an iterate. Where contact holds the body, and what is in contact does not, a little of
     /// the springs of all pieces is added.
-    fn tangent(&self, at: &Derivatives) -> Result<(Roots, Vec<f64>), SolveError> {
+    fn tangent(&self, at: &Derivatives) -> Result<(Roots, Mat<f64>), SolveError> {
         let of = |hessian: &[DMatrix<f64>]| {
             let roots = self.roots(hessian);
             self.factored(&roots).map(|factor| (roots, factor))
@@ -375,7 +370,7 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
     }
 
     /// The lower triangle of I + R^T G R.
-    fn stiffened(&self, roots: &[Root]) -> Vec<f64> {
+    fn stiffened(&self, roots: &[Root]) -> Mat<f64> {
         match roots.iter().map(|(values, _)| values.len()).max() {
             None => Vec::new(),
             Some(..=2) => self.stiffened_by::<2>(roots),
@@ -387,9 +382,8 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
 
     /// [`Reduced::stiffened`] where a piece has up to W functionals, column by column: G R is added up from columns of G, which are
     /// contiguous.
-    fn stiffened_by<const W: usize>(&self, roots: &[Root]) -> Vec<f64> {
-        // Memory that is zero from the start: `Mat::zeros` writes entry by entry.
-        let mut system = vec![0.0; roots.len() * roots.len()];
+    fn stiffened_by<const W: usize>(&self, roots: &[Root]) -> Mat<f64> {
+        let mut system = Mat::zeros(roots.len(), roots.len());
         // Entries beyond those of a piece are zero.
         let mut gr = vec![0.0; self.y.len() + W];
         let filled =
@@ -494,8 +488,7 @@ impl Body for Reduced<'_, '_, '_, '_> {
         let gs = self.times_compliance(&s);
         let mut t =
             Col::from_fn(columns.len(), |i| product(&columns[i].1, &gs[columns[i].0.clone()]));
-        let l = MatRef::from_column_major_slice(&factor, columns.len(), columns.len());
-        let mut column = t.as_mat_mut();
+        let (l, mut column) = (factor.as_ref(), t.as_mat_mut());
         solve_lower_triangular_in_place(l, column.as_mut(), Par::Seq);
         for i in positive..columns.len() {
             column[(i, 0)] = -column[(i, 0)];

@@ -63,6 +63,10 @@ impl Nodal<f64> for Parts<'_> {
     fn radial(&self, node: usize) -> f64 {
         self.heads.radial(node)
     }
+
+    fn is_zero(&self) -> bool {
+        self.heads.is_zero() && self.tails.is_zero()
+    }
 }
 
 impl Iterate {
