@@ -372,7 +372,7 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
     /// The lower triangle of I + R^T G R.
     fn stiffened(&self, roots: &[Root]) -> Mat<f64> {
         match roots.iter().map(|(values, _)| values.len()).max() {
-            None => Vec::new(),
+            None => Mat::zeros(0, 0),
             Some(..=2) => self.stiffened_by::<2>(roots),
             Some(3) => self.stiffened_by::<3>(roots),
             Some(4) => self.stiffened_by::<4>(roots),
@@ -404,7 +404,7 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
                     *sum += factor * g;
                 }
             }
-            let column = &mut system[j * roots.len()..][j..roots.len()];
+            let column = &mut system.col_as_slice_mut(j)[j..];
             for (sum, (start, root)) in column.iter_mut().zip(&entries[j..]) {
                 let gr = &gr[*start..*start + W];
                 *sum = (0..W).fold(0.0, |sum, k| sum + root[k] * gr[k]);
