@@ -94,6 +94,12 @@ def first(rows, role):
     return next(row for row in rows if row[2] == role and row[3:].any())
 
 
+def slides(a):
+    """The direction of an edge on which bodies slide without opening, and it turns."""
+    on = {row[0] for row in a("laws") if row[1] == 1}
+    return next(row for row in a("directions") if row[0] in on and (row[1:3] != row[3:]).any())
+
+
 def shifted(rows):
     """Moves the widest interval of a force by three times its width, twice its end and 0.001: all are 0 to rounding where symmetry says so."""
     row = sorted(rows, key=lambda row: np.ptp(row[6:8].view("<f8")))[-1]
@@ -118,6 +124,9 @@ TAMPERINGS = {
     "friction beyond its bound": lambda h, a: number(next(row for row in a("laws") if row[1] == 3), 2, lambda q: 2 * abs(q) + 1),
     "friction with a larger bound": lambda h, a: [number(row, k, lambda s: 2 * s) for row in a("laws") if row[1] == 3 for k in (4, 5)],
     "glue for friction": lambda h, a: a("laws")[:, 1].__setitem__(slice(None), np.where(a("laws")[:, 1] == 3, 2, 3).astype(np.uint64)),
+    "a pressure that varies along a direction that turns": lambda h, a: number(
+        a("edges")[int(slides(a)[0])], 4, lambda p: 1.001 * p + 1e-6),
+    "a direction of its own": lambda h, a: [number(slides(a), k, lambda d: d + 1e-6) for k in (1, 3)],
     "glue that slides": lambda h, a: [row[1:2].__isub__(np.uint64(1)) for row in a("laws") if row[1] == 2],
     "a jump of its own": lambda h, a: number(next(row for row in a("laws") if row[1] == 2), 4, lambda g: g + 1e-3),
     "a gap that is smaller": lambda h, a: [number(row, k, lambda g: g - 0.5) for row in a("edges") if row[2] == 6 for k in (5, 6)],

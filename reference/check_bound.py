@@ -142,7 +142,7 @@ def tied(own, other, d, glued, jump, given=np.zeros(2, bool)):
     axis = ((np.abs(d) == 1) & (d[:, ::-1] == 0)).any(1)
     along = np.where((d != 0) & axis[:, None], other + d * jump[:, :1], own)
     moved = np.where(given & ~axis[:, None], 0, d)
-    step = (dot(own - other, d) - jump[:, 0]) / np.where(axis, 1, dot(moved, d))
+    step = (dot(own - other, d) - jump[:, 0]) / np.where(axis | (moved == 0).all(1), 1, dot(moved, d))
     slides = np.where(axis[:, None], along, own - moved * step[:, None])
     return np.where(glued[:, None], other + jump, slides)
 
@@ -240,12 +240,11 @@ class Body:
         moved = glued[:, None] | (d != 0)
         least = np.where(glued[:, None], jump, jump[:, :1])
         exact = ~moved | ((least == 0) & ~self.frame[other].any(1)[:, None])
-        # Along an oblique direction the other component is moved.
-        along = glued | axis.any(1)
-        exact = np.where(along[:, None], exact, ~self.given[own][:, ::-1])
+        # Along an oblique direction the other component is moved, if that is not prescribed.
+        across = ~(glued | axis.any(1) | self.given[own].all(1))[:, None]
+        exact, same = exact | across, (self.v[other] == self.value[own]) | across
         demand((exact | ~self.given[own]).all(1), "a tied point at a place that is prescribed")
-        demand(~moved | ~self.given[own] | (self.v[other] == self.value[own]) | ~along[:, None],
-               "a tied point off what is prescribed: point")
+        demand(~moved | ~self.given[own] | same, "a tied point off what is prescribed: point")
         self.v = v = self.v.copy()
         v[own] = tied(v[own], v[other], d, glued, jump, self.given[own])
         bulge, facing, ends = self.bulge, self.facing[on], (v[own] - v[other]).reshape(-1, 2, 2)

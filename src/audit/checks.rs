@@ -270,11 +270,12 @@ impl Certificate {
                 return Err(wrong("point", p, "is tied, and has no value of its own"));
             };
             let is_moved = |c: usize| is_bonded || d[c] != 0.0;
+            let slides = !is_bonded && axis(d).is_none();
             let is_given = |c: usize| match given[c] {
                 None => true,
                 Some(_) if !is_moved(c) => axis(d).is_some(),
                 // The other component is moved.
-                Some(_) if !is_bonded && axis(d).is_none() => given[1 - c].is_none(),
+                Some(_) if slides && given[1 - c].is_none() => true,
                 Some(value) => {
                     jump[usize::from(is_bonded && c == 1)] == 0.0
                         && there[c] == value

@@ -487,6 +487,10 @@ impl<'a> Lifter<'a> {
                     [p, q].map(|p| certificate.at_own(p).map_or([None; 2], |(_, given)| given));
                 let motion = target.motion.at(Vector2::from(certificate.vertices[p]));
                 let motion = motion.unwrap_or(Vector2::from(d[k]));
+                // Along an oblique direction the component that is not prescribed is moved.
+                if !law.is_bonded() && is_oblique(d[k]) && own_data.contains(&None) {
+                    continue;
+                }
                 let moves = |c: usize| law.is_bonded() || d[k][c] != 0.0;
                 for c in (0..2).filter(|&c| own_data[c].is_some() && moves(c)) {
                     let value = if meant { own[c] - motion[c] } else { own[c] };

@@ -875,6 +875,29 @@ fn a_certificate_of_bodies_that_slide_along_a_curve_is_refused_when_it_is_tamper
         let turning = |(_, edge): &(usize, &Edge)| matches!(edge.role, Role::Contact { along: Some([d, e]), .. } if d != e);
         let (e, _) = c.certificate.edges.iter().enumerate().find(turning).unwrap();
         let other = c.certificate.facing[&e];
+        // v . d = g between the ends, too; of the jump without its bulge it is not.
+        let shape = c.certificate.shape::<f64>();
+        let bulges = shape.bulges.unwrap();
+        let mut largest = 0.0_f64;
+        for (e, edge) in c.certificate.edges.iter().enumerate().filter(turning) {
+            let Role::Contact { gap, along: Some(d), .. } = edge.role else { panic!() };
+            let other = c.certificate.facing[&e];
+            let [a, b] = [0, 1].map(|k| {
+                shape.points[edge.ends[k]] - shape.points[c.certificate.edges[other].ends[1 - k]]
+            });
+            let of_gap = c.certificate.curved.as_ref().unwrap().data[e][0];
+            let s = 0.3;
+            let off = |bulge: Vector2<f64>| {
+                let jump = a * (1.0 - s) + b * s + bulge * (4.0 * s * (1.0 - s));
+                let [d, end] = d.map(Vector2::from);
+                let gap = gap[0] * (1.0 - s) + gap[1] * s + 4.0 * s * (1.0 - s) * of_gap;
+                (jump.dot(&(d * (1.0 - s) + end * s)) - gap).abs()
+            };
+            // The rounding of jumps below 0.1.
+            assert!(off(bulges[e] - bulges[other]) <= 1e-16, "{degree:?}");
+            largest = largest.max(off(Vector2::zeros()));
+        }
+        assert!(largest > 1e-6, "{degree:?}: {largest:e}");
         type Fields<'a> = (&'a mut [f64; 2], &'a mut [[f64; 2]; 2], &'a mut EdgeLaw);
         let changed = |change: &dyn Fn(Fields)| {
             let mut certificate = c.certificate.clone();
@@ -914,6 +937,31 @@ fn a_certificate_of_bodies_that_slide_along_a_curve_is_refused_when_it_is_tamper
             forces: Default::default(),
         };
         assert!(matches!(force.audit(&claim), Err(Rejection::OutOfBalance { .. })));
+    }
+}
+
+#[test]
+fn where_walls_hold_all_of_both_bodies_that_slide_they_have_one_value() {
+    let walls =
+        ["left", "right"].map(|wall| ["upper", "lower"].map(|body| format!("{body}.{wall}")));
+    for degree in DEGREES {
+        let still = |problem: Problem, name: &String| problem.with(name, Condition::clamped());
+        let problem = walls.iter().flatten().fold(humped([6, 4]), still);
+        let weight = Problem { body_force: [expression("0"), expression("0.1")], ..problem };
+        let c = certified(&weight.with("upper.top", Condition::clamped()), degree);
+        let oblique = |(_, edge): &(usize, &Edge)| {
+            matches!(edge.role, Role::Contact { .. })
+                && edge.ends.iter().any(|&p| c.certificate.at_own(p).unwrap().1 == [Some(0.0); 2])
+        };
+        let (e, edge) = c.certificate.edges.iter().enumerate().find(oblique).unwrap();
+        let other = c.certificate.edges[c.certificate.facing[&e]].ends;
+        let held = |p: &usize| c.certificate.at_own(*p).unwrap().1 == [Some(0.0); 2];
+        let k = edge.ends.iter().position(held).unwrap();
+        let mut moved = c.certificate.clone();
+        moved.prescribed[other[1 - k]][1] = Some(1e-9);
+        moved.displacement[other[1 - k]][1] = 1e-9;
+        let refused = moved.evaluate::<Ball>().unwrap_err().to_string();
+        assert!(refused.contains("another place than what is prescribed"), "{refused}");
     }
 }
 
