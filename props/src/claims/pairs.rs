@@ -395,7 +395,7 @@ pub fn claim() -> Claim {
         id: "17",
         title: "Two deformable bodies",
         paper: "\"The extension to two elastic bodies in contact can be easily made, at least for small strain models\": (8) with the jump of the displacements and one weighted stress of both sides (theory.md, 12).",
-        limits: "On curved interfaces the pieces are those of the mesh, with directions and gaps as they are found; the search for partners is tested in the program.",
+        limits: "On curved interfaces pieces, directions and gaps are taken as found; the search for partners is tested in the program.",
         single: None,
         checks: [
             statements! {
