@@ -289,11 +289,13 @@ mod tests {
         let source = Source { file: Path::new(""), text, settings: &settings, functions: &[] };
         let layers = source.layers();
         let entries = source.entries(&layers).unwrap();
-        let keys = |path: &str| {
-            let below = |table: &DeTable, key: &str| match table.get(key).map(Spanned::get_ref) {
+        fn below<'s>(table: &DeTable<'s>, key: &str) -> DeTable<'s> {
+            match table.get(key).map(Spanned::get_ref) {
                 Some(DeValue::Table(table)) => table.clone(),
                 _ => DeTable::new(),
-            };
+            }
+        }
+        let keys = |path: &str| {
             let table = path.split('.').fold(entries.clone(), |table, key| below(&table, key));
             let mut keys: Vec<String> = table.keys().map(|key| key.get_ref().to_string()).collect();
             keys.sort();
