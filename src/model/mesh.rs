@@ -408,11 +408,12 @@ fn diameter(triangle: &Triangle<f64>) -> f64 {
 }
 
 /// The bytes that making a mesh takes beside its vertices and triangles: its edges, of which there are at most three to a
-/// triangle and in a list that grows up to twice that, and what is kept of them.
+/// triangle and in a list that grows up to twice that, what is kept of them, and the parts that they join.
 pub(super) fn bytes_to_make(vertices: usize, triangles: usize) -> u64 {
     let per_vertex = bytes_of::<[usize; 4]>(vertices);
     let edges = (triangles.saturating_mul(3) / 2).saturating_add(vertices);
-    [per_vertex, bytes_of::<[usize; 3]>(triangles), bytes_of::<MeshEdge>(edges)]
+    let per_edge = bytes_of::<(MeshEdge, Option<usize>)>(edges);
+    [per_vertex, bytes_of::<[usize; 5]>(triangles), per_edge]
         .into_iter()
         .fold(0, u64::saturating_add)
 }
