@@ -73,16 +73,21 @@ impl<'a> DataArray<'a> {
     }
 
     fn append_to(&self, data: &mut Vec<u8>) {
-        let (values, start) = (self.numbers.chunks(self.given), data.len());
-        let components = self.components.len().max(self.given);
-        // The components that are not given stay 0.
-        data.resize(start + values.len() * components * size_of::<f64>(), 0);
-        let places = data[start..].chunks_mut(components * size_of::<f64>());
-        for (place, value) in places.zip(values) {
-            for (place, number) in place.as_chunks_mut().0.iter_mut().zip(value) {
-                *place = number.to_le_bytes();
-            }
+        match (self.given, self.components.len()) {
+            (2, 3) => append::<2, 3>(self.numbers, data),
+            (4, 6) => append::<4, 6>(self.numbers, data),
+            _ => append::<1, 1>(self.numbers, data),
         }
+    }
+}
+
+/// Appends values of G numbers, each with zeros up to C of them.
+fn append<const G: usize, const C: usize>(numbers: &[f64], data: &mut Vec<u8>) {
+    let (values, start) = (numbers.as_chunks::<G>().0, data.len());
+    data.resize(start + values.len() * C * size_of::<f64>(), 0);
+    let places = data[start..].as_chunks_mut::<8>().0.as_chunks_mut::<C>().0;
+    for (place, value) in places.iter_mut().zip(values) {
+        place.iter_mut().zip(value).for_each(|(place, number)| *place = number.to_le_bytes());
     }
 }
 
