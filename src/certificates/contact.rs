@@ -56,6 +56,8 @@ pub(super) struct Side {
     pub places: [f64; 2],
     /// The length of the whole edge.
     pub length: f64,
+    /// The part of the edge below which places are the same: one length on all edges of the contact.
+    pub same: f64,
     /// An end of the contact was moved to an end or the middle of the edge, by more than rounding.
     pub moved: bool,
 }
@@ -68,9 +70,12 @@ pub(super) struct Part {
     pub(crate) shear: [f64; 2],
 }
 
-/// Places on an edge of a pair that are nearer to its ends or its middle are these: between nodes that face each other to rounding, or
-/// to what a mesh generator leaves, there would be slivers.
+/// Places on a pair that are nearer to the ends or the middle of an edge are these: between nodes that face each other to rounding, or
+/// to what a mesh generator leaves, there would be slivers. A part of the longest edge there.
 pub(super) const SAME_PLACE: f64 = 1e-6;
+
+/// The most that this is of a shorter edge.
+const MOST_OF_AN_EDGE: f64 = 1e-3;
 
 /// The part of an edge below which a contact is a sliver.
 const SLIVER: f64 = 0.1;
@@ -79,17 +84,18 @@ const SLIVER: f64 = 0.1;
 const ROUNDING: f64 = 1e-11;
 
 impl Side {
-    fn new(mesh: &Mesh, stretch: &Stretch) -> Side {
-        let places = [0, 1].map(|a| near_place(stretch.positions[a]));
-        let moved = (0..2).any(|a| (places[a] - stretch.positions[a]).abs() > ROUNDING);
+    fn new(mesh: &Mesh, stretch: &Stretch, longest: f64) -> Side {
         let (length, _) = mesh.length_and_normal(stretch.edge);
-        Side { edge: stretch.edge, places, length, moved }
+        let same = (SAME_PLACE * longest / length).min(MOST_OF_AN_EDGE);
+        let places = [0, 1].map(|a| near_place(stretch.positions[a], same));
+        let moved = (0..2).any(|a| (places[a] - stretch.positions[a]).abs() > ROUNDING);
+        Side { edge: stretch.edge, places, length, same, moved }
     }
 
     /// The place on the edge of place `s` of the contact.
     pub(crate) fn place(&self, s: f64) -> f64 {
         let [from, to] = self.places;
-        if s == 1.0 { to } else { near_place(from + s * (to - from)) }
+        if s == 1.0 { to } else { near_place(from + s * (to - from), self.same) }
     }
 
     /// The middle on the edge of the part of the contact between these places: inside of it, however short it is.
@@ -111,8 +117,8 @@ impl Side {
     }
 }
 
-fn near_place(x: f64) -> f64 {
-    [0.0, 0.5, 1.0].into_iter().find(|place| (x - place).abs() <= SAME_PLACE).unwrap_or(x)
+fn near_place(x: f64, same: f64) -> f64 {
+    [0.0, 0.5, 1.0].into_iter().find(|place| (x - place).abs() <= same).unwrap_or(x)
 }
 
 /// tau_n along an edge of Gamma_C: affine, or with a jump at a place between the ends.
@@ -236,8 +242,10 @@ impl Contact {
         let (geometry, degree, both) = (&piece.geometry, piece.degree, piece.p(u));
         let (p, across) = both.split_at(geometry.nodes.len());
         let mut directions = [0, 1].map(|a| geometry.nodes[a].direction);
-        let sides: Vec<Side> =
-            geometry.stretches.iter().map(|s| Side::new(&problem.mesh, s)).collect();
+        let (mesh, stretches) = (&problem.mesh, geometry.stretches.iter());
+        let lengths = stretches.clone().map(|s| mesh.length_and_normal(s.edge).0);
+        let longest = lengths.fold(0.0, f64::max);
+        let sides: Vec<Side> = stretches.map(|s| Side::new(mesh, s, longest)).collect();
         // Of straight sides they differ by rounding.
         if sides.len() > 1 && (directions[1] - directions[0]).amax() <= ROUNDING {
             directions = [directions[0]; 2];
@@ -365,7 +373,7 @@ impl Contact {
         };
         let (own, last) = (self.sides[0], before.sides[0]);
         let apart = (place(&own, 0) - place(&last, 1)).amax();
-        if self.is_tied() && self.law == before.law && apart <= SAME_PLACE * own.length {
+        if self.is_tied() && self.law == before.law && apart <= own.same * own.length {
             let d = before.directions[1];
             // At a corner they are two; on an edge a direction turns by less than a right angle.
             if (self.directions[0] - d).amax() > 2.0 * SAME_PLACE {
@@ -452,7 +460,7 @@ impl Contact {
 
     /// On each side it is longer than what is taken for one place.
     pub(crate) fn has_length(&self) -> bool {
-        self.sides.iter().all(|side| (side.places[1] - side.places[0]).abs() > SAME_PLACE)
+        self.sides.iter().all(|side| (side.places[1] - side.places[0]).abs() > side.same)
     }
 
     /// Takes over what another contact, which is left out, has of the same edges: one that is behind this one (`end` is 1) or before it
@@ -461,7 +469,7 @@ impl Contact {
         for (own, side) in self.sides.iter_mut().zip(&mut other.sides) {
             let by = (side.places[end] - own.places[end]).abs();
             // Both ends of what is left out are as near as that.
-            if own.edge == side.edge && by <= 2.0 * SAME_PLACE {
+            if own.edge == side.edge && by <= 2.0 * own.same.max(side.same) {
                 own.moved |= by > ROUNDING;
                 own.places[end] = side.places[end];
                 side.places[1 - end] = side.places[end];
@@ -473,7 +481,7 @@ impl Contact {
     fn join_slivers(&mut self) {
         let sides = &self.sides;
         let is_sliver = |[s, t]: [f64; 2]| {
-            sides.iter().any(|side| (side.place(t) - side.place(s)).abs() <= SAME_PLACE)
+            sides.iter().any(|side| (side.place(t) - side.place(s)).abs() <= side.same)
         };
         let mut joined: Vec<Part> = Vec::with_capacity(self.parts.len());
         for part in &self.parts {
@@ -677,7 +685,7 @@ pub(super) fn even_out(contacts: &mut [Contact]) {
 /// Returns whether a contact ends inside of an edge where the other begins, and tractions may be affine on both.
 fn meet(one: &Contact, other: &Contact) -> bool {
     let inside = |(a, b): (&Side, &Side)| {
-        a.edge == b.edge && (a.places[1] - b.places[0]).abs() <= SAME_PLACE
+        a.edge == b.edge && (a.places[1] - b.places[0]).abs() <= a.same.max(b.same)
     };
     let same = std::ptr::eq(one, other) || one.sides.iter().zip(&other.sides).any(inside);
     one.is_pair() && other.is_pair() && same && !one.turns() && !other.turns()
