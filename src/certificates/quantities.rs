@@ -244,7 +244,7 @@ fn beyond_rigid<S: Enclosing>(
         column(&|x| Vector2::new(-x.y, x.x)),
     ];
     let all: Vec<f64> = v.iter().flat_map(|&v| <[f64; 2]>::from(v)).collect();
-    let weights = least_squares(&motions, &all);
+    let weights = least_squares(motions.to_vec(), &all);
     let left = |k: usize| {
         let of = |c: usize| -> f64 {
             let moved: f64 =

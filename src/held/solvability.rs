@@ -400,8 +400,8 @@ pub(super) fn nnls_residual(rows: &[Vec<f64>], target: &[f64], tolerance: f64) -
                 used.remove(0);
                 continue;
             }
-            let columns: Vec<Vec<f64>> = used.iter().map(|(i, _)| rows[*i].clone()).collect();
-            let weights = least_squares(&columns, target);
+            let columns = used.iter().map(|(i, _)| rows[*i].clone()).collect();
+            let weights = least_squares(columns, target);
             // The weights go towards the new ones until one of them is 0; this weight is set to 0, whatever its rounding.
             let until = |j: usize| {
                 let old = used[j].1;

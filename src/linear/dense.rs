@@ -108,17 +108,28 @@ fn rotate(p: &mut [f64], q: &mut [f64], c: f64, s: f64) {
     }
 }
 
-/// The weights of independent columns whose combination is nearest to `target`, from their singular vectors. Not finite if a column is
-/// zero.
-pub(crate) fn least_squares(columns: &[Vec<f64>], target: &[f64]) -> Vec<f64> {
-    let row = |i: usize| columns.iter().map(|column| column[i]).collect();
-    let rows: Vec<Vec<f64>> = (0..target.len()).map(row).collect();
-    let mut weights = vec![0.0; columns.len()];
-    for (value, vector) in singular_vectors(&rows, columns.len()) {
-        let along = rows.iter().zip(target).map(|(row, t)| dot(row, &vector) * t).sum::<f64>();
-        for (weight, v) in weights.iter_mut().zip(&vector) {
-            *weight += along / value / value * v;
+/// The weights of independent columns whose combination is nearest to `target`, by the modified method of Gram and Schmidt
+/// with the target as one more column (Bjorck 1967: as stable as Householder's reflections). Not finite if a column is zero.
+pub(crate) fn least_squares(mut columns: Vec<Vec<f64>>, target: &[f64]) -> Vec<f64> {
+    let n = columns.len();
+    columns.push(target.to_vec());
+    // r[k][j]: what column j has of the k-th direction, in units of its length; in the end that of the target.
+    let mut r = vec![vec![0.0; n + 1]; n];
+    for k in 0..n {
+        let (direction, later) =
+            columns[k..].split_first_mut().map_or((&[][..], &mut [][..]), |(d, l)| (&**d, l));
+        let squared = dot(direction, direction);
+        for (j, other) in later.iter_mut().enumerate() {
+            let share = dot(direction, other) / squared;
+            r[k][k + 1 + j] = share;
+            for (o, d) in other.iter_mut().zip(direction) {
+                *o -= share * d;
+            }
         }
+    }
+    let mut weights = vec![0.0; n];
+    for k in (0..n).rev() {
+        weights[k] = r[k][n] - (k + 1..n).map(|j| r[k][j] * weights[j]).sum::<f64>();
     }
     weights
 }
@@ -169,7 +180,7 @@ mod tests {
     fn what_is_left_by_least_squares_is_orthogonal_to_the_columns() {
         let columns = vec![vec![1.0, 1.0, 1.0, 1.0], vec![0.0, 1.0, 2.0, 3.0 + 1e-3]];
         let target = [1.0, -2.0, 0.5, 4.0];
-        let weights = least_squares(&columns, &target);
+        let weights = least_squares(columns.clone(), &target);
         let left = |weights: &[f64]| -> Vec<f64> {
             (0..4)
                 .map(|i| target[i] - weights[0] * columns[0][i] - weights[1] * columns[1][i])
