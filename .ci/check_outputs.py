@@ -138,9 +138,9 @@ def damaged(content):
     """Copies of a file that must not pass, each with what was done to it."""
     for part in (0.1, 0.5, 0.9, 0.999):
         yield f"cut after {part:.1%}", content[: int(part * len(content))]
-    # The first array: 44 letters are the header of one block; what follows is compressed.
+    # The first array: its length, then the numbers, of which two become NaN.
     start = content.index(b'format="binary">\n') + len(b'format="binary">\n')
-    yield "with other bits in its first array", content[: start + 64] + b"//////////" + content[start + 74 :]
+    yield "with other bits in its first array", content[: start + 64] + b"/" * 24 + content[start + 88 :]
     first = content.index(b'Name="') + 6
     yield "with another name for its first field", content[:first] + b"x" + content[first + 1 :]
 
