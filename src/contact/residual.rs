@@ -53,11 +53,6 @@ pub fn evaluate(d: &Discretization, u: &[[DoubleDouble; 2]]) -> (Vec<[f64; 2]>, 
     (forces.into_iter().map(|f| f.map(DoubleDouble::head)).collect(), p)
 }
 
-/// The values of P(u) at the nodes of each piece, by double-doubles.
-pub(crate) fn p(d: &Discretization, u: &[[DoubleDouble; 2]]) -> impl Iterator<Item = DoubleDouble> {
-    d.contact.iter().flat_map(move |piece| exact_piece(d, piece).p(u))
-}
-
 /// A piece of doubles in other numbers.
 pub fn exact_piece<S: Scalar + From<f64>>(d: &Discretization, piece: &Piece) -> Piece<S> {
     let exact = <S as From<f64>>::from;

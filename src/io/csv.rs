@@ -10,7 +10,10 @@ pub(super) fn table(names: &[&str], rows: &[(Vec<f64>, &str)]) -> Result<String,
     check_finite("row", rows.iter().map(|(numbers, _)| numbers.as_slice()))?;
     let mut text = names.join(",") + "\n";
     for (numbers, last) in rows {
-        text += &line(numbers.iter().map(|&x| number(x)).chain([(*last).to_owned()]));
+        for &x in numbers {
+            text.extend([&number(x), ","]);
+        }
+        text.extend([&cell(last), "\n"]);
     }
     Ok(text)
 }

@@ -7,8 +7,9 @@ mod motion;
 mod resolution;
 
 use super::numbers::short;
-use crate::contact::contact_line::Gamma;
-use crate::contact::piece::{Piece, Stretch};
+use crate::contact::contact_line::{ContactLine, Gamma};
+use crate::contact::piece::{Piece, PieceGeometry, Stretch};
+use crate::model::space::Space;
 use crate::model::tree::Bounds;
 use crate::model::{Degree, Problem};
 use crate::quote;
@@ -51,10 +52,11 @@ impl Solution {
 
 /// As [`Solution::remarks`], with units.
 pub(super) fn remarks(problem: &Problem, solution: &Solution, words: &Words) -> Vec<String> {
+    let line: Vec<&PieceGeometry> = solution.pieces.iter().map(|piece| &*piece.geometry).collect();
     let mut remarks = Vec::new();
     remarks.extend(model::separate_bodies(problem, Some(solution)));
     remarks.extend(resolution::short_stretches(problem, solution, words));
-    remarks.extend(resolution::gaps(problem, Known::Solution(solution), words));
+    remarks.extend(resolution::gaps(problem, Known::Solution(solution), &line, words));
     remarks.extend(motion::off_the_obstacle(problem, solution, words));
     remarks.extend(motion::beside_the_line(problem, solution, words));
     remarks.extend(model::locking(problem, solution.degree));
@@ -70,7 +72,7 @@ pub(super) fn remarks(problem: &Problem, solution: &Solution, words: &Words) -> 
             short(100.0 * LARGE_STRAIN, 3)
         ));
     }
-    remarks.extend(model::overlap(problem, words));
+    remarks.extend(model::overlap(problem, &line, words));
     remarks.extend(model::interference(problem, solution, words));
     remarks.extend(friction(solution, words));
     let (largest, size) = (solution.quantities.max_displacement, size(problem));
@@ -90,10 +92,12 @@ pub(super) fn remarks(problem: &Problem, solution: &Solution, words: &Words) -> 
 
 /// The remarks that need no solution.
 pub(super) fn before(problem: &Problem, degree: Degree, words: &Words) -> Vec<String> {
+    let line = ContactLine::new(problem, &Space::new(&problem.mesh, degree)).ok();
+    let line: Vec<&PieceGeometry> = line.iter().flat_map(ContactLine::pieces).collect();
     let mut remarks: Vec<String> = model::separate_bodies(problem, None).into_iter().collect();
-    remarks.extend(resolution::gaps(problem, Known::Data(degree), words));
+    remarks.extend(resolution::gaps(problem, Known::Data(degree), &line, words));
     remarks.extend(model::locking(problem, degree));
-    remarks.extend(model::overlap(problem, words));
+    remarks.extend(model::overlap(problem, &line, words));
     remarks
 }
 
@@ -130,6 +134,15 @@ enum Known<'s> {
     Data(Degree),
     /// A solution.
     Solution(&'s Solution),
+}
+
+impl Known<'_> {
+    fn degree(self) -> Degree {
+        match self {
+            Known::Data(degree) => degree,
+            Known::Solution(solution) => solution.degree,
+        }
+    }
 }
 
 /// Says which triangle sets gamma0 for a whole line that would allow more, if one does.

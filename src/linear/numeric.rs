@@ -359,7 +359,7 @@ mod tests {
     use crate::kernel::{Material, Plane};
     use crate::linear::dense::norm;
     use crate::linear::factor::Factor;
-    use crate::linear::system::System;
+    use crate::linear::system::{Factored, System};
     use crate::model::{Condition, Degree, Diagonal, Problem, Rectangle};
 
     fn with_system(degree: Degree, n: usize, f: impl FnOnce(&System)) {
@@ -471,14 +471,14 @@ mod tests {
                 pieces.map(of).collect::<Vec<DMatrix<f64>>>()
             };
             let (old, new) = (springs(&|e| e < 9), springs(&|e| e < 11));
-            let solved = |factor: Arc<Factor>| {
+            let solved = |last: Option<Factored>, springs: Vec<DMatrix<f64>>| {
                 let mut x = vec![1.0; system.numbering.count];
-                factor.solve(&mut x);
+                system.factor(last, springs).unwrap().factor.solve(&mut x);
                 x
             };
-            let before = system.factor(&old).unwrap();
-            let (own, kept) = (solved(system.factor(&new).unwrap()), solved(Arc::clone(&before)));
-            assert_eq!(solved(system.factor_after((before, &old), &new).unwrap()), own);
+            let before = system.factor(None, old.clone()).unwrap();
+            let (own, kept) = (solved(None, new.clone()), solved(Some(before.clone()), old));
+            assert_eq!(solved(Some(before), new), own);
             assert_ne!(kept, own, "control");
         });
     }

@@ -46,6 +46,30 @@ struct Entry {
     value: f64,
 }
 
+/// A tangent with its factor.
+#[derive(Clone)]
+pub struct Factored {
+    /// L of A + B^T h B.
+    pub(crate) factor: Arc<Factor>,
+    /// The blocks of h, one for each piece; none at all for A itself.
+    pub(crate) springs: Arc<[DMatrix<f64>]>,
+}
+
+impl From<Arc<Factor>> for Factored {
+    /// A itself with its factor.
+    fn from(factor: Arc<Factor>) -> Self {
+        Factored { factor, springs: Arc::new([]) }
+    }
+}
+
+impl Factored {
+    /// Returns whether piece `e` has other springs here than `h`.
+    fn differs(&self, e: usize, h: &DMatrix<f64>) -> bool {
+        let acts = |h: &&DMatrix<f64>| h.iter().any(|h| *h != 0.0);
+        self.springs.get(e).filter(acts) != Some(h).filter(acts)
+    }
+}
+
 /// The entries of B, piece by piece.
 fn entries(d: &Discretization, numbering: &Numbering) -> Arc<[Entry]> {
     let mut entries = Vec::new();
@@ -143,25 +167,28 @@ impl<'d, 'p> System<'d, 'p> {
         self.d.contact.iter().enumerate().map(of).collect()
     }
 
-    /// L of A + B^T h B, where `springs` are the blocks of h, one for each piece.
+    /// A + B^T h B, where `springs` are the blocks of h, one for each piece, with its factor. Of the `last` one all columns of L stay that
+    /// no other springs reach.
     ///
     /// # Errors
     /// As [`Factor::with`].
-    pub(crate) fn factor(&self, springs: &[DMatrix<f64>]) -> Result<Arc<Factor>, SolveError> {
-        Factor::with(&self.structure, &self.tangent(springs)?).map(Arc::new)
-    }
-
-    /// [`System::factor`] from the `last` one, with the springs of that: where springs have not changed, neither has L.
-    ///
-    /// # Errors
-    /// As [`Factor::with`].
-    pub(crate) fn factor_after(
+    pub(crate) fn factor(
         &self,
-        (last, old): (Arc<Factor>, &[DMatrix<f64>]),
-        springs: &[DMatrix<f64>],
-    ) -> Result<Arc<Factor>, SolveError> {
-        let changed = (0..springs.len()).filter(|&e| old[e] != springs[e]);
-        last.changed(&self.tangent(springs)?, changed.flat_map(|e| self.unknowns(e)))
+        last: Option<Factored>,
+        springs: Vec<DMatrix<f64>>,
+    ) -> Result<Factored, SolveError> {
+        let Some(last) = last else {
+            let factor = Factor::with(&self.structure, &self.tangent(&springs)?)?;
+            return Ok(Factored { factor: Arc::new(factor), springs: springs.into() });
+        };
+        let changed: Vec<usize> =
+            (0..springs.len()).filter(|&e| last.differs(e, &springs[e])).collect();
+        if changed.is_empty() {
+            return Ok(last);
+        }
+        let unknowns = changed.into_iter().flat_map(|e| self.unknowns(e));
+        let factor = last.factor.changed(&self.tangent(&springs)?, unknowns)?;
+        Ok(Factored { factor, springs: springs.into() })
     }
 
     /// A + B^T h B

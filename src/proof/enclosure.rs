@@ -26,13 +26,13 @@ use super::balls::{field, free, kappa, length, pieces, root};
 use super::intervals::{Arithmetic, EnclosedResidual, Intervals};
 use super::isolated::{self, Isolated};
 use super::pressed::{self, Pressed};
-use crate::contact::{Discretization, Piece, residual};
+use crate::contact::{Discretization, Piece};
 use crate::held::rigid::NEGLIGIBLE;
 use crate::held::solvability::Slides;
 use crate::kernel::DoubleDouble;
 use crate::kernel::ball::{PreciseBall, up};
 use crate::linear::factor::Factor;
-use crate::linear::system::System;
+use crate::linear::system::{Factored, System};
 use crate::proof::korn::Korn;
 use crate::solve::SolveError;
 use crate::solve::newton::SLIGHT;
@@ -141,8 +141,8 @@ const LESS_PRESSED: f64 = 2.0;
 /// body may have as little as this.
 pub(crate) const LEAST_NORM: f64 = 1e-150;
 
-/// Encloses the solution of (8) around the displacement `u`, in balls throughout: as [`Verifier::enclose`]. A given factor of A
-/// saves a factorisation, and need not be right.
+/// Encloses the solution of (8) around the displacement `u`, in balls throughout: as [`Verifier::enclose`]. A tangent with its factor
+/// that is `at_hand` saves a factorisation, and need not be right.
 ///
 /// # Errors
 /// Why nothing can be proved.
@@ -150,9 +150,9 @@ pub fn enclose(
     system: &System,
     u: &[[f64; 2]],
     near: Option<&[[DoubleDouble; 2]]>,
-    of_a: Option<Arc<Factor>>,
+    at_hand: Option<Factored>,
 ) -> Result<Enclosure, Unproved> {
-    Verifier::new(system, of_a).enclose(u, near, Arithmetic::Balls)
+    Verifier::new(system, at_hand).enclose(u, near, Arithmetic::Balls)
 }
 
 /// Encloses the solution of (8) around several displacements; work that does not depend on them is done once.
@@ -163,8 +163,8 @@ pub struct Verifier<'s, 'd, 'p> {
     kappa: f64,
     /// The relative radius that is asked for: a bound that is far below is not sharpened.
     proof: f64,
-    /// L of A, if it is at hand.
-    of_a: Option<Arc<Factor>>,
+    /// A tangent with its factor, if one is at hand.
+    at_hand: Option<Factored>,
     /// For what is pressed: the bounds at the nodes, and the factor, once it is needed.
     held: Option<HeldByContact>,
     /// What the proof with Coulomb's friction knows of A.
@@ -186,14 +186,14 @@ struct HeldByContact {
 
 impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
     /// The verifier of a system, with its own loads.
-    pub fn new(system: &'s System<'d, 'p>, of_a: Option<Arc<Factor>>) -> Self {
-        Verifier::with_load(system, of_a, &system.d.enclosed_load)
+    pub fn new(system: &'s System<'d, 'p>, at_hand: Option<Factored>) -> Self {
+        Verifier::with_load(system, at_hand, &system.d.enclosed_load)
     }
 
     /// The verifier of a system with a given load: L(v) for every basis function.
     pub fn with_load(
         system: &'s System<'d, 'p>,
-        of_a: Option<Arc<Factor>>,
+        at_hand: Option<Factored>,
         load: &'s [[PreciseBall; 2]],
     ) -> Self {
         let mut watch = Stopwatch::start();
@@ -207,7 +207,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             lines,
             kappa,
             proof,
-            of_a,
+            at_hand,
             held: None,
             known: None,
             unbalanced: f64::INFINITY,
@@ -222,9 +222,9 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         Verifier { proof, ..self }
     }
 
-    /// Takes the factor of A that a route has made, if it has.
-    pub(crate) fn use_factor(&mut self, of_a: Option<Arc<Factor>>) {
-        self.of_a = of_a.or(self.of_a.take());
+    /// Takes the tangent that a route has factored, if it has.
+    pub(crate) fn use_factor(&mut self, factored: Option<Factored>) {
+        self.at_hand = factored.or(self.at_hand.take());
     }
 
     /// Encloses the solution around `u` by the residual there, or at a field `near` it that is known in double-doubles:
@@ -256,7 +256,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         if d.slides.is_none() {
             return self.around(u, u, near, arithmetic);
         }
-        let known: Option<Vec<DoubleDouble>> = near.map(|near| residual::p(d, near).collect());
+        let known = near.map(|near| self.system.fine_p(near));
         let Some(loose) = Slides::around(d, u, known.as_deref()) else {
             return self.around(u, u, near, arithmetic);
         };
@@ -368,15 +368,13 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         if !(first <= negligible) || coulomb {
             let factor = match factor {
                 Some(factor) => factor,
-                None => factor.insert(match &self.of_a {
-                    Some(of_a) if !pressed.edges().any(|is| is) && d.slides.is_none() => {
-                        Arc::clone(of_a)
-                    }
-                    _ => system.factor(springs).map_err(|error| match error {
+                None => {
+                    let factored = system.factor(self.at_hand.clone(), springs.clone());
+                    factor.insert(factored.map(|it| it.factor).map_err(|error| match error {
                         SolveError::NotPositiveDefinite => Unproved::NoFactor,
                         _ => Unproved::OutOfMemory,
-                    })?,
-                }),
+                    })?)
+                }
             };
             let product = Product { system, lines: &self.lines, pressed, arithmetic };
             // With Coulomb's friction every further digit of the norm widens the ball without another solution.

@@ -6,8 +6,6 @@
 //! The correction of a pass estimates the error before it, up to an error smaller by the same factor again. So passes end when
 //! nothing is left to correct; the verdict is the proof's.
 
-use std::sync::Arc;
-
 use super::iterate::{Evaluation, Iterate, NOISE};
 use super::newton::Until;
 use super::{Settings, SolveError};
@@ -15,16 +13,15 @@ use crate::contact::discretization::Discretization;
 use crate::held::rigid::NEGLIGIBLE;
 use crate::kernel::DoubleDouble;
 use crate::linear::dense::norm;
-use crate::linear::factor::Factor;
-use crate::linear::system::System;
+use crate::linear::system::{Factored, System};
 use crate::proof::enclosure::{Enclosure, Unproved, Verifier};
 use crate::proof::intervals::Arithmetic;
 use crate::results::Status;
 
 /// A way to improve an iterate.
 pub trait Route {
-    /// L of A, if it is at hand.
-    fn factor_of_a(&self) -> Option<Arc<Factor>>;
+    /// A tangent with its factor that is kept from one pass to the next, if there is one.
+    fn factored(&self) -> Option<Factored>;
 
     /// The number of sparse factorisations so far.
     fn factorizations(&self) -> usize;
@@ -171,7 +168,7 @@ pub fn refine(
         if is_done && settings.proof.is_infinite() {
             break;
         }
-        verifier.use_factor(route.factor_of_a());
+        verifier.use_factor(route.factored());
         let is_near = refinement.verify(verifier);
         if refinement.at.precisely && !is_near {
             refinement.correct(route, verifier);

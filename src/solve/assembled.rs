@@ -3,7 +3,6 @@
 //! hold the body: the tangent includes the springs of contact.
 
 use std::borrow::Cow;
-use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
@@ -19,8 +18,7 @@ use crate::held::clearance;
 use crate::held::rigid::Parts;
 use crate::kernel::DoubleDouble;
 use crate::linear::dense::{dot, norm};
-use crate::linear::factor::Factor;
-use crate::linear::system::System;
+use crate::linear::system::{Factored, System};
 
 /// The last factored tangent.
 pub(crate) struct Assembled<'a, 'd, 'p> {
@@ -30,8 +28,8 @@ pub(crate) struct Assembled<'a, 'd, 'p> {
     factored: Option<Factored>,
     /// The norm of the residual where it was used last.
     used_at: f64,
-    /// L of A alone, once it has been made.
-    body: Option<Arc<Factor>>,
+    /// A alone, once it has been factored.
+    body: Option<Factored>,
     factorizations: usize,
     precisely: bool,
     first: bool,
@@ -70,42 +68,34 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
         // What needs more than doubles has springs so stiff that a small change of them is not small beside the body.
         let residuals = [if self.precisely { 0.0 } else { self.used_at }, residual];
         self.used_at = residual;
-        let (factor, hessian) = match self.factored.take() {
-            Some((factor, old)) if does_again(&old, &at.hessian, residuals) => (factor, old),
+        let factored = match self.factored.take() {
+            Some(last) if does_again(&last.springs, &at.hessian, residuals) => last,
             last => {
                 let coercive = self.system.d.kappa() < 1.0;
-                let mut hessian = at.hessian.clone();
                 let mut factored = Err(SolveError::NotPositiveDefinite);
                 if !(coercive && self.is_loose(at)) {
-                    factored = match last {
-                        Some((factor, old)) => self.system.factor_after((factor, &old), &hessian),
-                        None => self.system.factor(&hessian),
-                    };
+                    factored = self.system.factor(last, at.hessian.clone());
                     self.factorizations += 1;
                 }
                 if coercive && matches!(factored, Err(SolveError::NotPositiveDefinite)) {
-                    hessian = supported(self.system.d, at);
-                    factored = self.system.factor(&hessian);
+                    factored = self.system.factor(None, supported(self.system.d, at));
                     self.factorizations += 1;
                     if matches!(factored, Err(SolveError::NotPositiveDefinite)) {
                         return Err(SolveError::Singular);
                     }
                 }
-                (factored?, hessian)
+                factored?
             }
         };
-        if self.body.is_none() && hessian.iter().flatten().all(|h| *h == 0.0) {
-            self.body = Some(Arc::clone(&factor));
+        if self.body.is_none() && factored.springs.iter().flatten().all(|h| *h == 0.0) {
+            self.body = Some(factored.clone());
         }
-        Ok(self.factored.insert((factor, hessian)))
+        Ok(self.factored.insert(factored))
     }
 }
 
-/// A factor with the Psi'' of its tangent.
-type Factored = (Arc<Factor>, Vec<DMatrix<f64>>);
-
 impl Route for Assembled<'_, '_, '_> {
-    fn factor_of_a(&self) -> Option<Arc<Factor>> {
+    fn factored(&self) -> Option<Factored> {
         self.body.clone()
     }
 
@@ -150,7 +140,7 @@ impl Route for Assembled<'_, '_, '_> {
     ) -> Result<Option<Vec<f64>>, SolveError> {
         let terms = derivatives(self.system.d, 1.0, &at.p);
         let mut d: Vec<f64> = residual.iter().map(|r| -r).collect();
-        self.factor(&terms, norm(residual))?.0.solve(&mut d);
+        self.factor(&terms, norm(residual))?.factor.solve(&mut d);
         Ok(Some(d))
     }
 }
@@ -183,7 +173,7 @@ impl Full<'_, '_, '_, '_, '_> {
 
     /// How much stiffer contact is than the body, by the power method on A^-1 B^T Psi'' B; A is what was factored last.
     fn stiffness(&self, at: &Derivatives) -> Result<f64, SolveError> {
-        let Some((factor, _)) = &self.route.factored else {
+        let Some(Factored { factor, .. }) = &self.route.factored else {
             return Ok(springs_beside_shear(self.route.system.d));
         };
         Ok(newton::largest_eigenvalue(self.route.system.numbering.count, |x| {
@@ -265,9 +255,9 @@ impl Body for Full<'_, '_, '_, '_, '_> {
         self.route.system.enters_step();
         let gradient = self.gradient(at);
         let mut d: Vec<f64> = gradient.iter().map(|r| -r).collect();
-        self.route.factor(at, norm(&gradient))?.0.solve(&mut d);
+        self.route.factor(at, norm(&gradient))?.factor.solve(&mut d);
         let dy = self.values_of_p0(&d);
-        let hessian = self.route.factored.as_ref().map_or(&at.hessian, |(_, hessian)| hessian);
+        let hessian = self.route.factored.as_ref().map_or(&at.hessian[..], |last| &last.springs);
         let slope = dot(&gradient, &d);
         // A d and d^T A d, where (A + B^T Psi'' B) d = -r with the Psi'' that was factored: nothing is lost where A d cancels.
         let forces: Vec<f64> = times(hessian, &dy, |h| -h);

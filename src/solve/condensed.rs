@@ -44,7 +44,7 @@ use crate::kernel::DoubleDouble;
 use crate::linear::compliance::{Compliance, Reach};
 use crate::linear::dense::{norm, quasidefinite};
 use crate::linear::factor::Factor;
-use crate::linear::system::System;
+use crate::linear::system::{Factored, System};
 use crate::model::mesh::ROUNDED;
 
 /// The springs of some pieces of Gamma_C that hold the body while it is factored, by the number of the piece: none where it is held
@@ -67,16 +67,16 @@ impl Shift {
         self.0.is_empty()
     }
 
-    /// L of A + B^T D B.
+    /// A + B^T D B
     ///
     /// # Errors
     /// As [`Factor::with`].
-    pub fn factor(&self, system: &System) -> Result<Arc<Factor>, SolveError> {
+    pub fn factor(&self, system: &System) -> Result<Factored, SolveError> {
         if self.is_none() {
-            return Factor::with(&system.structure, &system.matrix).map(Arc::new);
+            return Factor::with(&system.structure, &system.matrix).map(|l| Arc::new(l).into());
         }
         let of = |e: usize| self.0.get(&e).cloned().unwrap_or_else(|| DMatrix::zeros(0, 0));
-        system.factor(&(0..system.d.contact.len()).map(of).collect::<Vec<_>>())
+        system.factor(None, (0..system.d.contact.len()).map(of).collect())
     }
 
     /// sum <- sum + t D y
@@ -95,7 +95,7 @@ impl Shift {
 pub(crate) struct Condensed<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
     shift: Shift,
-    factor: Arc<Factor>,
+    factored: Factored,
     compliance: Compliance<'a>,
     /// The entries of B^T: the functional, and the row among those that are not empty.
     forces: Vec<(usize, usize, f64)>,
@@ -114,12 +114,13 @@ impl<'a, 'd, 'p> Condensed<'a, 'd, 'p> {
     /// As [`Compliance::new`].
     pub(crate) fn new(
         system: &'a System<'d, 'p>,
-        (shift, factor): (Shift, Arc<Factor>),
+        (shift, factored): (Shift, Factored),
         reach: &'a Reach,
         reference: f64,
     ) -> Result<Self, SolveError> {
-        let compliance =
-            Compliance::new(&system.structure, &factor, reach, |add| system.each_functional(add))?;
+        let compliance = Compliance::new(&system.structure, &factored.factor, reach, |add| {
+            system.each_functional(add)
+        })?;
         let mut place: BTreeMap<usize, usize> = BTreeMap::new();
         let mut forces = Vec::new();
         system.each_functional(|row, functional, entry| {
@@ -129,13 +130,13 @@ impl<'a, 'd, 'p> Condensed<'a, 'd, 'p> {
         let w = vec![0.0; reach.functionals()];
         let rows = place.len();
         let first = true;
-        Ok(Condensed { system, shift, factor, compliance, forces, rows, reference, w, first })
+        Ok(Condensed { system, shift, factored, compliance, forces, rows, reference, w, first })
     }
 }
 
 impl Route for Condensed<'_, '_, '_> {
-    fn factor_of_a(&self) -> Option<Arc<Factor>> {
-        self.shift.is_none().then(|| Arc::clone(&self.factor))
+    fn factored(&self) -> Option<Factored> {
+        Some(self.factored.clone())
     }
 
     fn factorizations(&self) -> usize {
@@ -152,7 +153,7 @@ impl Route for Condensed<'_, '_, '_> {
         let mut v = at.linear.clone();
         self.system.add_forces(&self.w, &mut v);
         v.iter_mut().for_each(|v| *v = -*v);
-        self.factor.forward(&mut v);
+        self.factored.factor.forward(&mut v);
         let mut y = at.p.clone();
         let dy = self.compliance.transpose_times(&v);
         for (y, change) in y.iter_mut().zip(&dy) {
@@ -172,7 +173,7 @@ impl Route for Condensed<'_, '_, '_> {
             *w += change + taken;
         }
         self.first = false;
-        self.factor.backward(&mut v);
+        self.factored.factor.backward(&mut v);
         iterate.add(self.system, 1.0, &v);
         *at = iterate.evaluate(self.system, at.precisely);
         let square: f64 = v.iter().map(|v| v * v).sum();

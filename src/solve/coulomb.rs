@@ -31,7 +31,7 @@ use crate::contact::law::Law;
 use crate::contact::{Discretization, Piece};
 use crate::linear::dense::norm;
 use crate::linear::factor::Factor;
-use crate::linear::system::System;
+use crate::linear::system::{Factored, System};
 
 /// The share to which the residual must fall for a step to be taken.
 const FALLS: f64 = 0.9;
@@ -97,7 +97,7 @@ pub(crate) struct Coulomb<'a, 'd, 'p> {
     stiffness: f64,
     /// L of A, or, where it has none, with springs of all pieces: residuals are measured by it.
     metric: Option<Arc<Factor>>,
-    of_a: Option<Arc<Factor>>,
+    of_a: Option<Factored>,
     factorizations: usize,
     /// Those of the problems with Tresca's friction at the start.
     at_start: usize,
@@ -130,9 +130,9 @@ impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
             Some(_) => Err(SolveError::NotPositiveDefinite),
         };
         let metric = match own {
-            Ok(factor) => Arc::clone(self.of_a.insert(factor)),
+            Ok(factor) => Arc::clone(&self.of_a.insert(factor.into()).factor),
             Err(SolveError::NotPositiveDefinite) => {
-                self.system.factor(&all_springs(d, 1.0).hessian)?
+                self.system.factor(None, all_springs(d, 1.0).hessian)?.factor
             }
             Err(error) => return Err(error),
         };
@@ -190,15 +190,16 @@ impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
             }
         }
         self.factorizations += 1;
-        let factor = match self.system.factor(&springs) {
+        let factored = match self.system.factor(None, springs.clone()) {
             Err(SolveError::NotPositiveDefinite) => {
                 let all = all_springs(self.system.d, 1.0).hessian;
                 springs.iter_mut().zip(&all).for_each(|(h, all)| *h += SUPPORT * all);
                 self.factorizations += 1;
-                self.system.factor(&springs)?
+                self.system.factor(None, springs)?
             }
             factored => factored?,
         };
+        let factor = factored.factor;
         let mut d: Vec<f64> = r.iter().map(|r| -r).collect();
         factor.solve(&mut d);
         if coupled.is_empty() {
@@ -342,7 +343,7 @@ impl Mixing {
 }
 
 impl Route for Coulomb<'_, '_, '_> {
-    fn factor_of_a(&self) -> Option<Arc<Factor>> {
+    fn factored(&self) -> Option<Factored> {
         self.of_a.clone()
     }
 

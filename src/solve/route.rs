@@ -109,8 +109,7 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
             RouteName::Assembled => Box::new(Assembled::new(self.system, self.reference)),
         };
         watch.lap();
-        let mut verifier =
-            Verifier::new(self.system, route.factor_of_a()).for_proof(settings.proof);
+        let mut verifier = Verifier::new(self.system, route.factored()).for_proof(settings.proof);
         let outcome =
             accuracy::refine(self.system, &mut *route, &mut verifier, self.reference, settings)?;
         times.newton += watch.lap().saturating_sub(verifier.time);
@@ -125,7 +124,7 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
         let mut watch = Stopwatch::start();
         system.course.enters(Phase::Factor);
         let shift = Shift::of(system.d);
-        let factor = match shift.factor(system) {
+        let factored = match shift.factor(system) {
             Err(SolveError::NotPositiveDefinite) if system.d.kappa() < 1.0 => {
                 return Err(SolveError::Singular);
             }
@@ -133,7 +132,7 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
         };
         times.factor += watch.lap();
         system.course.enters(Phase::Condense);
-        let route = Condensed::new(system, (shift, factor), &self.reach, self.reference)?;
+        let route = Condensed::new(system, (shift, factored), &self.reach, self.reference)?;
         times.compliance += watch.lap();
         Ok(route)
     }

@@ -57,7 +57,7 @@ fn attained(
     let system = System::new(&d).map_err(text)?;
     let factor = Factor::new(&system.matrix).map_err(text)?;
     let u = eigenvector(&d, &system, &factor);
-    let of_a = Some(Arc::new(factor_of(&system, matrix).map_err(text)?));
+    let of_a = Some(Arc::new(factor_of(&system, matrix).map_err(text)?).into());
     let radius = enclosure::enclose(&system, &u, None, of_a).map_err(text)?.radius;
     let of_12 = share_of_12(&d, &system, &u, kappa);
     Ok([radius / d.strain_energy(&u).sqrt(), of_12])

@@ -123,7 +123,8 @@ fn reported(
     let system = System::new(d).map_err(|_| Verdict::Fails("there is a system"))?;
     let load: Vec<[PreciseBall; 2]> =
         d.load.iter().map(|l| l.map(|l| PreciseBall::from(l * asked.load))).collect();
-    let factor = (asked.matrix != 1.0).then(|| factor_of(&system, asked.matrix).map(Arc::new));
+    let factor =
+        (asked.matrix != 1.0).then(|| factor_of(&system, asked.matrix).map(|l| Arc::new(l).into()));
     let factor = factor.transpose().map_err(|_| Verdict::Fails("there is a factor"))?;
     let mut verifier = Verifier::with_load(&system, factor, &load);
     // Arithmetic in doubles are off by some 1e-13, more where lambda is large.

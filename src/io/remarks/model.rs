@@ -3,13 +3,14 @@
 use std::collections::BTreeSet;
 
 use super::{NO_LENGTH, Words, named_obstacle, obstacle_of, place, size};
-use crate::contact::{ContactLine, Pair};
+use crate::contact::Pair;
+use crate::contact::piece::PieceGeometry;
 use crate::io::numbers::short;
 use crate::kernel::Material;
 use crate::model::boundary_normals::{SMOOTH, SmoothBoundary};
 use crate::model::groups::groups;
 use crate::model::mesh::ROUNDED;
-use crate::model::{BoundaryEdge, Degree, Mesh, Problem, Space};
+use crate::model::{BoundaryEdge, Degree, Mesh, Problem};
 use crate::quote;
 use crate::results::{ContactBoundary, Solution};
 
@@ -117,14 +118,17 @@ fn locking_ratio(material: &Material<f64>) -> Option<String> {
     })
 }
 
+/// The pieces of `line` without those between two bodies, which may overlap on purpose.
+pub(super) fn to_obstacles<'l>(
+    line: &[&'l PieceGeometry],
+) -> impl Iterator<Item = &'l PieceGeometry> {
+    line.iter().copied().filter(|piece| piece.stretches.len() == 1)
+}
+
 /// Says where the body is deepest in its obstacle before it is loaded, if it is.
-pub(super) fn overlap(problem: &Problem, words: &Words) -> Option<String> {
-    let space = Space::new(&problem.mesh, Degree::One);
-    let line = ContactLine::new(problem, &space).ok()?;
-    // Bodies of a pair may overlap on purpose.
-    let to_obstacles = line.pieces().filter(|piece| piece.stretches.len() == 1);
-    let points =
-        to_obstacles.flat_map(|piece| piece.nodes.iter().map(move |n| (n.gap, n.place, piece)));
+pub(super) fn overlap(problem: &Problem, line: &[&PieceGeometry], words: &Words) -> Option<String> {
+    let points = to_obstacles(line)
+        .flat_map(|piece| piece.nodes.iter().map(move |n| (n.gap, n.place, piece)));
     let least = points.min_by(|a, b| a.0.total_cmp(&b.0));
     let (gap, deepest, piece) = least.filter(|p| p.0 < -NO_LENGTH * size(problem))?;
     let question = match named_obstacle(problem, &piece.first().boundary) {

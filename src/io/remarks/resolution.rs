@@ -2,10 +2,9 @@
 
 use std::ops::Range;
 
-use super::{Known, NO_LENGTH, Words, place, size};
-use crate::contact::ContactLine;
+use super::{Known, NO_LENGTH, Words, model, place, size};
 use crate::contact::piece::PieceGeometry;
-use crate::model::{Condition, Degree, Problem, Space};
+use crate::model::{Condition, Problem};
 use crate::quote;
 use crate::results::solution::ContactEdgeValues;
 use crate::results::{ContactBoundary, Solution};
@@ -228,16 +227,15 @@ fn short_stretch(
 
 /// Says where between the nodes the gap is far from what the mesh makes of it, beside how far the body moves or, before it is
 /// solved, overlaps its obstacle.
-pub(super) fn gaps(problem: &Problem, known: Known, words: &Words) -> Vec<String> {
-    let degree = match known {
-        Known::Data(degree) => degree,
-        Known::Solution(solution) => solution.degree,
-    };
-    let space = Space::new(&problem.mesh, degree);
-    let Ok(line) = ContactLine::new(problem, &space) else { return Vec::new() };
-    let pieces: Vec<&PieceGeometry> = line.pieces().collect();
-    let by_boundary = pieces.chunk_by(|a, b| a.first().boundary == b.first().boundary);
-    by_boundary.filter_map(|pieces| gap(problem, (known, degree), words, pieces)).collect()
+pub(super) fn gaps(
+    problem: &Problem,
+    known: Known,
+    line: &[&PieceGeometry],
+    words: &Words,
+) -> Vec<String> {
+    let to_obstacles: Vec<&PieceGeometry> = model::to_obstacles(line).collect();
+    let by_boundary = to_obstacles.chunk_by(|a, b| a.first().boundary == b.first().boundary);
+    by_boundary.filter_map(|pieces| gap(problem, known, words, pieces)).collect()
 }
 
 /// A place on an edge with the gap there and its interpolant.
@@ -255,7 +253,7 @@ impl Interpolated {
 
 fn gap(
     problem: &Problem,
-    (known, degree): (Known, Degree),
+    known: Known,
     words: &Words,
     pieces: &[&PieceGeometry],
 ) -> Option<String> {
@@ -275,13 +273,13 @@ fn gap(
         }
     };
     let mut worst: Option<Interpolated> = None;
-    for piece in pieces.iter().filter(|piece| !piece.curved && piece.stretches.len() == 1) {
+    for piece in pieces.iter().filter(|piece| !piece.curved) {
         let [a, b] = problem.mesh.places_of_ends(piece.first().edge);
         let gaps: Vec<f64> = piece.gaps().collect();
         for s in BETWEEN_NODES {
             let at = [0, 1].map(|c| a[c] + s * (b[c] - a[c]));
             let Some(gap) = gap_at(at) else { continue };
-            let found = Interpolated { at, gap, interpolant: degree.value_at(&gaps, s) };
+            let found = Interpolated { at, gap, interpolant: known.degree().value_at(&gaps, s) };
             // A gap that the motion does not close does not matter.
             let closes = found.gap.min(found.interpolant) <= motion;
             if closes && worst.as_ref().is_none_or(|worst| found.off() > worst.off()) {

@@ -5,13 +5,10 @@
 //! the solution, and from pass to pass takes that down by a given factor, or not at all. So what is reported can be compared with
 //! what is true.
 
-use std::sync::Arc;
-
 use faer::Side;
 use signorini::contact::{Discretization, EdgeRule};
 use signorini::kernel::{Material, Plane};
-use signorini::linear::factor::Factor;
-use signorini::linear::system::System;
+use signorini::linear::system::{Factored, System};
 use signorini::model::Degree;
 use signorini::model::{Condition, Diagonal, Problem, Rectangle};
 use signorini::proof::enclosure::Verifier;
@@ -59,7 +56,7 @@ struct Known<'s, 'd, 'p> {
 }
 
 impl Route for Known<'_, '_, '_> {
-    fn factor_of_a(&self) -> Option<Arc<Factor>> {
+    fn factored(&self) -> Option<Factored> {
         None
     }
 
