@@ -1,15 +1,19 @@
-"""python3 reference/getfem_pair.py [--check]
+"""python3 reference/getfem_pair.py [--check | --time SIGNORINI]
 
 A pair of bodies by GetFEM's brick for contact between meshes that do not match (integral contact with multipliers on the first body, by the
 augmented Lagrangian): the blocks of reference/pairs/apart.msh, pressed on each other without a clearance, quadratic displacements and affine
 multipliers. It is another discrete problem than method (8), so what is compared is the force between the bodies, the reactions and the
 displacements, to the error of the mesh. The result is in reference/results/getfem/apart.json, stored by this program and solved again with --check; the test
-`a_pair_agrees_with_getfem_to_the_error_of_the_mesh` reads it.
+`a_pair_agrees_with_getfem_to_the_error_of_the_mesh` reads it. With --time both programs solve on the mesh whose triangles Gmsh has cut in four
+twice, and a line of JSON has the unknowns and, as the least of three runs, the seconds of `model.solve`, which assembles and factors, and
+those from the mesh in memory to the proved result of `SIGNORINI solve`.
 """
 
 import json
 import subprocess
 import sys
+import tempfile
+import time
 from pathlib import Path
 
 import getfem as gf
@@ -30,9 +34,9 @@ CONTACT, HELD = 1, 2
 TOLERANCE = 1e-9
 
 
-def bodies():
+def bodies(file):
     """The meshes of the two bodies, with their edges of contact and those that are held."""
-    plane = gmsh.read(MESH)
+    plane = gmsh.read(file)
     found = {}
     for name, contact, held in (("lower", "low", "base"), ("upper", "up", "top")):
         mesh = gf.Mesh("empty", 2)
@@ -57,11 +61,12 @@ def bodies():
     return found
 
 
-def solve():
+def model_of(file):
+    """The problem on a mesh, and the spaces and rules of its bodies."""
     gf.util_trace_level(0)
     model = gf.Model("real")
     spaces, rules = {}, {}
-    for name, mesh in bodies().items():
+    for name, mesh in bodies(file).items():
         young, poisson = MATERIALS[name]
         spaces[name] = gf.MeshFem(mesh, 2)
         spaces[name].set_classical_fem(2)
@@ -86,9 +91,18 @@ def solve():
     model.add_filtered_fem_variable("p", pressure, CONTACT)
     model.add_initialized_data("r", 100.0)
     model.add_integral_contact_between_nonmatching_meshes_brick(rules["upper"], "u_upper", "u_lower", "p", "r", CONTACT, CONTACT)
+    return model, spaces, rules
+
+
+def newton(model):
     model.solve("max_res", 1e-9, "max_iter", 60)
     if not np.abs(model.rhs()).max() < 1e-12:
         raise SystemExit("Newton's method does not converge")
+
+
+def solve():
+    model, spaces, rules = model_of(MESH)
+    newton(model)
     u = {name: np.array(model.variable(f"u_{name}")).reshape(-1, 2) for name in spaces}
     integral = lambda name, form, region: float(gf.asm_generic(rules[name], 0, form, region, model))
     strain = "(Grad_u_{0} + Grad_u_{0}')/2"
@@ -96,6 +110,27 @@ def solve():
     largest = max(float(np.hypot(*np.reshape(model.variable(f"u_{name}"), (-1, 2)).T).max()) for name in spaces)
     return {"a_uu": sum(energies), "work": integral("lower", "body.u_lower", -1), "force": -integral("upper", "p", CONTACT),
             "max_displacement": largest}
+
+
+def timed(program):
+    """The seconds of both programs on a finer mesh."""
+    with tempfile.TemporaryDirectory() as folder:
+        file, out = MESH, Path(folder) / "out"
+        for level in ("once.msh", "twice.msh"):
+            fine = Path(folder) / level
+            subprocess.run(["gmsh", file, "-refine", "-format", "msh41", "-o", fine], capture_output=True, check=True)
+            file = fine
+        command = [program, "solve", MESH.with_name("apart-p2.toml"), "--set", f"mesh.gmsh={file}", "--set", "output.probes=[]", "--out", out]
+        own, other = [], []
+        for _ in range(3):
+            subprocess.run(command, capture_output=True, check=True)
+            result = json.loads((out / "result.json").read_text())
+            own.append(sum(result["seconds"][part] for part in ("assemble", "solve", "certify")))
+            model, *_ = model_of(file)
+            start = time.perf_counter()
+            newton(model)
+            other.append(time.perf_counter() - start)
+    print(json.dumps({"unknowns": result["mesh"]["dofs"], "getfem": min(other), "signorini": min(own)}))
 
 
 def check(stored, fresh):
@@ -127,4 +162,6 @@ def run(program, stored, source, solve):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) == 3 and sys.argv[1] == "--time":
+        sys.exit(timed(sys.argv[2]))
     sys.exit(run("getfem_pair.py", STORED, MESH, solve))

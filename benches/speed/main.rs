@@ -118,7 +118,8 @@ fn main() {
         Some(rivals) => peers::tables(rivals),
         None => "## Other codes\n\nNot measured in this run: `--peers` does.\n".to_owned(),
     });
-    text.push(own::two_bodies());
+    let beside = plan.peers.then(peers::two_bodies);
+    text.push(own::two_bodies(beside.as_deref().unwrap_or("GetFEM beside it: with `--peers`.")));
     text.push(if plan.large { own::large(&LARGE) } else { own::NOT_LARGE.to_owned() });
     text.insert(0, provenance::head(&arguments, others.share()));
     let text = text.join("\n");

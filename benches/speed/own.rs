@@ -280,8 +280,8 @@ degree = {degree}
 /// Pairs of bodies, each with one body on a rigid obstacle of about as many unknowns.
 const PAIRS: [[&str; 2]; 2] = [["cylinders", "disk"], ["pin_lug", "pin"]];
 
-/// The whole command on two bodies beside one, as valgrind counts its instructions.
-pub fn two_bodies() -> String {
+/// The whole command on two bodies beside one, as valgrind counts its instructions, and a sentence on `others`.
+pub fn two_bodies(others: &str) -> String {
     let row = |[two, one]: [&str; 2]| {
         let [two, one] = [two, one].map(|name| (name, child::of_command(name)));
         let told = |name: &str, of: &Option<child::OfCommand>| match of {
@@ -300,7 +300,9 @@ pub fn two_bodies() -> String {
 Instructions for each unknown of the whole command, with proof and files, beside one body on a rigid obstacle (of the cases: unknowns,
 factorisations). A body that the other one alone holds is factored on a few springs of contact.
 
-{}",
+{}
+{others}
+",
         table(&["two bodies", "one", "ratio"], &PAIRS.map(row))
     )
 }

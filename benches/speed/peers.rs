@@ -286,3 +286,28 @@ Versions:
     }
     text
 }
+
+/// The seconds of two blocks on meshes that do not match, as `reference/getfem_pair.py --time` prints them.
+#[derive(Deserialize)]
+struct Blocks {
+    unknowns: usize,
+    getfem: f64,
+    signorini: f64,
+}
+
+/// GetFEM beside this program on two bodies.
+pub fn two_bodies() -> String {
+    let output = Command::new("/usr/bin/python3")
+        .args(["reference/getfem_pair.py", "--time", env!("CARGO_BIN_EXE_signorini")])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .envs([("OMP_NUM_THREADS", "1"), ("OPENBLAS_NUM_THREADS", "1")])
+        .output();
+    let of = output.ok().and_then(|output| serde_json::from_slice::<Blocks>(&output.stdout).ok());
+    match of {
+        Some(Blocks { unknowns, getfem, signorini }) => format!(
+            "Two blocks whose meshes do not match, P2, {unknowns} unknowns (`reference/getfem_pair.py --time`): GetFEM's brick with multipliers\ntakes {:.1} times as long as this program with its proof.",
+            getfem / signorini
+        ),
+        None => "GetFEM beside it: it or Gmsh is not there.".to_owned(),
+    }
+}

@@ -133,7 +133,9 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
     let places: Vec<[f64; 2]> = points().map(|p| p.place).collect();
     let displacement: Vec<[f64; 2]> = points().map(|p| p.displacement).collect();
     let direction: Vec<[f64; 2]> = points().map(|p| p.direction).collect();
-    let named = contact_numbers(s).iter();
+    // What is left of the gap: for a picture, as it follows from two others.
+    let opening: ContactNumber = ("opening", |p| p.gap - p.u_n);
+    let named = contact_numbers(s).iter().chain([&opening]);
     let numbers: Vec<(&str, Vec<f64>)> =
         named.map(|(name, of)| (*name, points().map(of).collect())).collect();
     let mut point_data = vec![DataArray::vectors("displacement", &displacement)];
@@ -252,5 +254,10 @@ mod tests {
             apart += i32::from(point.lambda != -point.pressure && point.gap != 0.0);
         }
         assert!(apart > 2, "control: columns are not the same");
+        let arrays = arrays(&contact_vtu(&s).unwrap());
+        let opening = arrays.iter().find(|(names, _)| *names == ["PointData", "opening"]).unwrap();
+        let points = s.contact_points();
+        let left = points.iter().flatten().map(|point| point.gap - point.u_n);
+        assert_eq!(opening.1, left.collect::<Vec<f64>>());
     }
 }

@@ -206,7 +206,11 @@ fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines
         };
         lines.line(name, format!("{boundary}: force {force}{components}, length {length}"));
         let peak = shown.number(part.peak_pressure, Measure::Stress);
-        lines.line("", format!("peak pressure {peak}{}", at(part.peak_at)));
+        let opening = match part.opening.filter(|opening| *opening > part.penetration) {
+            Some(opening) => format!(", opening up to {}", shown.number(opening, Measure::Length)),
+            None => String::new(),
+        };
+        lines.line("", format!("peak pressure {peak}{}{opening}", at(part.peak_at)));
         if let Some(friction) = &part.friction {
             lines.line("", shear(friction, shown, &at(friction.slip_at)));
         }
@@ -216,10 +220,6 @@ fn contact(r: &Results, shown: &QuantityFormat, verbose: bool, lines: &mut Lines
             if part.penetration.is_finite() {
                 let depth = shown.number(part.penetration, Measure::Length);
                 words += &format!(", penetration {depth}{}", at(part.penetration_at));
-            }
-            if let Some(opening) = part.opening.filter(|opening| opening.is_finite()) {
-                let opening = shown.number(opening, Measure::Length);
-                words += &format!(", largest opening {opening}");
             }
             lines.line("", words);
         }
@@ -710,9 +710,9 @@ mod tests {
     /// With the numbers of the result, to four digits.
     const SUMMARY: [&str; 24] = [
         "contact: floor: force 22.3 kN, proved between 21 and 24; components (22.7, 22.9), length 2.39 cm",
-        ": peak pressure 26.9 kN/cm^2 at (2.71, 2.77)",
+        ": peak pressure 26.9 kN/cm^2 at (2.71, 2.77), opening up to 0.0307 cm",
         ": friction 31.1 kN, sticks on 3.13 cm, slides on 3.17 cm, by up to 0.0331 cm at (3.37, 3.47)",
-        ": floor: moment 23.3 kN cm, penetration 0.0281 cm at (2.83, 2.93), largest opening 0.0307 cm",
+        ": floor: moment 23.3 kN cm, penetration 0.0281 cm at (2.83, 2.93)",
         "stress: von Mises up to 359 kN/cm^2 at (3.67, 3.73)",
         ": principal from -39.7 kN/cm^2 at (4.01, 4.09) to 37.9 kN/cm^2 at (3.83, 3.89)",
         ": hoop from -43.3 kN/cm^2 at (4.39, 4.43) to 41.9 kN/cm^2 at (4.21, 4.31)",
