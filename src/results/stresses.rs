@@ -107,27 +107,34 @@ impl Solution {
         let elements = self.elements.chunks_exact(self.degree.nodes_per_triangle());
         for (t, nodes) in elements.enumerate().filter(|(t, _)| members(*t)) {
             let (triangle, material) = (problem.mesh.triangle(t), problem.material.of(t));
-            let (barycentric, area) = (triangle.barycentric_gradients(), triangle.double_area());
-            let nodal = |j: usize| self.displacement[nodes[j]].into();
+            let area = triangle.double_area();
             let radii = material.radii(&triangle);
-            let hoop = radii.map_or([0.0; 3], |radii| {
-                self.degree.hoop_strain(radii, |j| self.displacement[nodes[j]][0])
-            });
-            let stress_at = |j: usize| {
-                // Corner j, or the middle of the edge opposite corner j - 3.
-                let l = [0, 1, 2].map(|k| match j {
-                    0..3 => f64::from(u8::from(k == j)),
-                    _ => f64::from(u8::from(k != j - 3)) / 2.0,
+            let corners = if self.degree == Degree::One && radii.is_none() {
+                let (stress, zz) = self.stress[t];
+                [(stress.components(), zz); 3]
+            } else {
+                let barycentric = triangle.barycentric_gradients();
+                let nodal = |j: usize| self.displacement[nodes[j]].into();
+                let hoop = radii.map_or([0.0; 3], |radii| {
+                    self.degree.hoop_strain(radii, |j| self.displacement[nodes[j]][0])
                 });
-                let gradient = self.degree.displacement_gradient(l, barycentric, nodal);
-                let (stress, zz) = material.state(gradient, self.degree.value_from_points(hoop, l));
-                let [xx, yy, xy] = stress.components();
-                [xx, yy, zz, xy].map(|s| area * s)
+                [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|l| {
+                    let gradient = self.degree.displacement_gradient(l, barycentric, nodal);
+                    let hoop = self.degree.value_from_points(hoop, l);
+                    let (stress, zz) = material.state(gradient, hoop);
+                    (stress.components(), zz)
+                })
             };
-            let constant = self.degree == Degree::One && radii.is_none();
-            let of_all = constant.then(|| stress_at(0));
+            let corners = corners.map(|([xx, yy, xy], zz)| [xx, yy, zz, xy].map(|s| area * s));
             for (j, &node) in nodes.iter().enumerate() {
-                let stress = of_all.unwrap_or_else(|| stress_at(j));
+                // A stress is affine; node 3 + i is in the middle of the edge opposite corner i.
+                let stress = match j {
+                    0..3 => corners[j],
+                    _ => {
+                        let [a, b] = [corners[(j + 1) % 3], corners[(j + 2) % 3]];
+                        [0, 1, 2, 3].map(|c| f64::midpoint(a[c], b[c]))
+                    }
+                };
                 let (sum, weight, _) = sums[node].get_or_insert(([0.0; 4], 0.0, t));
                 sum.iter_mut().zip(stress).for_each(|(sum, s)| *sum += s);
                 *weight += area;

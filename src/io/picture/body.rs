@@ -120,8 +120,10 @@ impl Colours {
             .zip(&scene.von_mises)
             .map(|(vertices, &value)| (value, area(&vertices.map(|v| scene.points[v])).abs()))
             .collect();
+        let values = scene.von_mises.iter().copied();
+        let [min, max] = [values.clone().reduce(f64::min), values.reduce(f64::max)];
+        let [min, max] = [min, max].map(|end| end.unwrap_or(0.0));
         let quantile = quantile(&mut parts, ABOVE).unwrap_or(0.0);
-        let [max, min] = [parts.first(), parts.last()].map(|part| part.map_or(0.0, |part| part.0));
         if max - min <= 1e-9 * max {
             Colours { min: max, top: max, max }
         } else if quantile > min && max > 1.5 * quantile {

@@ -42,7 +42,12 @@ impl Cells {
     /// The level of each cell that touches the body.
     fn of(side: f64, triangles: &[[Point; 3]], levels: &[usize]) -> Cells {
         let Bounds { low, high } = Bounds::around(triangles.iter().flatten().copied());
-        let cell = |x: f64| (x.clamp(-FAR, FAR) / side).floor() as i64;
+        // The floor, which is a call of a function on processors that have no instruction for it.
+        let cell = |x: f64| {
+            let x = x.clamp(-FAR, FAR) / side;
+            let towards_0 = x as i64;
+            towards_0 - i64::from(towards_0 as f64 > x)
+        };
         let first = [1, 0].map(|c| cell(low[c]) - 1);
         let last = [1, 0].map(|c| cell(high[c]) + 1);
         let [rows, columns] = [0, 1].map(|c| (last[c] - first[c] + 1) as usize);

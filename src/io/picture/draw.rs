@@ -160,17 +160,27 @@ pub(super) fn range(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
     numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
 }
 
-/// The value that no more than a `share` of the whole lies above, of parts by their value and their size, which are sorted by it from the
-/// largest on.
+/// The value that no more than a `share` of the whole lies above, of parts by their value and their size. The parts are sorted as far as
+/// that takes.
 pub(super) fn quantile(parts: &mut [(f64, f64)], share: f64) -> Option<f64> {
-    parts.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
     let most = share * parts.iter().map(|part| part.1).sum::<f64>();
+    let falling = |a: &(f64, f64), b: &(f64, f64)| b.0.total_cmp(&a.0);
     let mut above = 0.0;
-    let reaches = |part: &&(f64, f64)| {
-        above += part.1;
-        above > most
-    };
-    parts.iter().find(reaches).map(|part| part.0)
+    let mut rest = parts;
+    while !rest.is_empty() {
+        let next = rest.len().min(rest.len() / 32 + 64);
+        rest.select_nth_unstable_by(next - 1, falling);
+        let (largest, others) = rest.split_at_mut(next);
+        largest.sort_unstable_by(falling);
+        for (value, size) in largest {
+            above += *size;
+            if above > most {
+                return Some(*value);
+            }
+        }
+        rest = others;
+    }
+    None
 }
 
 /// An axis: the range of its values, which may fall, and the ends of that on the page.
