@@ -159,7 +159,7 @@ const CERTIFIED: [u64; 2] = [255, 431];
 #[test]
 fn pairs_at_random_have_certificates_and_these_are_of_their_problems() {
     let (from, count) =
-        (number_from("SIGNORINI_PAIRS_FROM", 1), number_from("SIGNORINI_PAIRS", 60));
+        (number_from("SIGNORINI_PAIRS_FROM", 1), number_from("SIGNORINI_PAIRS", 40));
     let (mut certified, mut missed, mut at_rest, mut bounds) = (0, 0, 0, Vec::new());
     for seed in (from..from + count).chain(CERTIFIED) {
         let Drawn { kind, said, problem, method, .. } = drawn(seed);
