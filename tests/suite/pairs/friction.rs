@@ -14,27 +14,15 @@ use crate::common::{DEGREES, dense};
 
 /// Two unit blocks, the lower one of modulus 1; the upper one is pressed down, turned and dragged by its top.
 fn dragged(cells: [usize; 2], modulus: f64, friction: &Friction, swapped: bool) -> Problem {
-    let (lower, upper) = (rectangle([0.0, 0.0], [1.0, 1.0]), rectangle([0.0, 1.0], [1.0, 2.0]));
-    let block =
-        |name, n, modulus, map| Block { name, cells: [n, n], material: young(modulus, 0.3), map };
-    let mut sides = ["lower.top", "upper.bottom"];
-    if swapped {
-        sides.reverse();
-    }
-    let pair = Pair::new(sides[0], sides[1]).with_friction(friction.clone());
-    bodies(
-        &[block("lower", cells[0], 1.0, &lower), block("upper", cells[1], modulus, &upper)],
-        &[pair],
-    )
-    .with("lower.bottom", Condition::displacement(|_| 0.0, |[x, _]| 0.05 + 0.02 * (x - 0.5)))
-    .with("upper.top", Condition::displacement(|_| 0.03, |_| 0.0))
+    let materials = [1.0, modulus].map(|modulus| young(modulus, 0.3));
+    two_squares(cells, materials, between(swapped).with_friction(friction.clone()))
+        .with("lower.bottom", Condition::displacement(|_| 0.0, |[x, _]| 0.05 + 0.02 * (x - 0.5)))
+        .with("upper.top", Condition::displacement(|_| 0.03, |_| 0.0))
 }
 
 /// The lower block under a rigid obstacle that is dragged: it is dragged back.
 fn under_a_rough_obstacle(n: usize, friction: &Friction) -> Problem {
-    let lower = rectangle([0.0, 0.0], [1.0, 1.0]);
-    let block = Block { name: "lower", cells: [n, n], material: young(1.0, 0.3), map: &lower };
-    bodies(&[block], &[])
+    one_square(n)
         .with("lower.bottom", Condition::displacement(|_| -0.03, |[x, _]| 0.05 + 0.02 * (x - 0.5)))
         .with("lower.top", Condition::contact(|_| 0.0))
         .with_friction("lower.top", friction.clone())
@@ -329,16 +317,9 @@ fn are_mindlins(of: &[(Degree, [usize; 2], [f64; 2])]) {
 
 /// Two unit squares with lambda = mu = 1, the upper one so many times stiffer, clamped below.
 fn squares(cells: [usize; 2], ratio: f64, friction: Friction) -> Problem {
-    let (lower, upper) = (rectangle([0.0, 0.0], [1.0, 1.0]), rectangle([0.0, 1.0], [1.0, 2.0]));
-    let block = |name, n, stiffness, map| Block {
-        name,
-        cells: [n, n],
-        material: Material::lame(stiffness, stiffness, Plane::Strain),
-        map,
-    };
-    let blocks = [block("lower", cells[0], 1.0, &lower), block("upper", cells[1], ratio, &upper)];
-    let pair = Pair::new("lower.top", "upper.bottom").with_friction(friction);
-    bodies(&blocks, &[pair]).with("lower.bottom", Condition::clamped())
+    let materials = [1.0, ratio].map(|mu| Material::lame(mu, mu, Plane::Strain));
+    two_squares(cells, materials, between(false).with_friction(friction))
+        .with("lower.bottom", Condition::clamped())
 }
 
 #[test]
