@@ -73,7 +73,8 @@ def is_a_unit_test(entry):
 def test_of(entry):
     """Of which program the test of an entry is, as cargo is told, and its name there; nothing for a check of VERIFY.md."""
     if "unit" in entry:
-        return ("-p", CRATES[package(entry)], "--lib"), entry["unit"]
+        crate = CRATES[package(entry)]
+        return ("-p", "units") if crate == "signorini" else ("-p", crate, "--lib"), entry["unit"]
     if "program" in entry:
         return ("-p", "props", "--lib"), f"program::{entry['program']}::check"
     return (("--test", "suite"), entry["test"]) if "test" in entry else (None, None)

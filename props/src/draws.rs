@@ -3,7 +3,7 @@
 //!
 //! The seed is fixed unless the environment gives another one: `PROPS_SEED=random` draws one, `PROPS_SEED=<number>`
 //! takes that; a failure prints it. Each check draws from it and its own name, so no two see the same data. `PROPS_DRAWS=10` draws
-//! ten times as many for each statement and harness.
+//! ten times as many of everything.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -42,7 +42,7 @@ pub fn seed() -> u64 {
     })
 }
 
-/// How many times as many draws of statements and of harnesses there shall be: `PROPS_DRAWS`, or 1.
+/// How many times as many draws there shall be: `PROPS_DRAWS`, or 1.
 pub fn times() -> u32 {
     let asked = std::env::var("PROPS_DRAWS");
     asked.map_or(1, |text| text.parse().expect("PROPS_DRAWS is a number"))
@@ -122,7 +122,7 @@ pub fn hold<D: Debug>(
     classes: &[&'static str],
     predicate: impl Fn(&D) -> Verdict,
 ) -> Result<String, String> {
-    hold_until([ROUNDS, 1], cases, strategy, classes, predicate)
+    hold_until([ROUNDS, 1], times() * cases, strategy, classes, predicate)
 }
 
 /// The same in at most so many rounds, until so many draws met the hypothesis.
@@ -311,7 +311,7 @@ pub fn hold_exactly(statement: &Statement) -> Result<String, String> {
 /// As [`hold`].
 pub fn hold_in_doubles(statement: &Statement) -> Result<String, String> {
     let strategy = doubles(statement.variables.len());
-    hold(times() * DRAWS_OF_DOUBLES, strategy, statement.classes, |v| (statement.doubles)(v))
+    hold(DRAWS_OF_DOUBLES, strategy, statement.classes, |v| (statement.doubles)(v))
 }
 
 /// The control of [`hold_in_doubles`]: the conclusion that the statement names fails.

@@ -17,6 +17,42 @@ pub use kani::{any, assume};
 #[cfg(not(kani))]
 pub use stand_in::{Any, Harness, any, assume};
 
+use crate::numbers::Whole;
+
+/// Any finite double.
+pub fn finite() -> f64 {
+    let number: f64 = any();
+    assume(number.is_finite());
+    number
+}
+
+/// Any double but NaN.
+pub fn number() -> f64 {
+    let number: f64 = any();
+    assume(!number.is_nan());
+    number
+}
+
+/// Any whole number of a byte.
+pub fn byte() -> Whole {
+    Whole(i32::from(any::<i8>()))
+}
+
+/// 0 or 1.
+pub fn bit() -> i32 {
+    i32::from(any::<bool>())
+}
+
+/// Any whole number from -3 to 3.
+pub fn within_3() -> Whole {
+    Whole((2 * bit() + bit()) * (1 - 2 * bit()))
+}
+
+/// Any whole number from -7 to 7.
+pub fn within_7() -> Whole {
+    Whole((4 * bit() + 2 * bit() + bit()) * (1 - 2 * bit()))
+}
+
 /// Names functions as harnesses of the model checker, with their unwinding bound, and lists them for the stand-in.
 ///
 /// `holds name() { .. }` must hold for all values; `fails name([v, ..]) { .. }` is a false twin, which fails when

@@ -44,7 +44,7 @@ is not met), or *fails*. Other checks assemble on random bodies, solve, or compa
   these very files.
 - **all cases**: each of at most 2^20 cases is run. **draws**: a harness on random draws, *and no more is known*.
 
-Each harness of Kani has a false twin, which must fail. Receipts are in `props/receipts`, written by `.ci/kani_receipt.py`,
+Each harness of Kani has a false twin, which must fail. Receipts are in `props/receipts`, written by `props receipt`,
 `.ci/rocq.py` and `.ci/smt.py`. The whole solver is compared with FEniCSx, which shares nothing with it but the case files
 (`reference/`): what the rows can't see. What the program promises beyond the paper is tested: enclosures and certificates beside
 exact rationals in `props/tests/program`, the rest in `tests/suite`. CONTRIBUTING.md says how engines are run and a row is added.

@@ -125,34 +125,7 @@ pub enum Answer {
 const ANSWERS: [(&str, Answer); 3] =
     [("verified", Answer::Verified), ("failed", Answer::Failed), ("no answer", Answer::NoAnswer)];
 
-/// One harness of a run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Run {
-    /// Its path in this crate.
-    pub harness: String,
-    /// The verdict.
-    pub answer: Answer,
-    /// How long it took, where that is known.
-    pub seconds: String,
-    /// How many conditions were decided, where that is known.
-    pub conditions: String,
-}
-
-/// One run of the model checker over the harnesses.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Receipt {
-    /// When: year-month-day, in UTC.
-    pub date: String,
-    /// Of which sources.
-    pub commit: String,
-    /// Versions and machine: a line for each.
-    pub head: Vec<String>,
-    /// The files that the answers hang on, each with its hash.
-    pub files: BTreeMap<String, String>,
-    /// The harnesses.
-    pub runs: Vec<Run>,
-}
-
+/// The columns of a receipt of the model checker. Seconds and conditions are empty where they are not known.
 const COLUMNS: [&str; 5] = ["harness", "expected", "verdict", "seconds", "conditions"];
 
 /// What is expected of a harness: a false twin must fail.
@@ -171,60 +144,59 @@ fn file_of(path: &str) -> String {
     format!("props/src/{}.rs", module.replace("::", "/"))
 }
 
-impl Receipt {
-    fn table(&self) -> Table {
-        let row = |run: &Run| {
-            let verdict = ANSWERS.iter().find(|(_, answer)| *answer == run.answer);
-            let verdict = verdict.map_or("", |(name, _)| name);
-            let Run { harness, seconds, conditions, .. } = run;
-            [harness, expected(harness), verdict, seconds, conditions].map(str::to_owned).into()
-        };
-        let rows = self.runs.iter().map(row).collect();
-        let mut head = self.head.clone();
-        head.push(format!("commit {}", self.commit));
-        head.extend(self.files.iter().map(|(file, hash)| format!("file {file} {hash}")));
-        Table { date: self.date.clone(), head, columns: COLUMNS.map(str::to_owned).into(), rows }
-    }
+/// One run of the model checker over the harnesses.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Receipt {
+    /// Versions and machine, the commit, and in the rows the [`COLUMNS`].
+    table: Table,
+    /// Of which sources.
+    commit: String,
+    /// The files that the answers hang on, each with its hash.
+    files: BTreeMap<String, String>,
+    /// The harnesses by their paths.
+    answers: BTreeMap<String, Answer>,
+}
 
-    /// A receipt as it is stored, or the table of a run before its files are added.
+impl Receipt {
+    /// A receipt as it is stored.
     ///
     /// # Errors
     /// A table without a commit, or with a row that is none of a receipt.
-    pub fn of(table: &Table) -> Result<Receipt, String> {
+    fn of(table: Table) -> Result<Receipt, String> {
         let wrong = |what: String| format!("kani-{}.tsv: no row of a receipt: {what}", table.date);
-        if !table.columns.starts_with(&COLUMNS.map(str::to_owned)) {
+        if table.columns != COLUMNS {
             return Err(wrong(table.columns.join(" ")));
         }
-        let run = |row: &Vec<String>| {
-            let answer = ANSWERS.into_iter().find(|(name, _)| *name == row[2]);
-            let (Some((_, answer)), true) = (answer, row[1] == expected(&row[0])) else {
-                return Err(wrong(row.join(" ")));
-            };
-            let [harness, seconds, conditions] = [0, 3, 4].map(|at| row[at].clone());
-            Ok(Run { harness, answer, seconds, conditions })
-        };
-        let runs = table.rows.iter().map(run).collect::<Result<_, _>>()?;
-        let mut receipt = Receipt { date: table.date.clone(), runs, ..Receipt::default() };
-        for line in &table.head {
-            match *line.split(' ').collect::<Vec<_>>() {
-                ["commit", commit] => receipt.commit = commit.to_owned(),
-                ["file", file, hash] => {
-                    receipt.files.insert(file.to_owned(), hash.to_owned());
+        let mut answers = BTreeMap::new();
+        for row in &table.rows {
+            match ANSWERS.into_iter().find(|(name, _)| *name == row[2]) {
+                Some((_, answer)) if row[1] == expected(&row[0]) => {
+                    answers.insert(row[0].clone(), answer);
                 }
-                _ => receipt.head.push(line.clone()),
+                _ => return Err(wrong(row.join(" "))),
             }
         }
-        if receipt.commit.is_empty() {
+        let (mut commit, mut files) = (String::new(), BTreeMap::new());
+        for line in &table.head {
+            match *line.split(' ').collect::<Vec<_>>() {
+                ["commit", of] => commit = of.to_owned(),
+                ["file", file, hash] => {
+                    files.insert(file.to_owned(), hash.to_owned());
+                }
+                _ => {}
+            }
+        }
+        if commit.is_empty() {
             return Err(format!("kani-{}.tsv: expected a line '# commit HASH'", table.date));
         }
-        Ok(receipt)
+        Ok(Receipt { table, commit, files, answers })
     }
 
-    /// A receipt from what Kani printed, one harness after the other.
+    /// A receipt from what Kani printed, one harness after the other; still without the files.
     ///
     /// # Errors
     /// A log without harnesses, or of several threads, which are mixed up.
-    pub fn from_log(date: &str, commit: &str, log: &str) -> Result<Receipt, String> {
+    fn from_log(date: &str, commit: &str, log: &str) -> Result<Receipt, String> {
         if log.lines().any(|line| line.starts_with("Thread ")) {
             return Err(
                 "the log of several threads is mixed up: run cargo kani without -j".to_owned()
@@ -233,17 +205,18 @@ impl Receipt {
         let version = |start: &str| log.lines().map(str::trim).find(|line| line.starts_with(start));
         let head = ["Kani Rust Verifier ", "CBMC "].into_iter().filter_map(version);
         let mut head: Vec<String> = head.map(str::to_owned).collect();
-        let runs: Vec<Run> = log.split("Checking harness ").skip(1).map(run).collect();
-        if runs.is_empty() {
+        let rows: Vec<Vec<String>> = log.split("Checking harness ").skip(1).map(row).collect();
+        if rows.is_empty() {
             return Err("no line of the log begins with 'Checking harness': \
                         it is the output of cargo kani that is needed"
                 .to_owned());
         }
-        let seconds: f64 = runs.iter().filter_map(|run| run.seconds.parse::<f64>().ok()).sum();
+        let seconds: f64 = rows.iter().filter_map(|row| row[3].parse::<f64>().ok()).sum();
         let (os, arch) = (std::env::consts::OS, std::env::consts::ARCH);
-        head.push(format!("{os} {arch}, {} harnesses in {seconds:.0} s", runs.len()));
-        let (date, commit) = (date.to_owned(), commit.to_owned());
-        Ok(Receipt { date, commit, head, files: BTreeMap::new(), runs })
+        head.push(format!("{os} {arch}, {} harnesses in {seconds:.0} s", rows.len()));
+        head.push(format!("commit {commit}"));
+        let columns = COLUMNS.map(str::to_owned).into();
+        Receipt::of(Table { date: date.to_owned(), head, columns, rows })
     }
 
     /// The files that the answers hang on, with their hashes in the commit of the run.
@@ -251,7 +224,7 @@ impl Receipt {
         let listed =
             git(&["ls-tree", "-r", "--name-only", &self.commit, "src/kernel", "props/src"])?;
         let of_harnesses: BTreeSet<String> =
-            self.runs.iter().map(|run| file_of(&run.harness)).collect();
+            self.answers.keys().map(|path| file_of(path)).collect();
         let files = listed.lines().filter(|file| is_shared(file) || of_harnesses.contains(*file));
         let hashed = |file: &str| {
             let text = git(&["show", &format!("{}:{file}", self.commit)])?;
@@ -270,7 +243,8 @@ impl Receipt {
     /// What it says of a harness, with the files that have changed since.
     fn standing(&self, path: &str, changed: &[String]) -> Standing {
         let name = own_name(path);
-        let Some(run) = self.runs.iter().find(|run| own_name(&run.harness) == name) else {
+        let Some((_, answer)) = self.answers.iter().find(|(known, _)| own_name(known) == name)
+        else {
             return Standing::Never;
         };
         let file = file_of(path);
@@ -278,7 +252,7 @@ impl Receipt {
         if moved || changed.iter().any(|changed| is_shared(changed) || *changed == file) {
             return Standing::Changed;
         }
-        Standing::Answered(run.answer)
+        Standing::Answered(*answer)
     }
 }
 
@@ -286,25 +260,22 @@ fn is_shared(file: &str) -> bool {
     SHARED.iter().any(|shared| file.starts_with(shared))
 }
 
-/// What Kani printed about one harness.
-fn run(block: &str) -> Run {
+/// What Kani printed about one harness, as a row.
+fn row(block: &str) -> Vec<String> {
     let after = |start: &str| block.lines().find_map(|line| line.trim().strip_prefix(start));
     let none = ["timed out", "CBMC failed", "Status: ERROR", "out of memory"];
-    let answer = match after("VERIFICATION:- ") {
-        _ if none.iter().any(|sign| block.contains(sign)) => Answer::NoAnswer,
-        Some(verdict) if verdict.starts_with("SUCCESSFUL") => Answer::Verified,
-        Some(_) => Answer::Failed,
-        None => Answer::NoAnswer,
+    let verdict = match after("VERIFICATION:- ") {
+        _ if none.iter().any(|sign| block.contains(sign)) => "no answer",
+        Some(verdict) if verdict.starts_with("SUCCESSFUL") => "verified",
+        Some(_) => "failed",
+        None => "no answer",
     };
     let seconds = after("Verification Time: ").and_then(|t| t.trim_end_matches('s').parse().ok());
+    let seconds = seconds.map_or(String::new(), |s: f64| format!("{s:.2}"));
     let conditions =
         after("** ").and_then(|rest| rest.split(" of ").nth(1)?.split(' ').next()).unwrap_or("");
-    Run {
-        harness: block.lines().next().unwrap_or_default().trim_end_matches('.').to_owned(),
-        answer,
-        seconds: seconds.map_or(String::new(), |s: f64| format!("{s:.2}")),
-        conditions: conditions.to_owned(),
-    }
+    let harness = block.lines().next().unwrap_or_default().trim_end_matches('.');
+    [harness, expected(harness), verdict, &seconds, conditions].map(str::to_owned).into()
 }
 
 /// What the newest receipt says of a harness.
@@ -322,7 +293,7 @@ pub enum Standing {
 fn newest() -> &'static (Receipt, Vec<String>) {
     static NEWEST: OnceLock<(Receipt, Vec<String>)> = OnceLock::new();
     NEWEST.get_or_init(|| {
-        let receipt = Table::newest("kani-").and_then(|table| Receipt::of(&table));
+        let receipt = Table::newest("kani-").and_then(Receipt::of);
         let receipt = receipt.unwrap_or_else(|why| panic!("props/receipts: {why}"));
         let changed = receipt.changed();
         (receipt, changed)
@@ -338,8 +309,8 @@ pub fn standing(harness: &Harness) -> Standing {
 /// What the newest receipt says of these harnesses, as a sentence of `VERIFY.md`.
 pub fn said(harnesses: &[Harness]) -> String {
     let (receipt, changed) = newest();
-    let Receipt { date, commit, runs, .. } = receipt;
-    let known = |answer| runs.iter().filter(|run| run.answer == answer).count();
+    let Receipt { table: Table { date, .. }, commit, answers, .. } = receipt;
+    let known = |answer| answers.values().filter(|known| **known == answer).count();
     let standing = harnesses
         .iter()
         .filter(|harness| standing(harness) == Standing::Answered(Answer::Verified));
@@ -347,7 +318,7 @@ pub fn said(harnesses: &[Harness]) -> String {
     format!(
         "{} harnesses were run at `{}` on {date}: {} as expected, {} not, {} without an answer; changed since: {since}. That \
          stands behind {} of the {} harnesses of today; the others count as draws.",
-        runs.len(),
+        answers.len(),
         &commit[..commit.len().min(7)],
         known(Answer::Verified),
         known(Answer::Failed),
@@ -370,42 +341,36 @@ pub fn is_decided(harness: &Harness) -> bool {
     })
 }
 
-/// Writes the receipt of a run and answers where. `log` is what `cargo kani` printed, of the commit that is checked out; or the
-/// table `kani-DATE.tsv` of a run elsewhere, with its commit.
+/// Writes the receipt of a run and answers where. `log` is what `cargo kani` printed, of the commit that is checked out.
 ///
 /// # Errors
 /// A log that is none, sources that are not those of the commit or are newer than the log, and a commit that git does not have.
 pub fn make(log: &Path) -> io::Result<PathBuf> {
     let at = |why: io::Error| io::Error::new(why.kind(), format!("{}: {why}", log.display()));
     let text = std::fs::read_to_string(log).map_err(at)?;
-    let name = log.file_name().unwrap_or_default().to_string_lossy();
-    let receipt = match dated(&name, "kani-") {
-        Some(date) => Table::parse(date, &text).and_then(|table| Receipt::of(&table)),
-        None => {
-            let changes = git(&["status", "--porcelain", "--", "src/kernel", "props/src"])?;
-            if !changes.is_empty() {
-                return Err(io::Error::other(format!(
-                    "these files are not those of the commit; commit them and run cargo kani again:\n{changes}"
-                )));
-            }
-            let commit = git(&["rev-parse", "HEAD"])?.trim().to_owned();
-            let path = std::path::absolute(log)?.display().to_string();
-            let written = output("date", &["-u", "-r", &path, "+%s %F"])?;
-            let (seconds, date) = written.trim().split_once(' ').unwrap_or_default();
-            let committed = git(&["log", "-1", "--format=%ct"])?;
-            if committed.trim().parse::<u64>().ok() > seconds.parse().ok() {
-                return Err(io::Error::other(format!(
-                    "{} is older than the commit {commit}: run cargo kani again",
-                    log.display()
-                )));
-            }
-            Receipt::from_log(date, &commit, &text)
-        }
-    };
-    let mut receipt = receipt.map_err(io::Error::other)?;
-    receipt.files = receipt.files_of_the_commit()?;
-    let path = root().join(format!("props/receipts/kani-{}.tsv", receipt.date));
-    std::fs::write(&path, receipt.table().text())?;
+    let changes = git(&["status", "--porcelain", "--", "src/kernel", "props/src"])?;
+    if !changes.is_empty() {
+        return Err(io::Error::other(format!(
+            "these files are not those of the commit; commit them and run cargo kani again:\n{changes}"
+        )));
+    }
+    let commit = git(&["rev-parse", "HEAD"])?.trim().to_owned();
+    let path = std::path::absolute(log)?.display().to_string();
+    let written = output("date", &["-u", "-r", &path, "+%s %F"])?;
+    let (seconds, date) = written.trim().split_once(' ').unwrap_or_default();
+    let committed = git(&["log", "-1", "--format=%ct"])?;
+    if committed.trim().parse::<u64>().ok() > seconds.parse().ok() {
+        return Err(io::Error::other(format!(
+            "{} is older than the commit {commit}: run cargo kani again",
+            log.display()
+        )));
+    }
+    let receipt = Receipt::from_log(date, &commit, &text).map_err(io::Error::other)?;
+    let files = receipt.files_of_the_commit()?;
+    let mut table = receipt.table;
+    table.head.extend(files.iter().map(|(file, hash)| format!("file {file} {hash}")));
+    let path = root().join(format!("props/receipts/kani-{date}.tsv"));
+    std::fs::write(&path, table.text())?;
     Ok(path)
 }
 
@@ -453,21 +418,17 @@ Checking harness claims::a::ended...
 
     #[test]
     fn a_log_of_kani_becomes_a_receipt_and_the_receipt_is_read_as_it_was() {
-        let receipt = receipt();
-        let found: Vec<_> =
-            receipt.runs.iter().map(|r| (r.answer, &*r.seconds, &*r.conditions)).collect();
-        use Answer::{Failed, NoAnswer, Verified};
-        let expected = [
-            (Verified, "0.45", "36"),
-            (Verified, "12.50", "35"),
-            (Failed, "1.00", "5"),
-            (NoAnswer, "", ""),
-            (NoAnswer, "", ""),
-        ];
-        assert_eq!(found, expected);
-        let text = receipt.table().text();
-        assert!(text.contains("claims::a::control_fails\tshould_panic\tverified\t12.50\t35\n"));
-        let read = |text: &str| Receipt::of(&Table::parse("2026-11-21", text)?);
+        let receipt = Receipt::from_log("2026-11-21", "c0ffee", LOG).expect("a log");
+        let text = receipt.table.text();
+        let rows = "\
+claims::a::holds\tsuccess\tverified\t0.45\t36
+claims::a::control_fails\tshould_panic\tverified\t12.50\t35
+claims::a::wrong\tsuccess\tfailed\t1.00\t5
+claims::a::slow\tsuccess\tno answer\t\t
+claims::a::ended\tsuccess\tno answer\t\t
+";
+        assert!(text.ends_with(rows), "{text}");
+        let read = |text: &str| Receipt::of(Table::parse("2026-11-21", text)?);
         assert_eq!(read(&text), Ok(receipt));
         assert!(read(&text.replace("should_panic", "success")).is_err());
         assert!(read(&text.replace("verified", "perhaps")).is_err());
@@ -503,9 +464,9 @@ Checking harness claims::a::ended...
     fn the_receipt_has_the_hashes_of_its_commit_and_refutes_no_harness() {
         let (receipt, _) = newest();
         let mut seen = BTreeSet::new();
-        for run in &receipt.runs {
-            assert!(seen.insert(own_name(&run.harness)), "{} is there twice", run.harness);
-            assert!(run.answer != Answer::Failed, "{} is refuted", run.harness);
+        for (path, answer) in &receipt.answers {
+            assert!(seen.insert(own_name(path)), "{path} is there twice");
+            assert!(*answer != Answer::Failed, "{path} is refuted");
         }
         assert!(receipt.files.keys().any(|file| file == "src/kernel/positive_part.rs"));
         // A shallow clone and an unpacked archive do not have the commit.

@@ -23,9 +23,9 @@ use signorini::results::Solution;
 use signorini::solve::{Gamma0, Method, Settings, discretize, solve};
 use study::Ladder;
 
-/// The bounds on three levels of a ladder, each of which is above the true error of the same field, by less than a factor.
-fn bounds(what: &str, ladder: &Ladder, limit: f64) -> [f64; 3] {
-    [0, 1, 2].map(|level| {
+/// The bounds on so many levels of a ladder, each of which is above the true error of the same field, by less than a factor.
+fn bounds<const LEVELS: usize>(what: &str, ladder: &Ladder, limit: f64) -> [f64; LEVELS] {
+    std::array::from_fn(|level| {
         let (_, problem, solution) = ladder.solve(level).unwrap();
         let certified = certify(&problem, &solution).unwrap();
         let error = error_of(&problem, &ladder.solution, &certified.displacement);
@@ -43,10 +43,10 @@ fn bounds(what: &str, ladder: &Ladder, limit: f64) -> [f64; 3] {
 fn bounds_of_singular_solutions(degree: Degree, limit: f64) {
     for c in [0.5, 1.0 / 3.0] {
         let ladder = on_square(&singular(c), degree, 8);
-        bounds(&format!("(b) c = {c}"), &ladder, limit);
-        bounds(&format!("(b) c = {c} moved"), &moved(ladder), limit);
+        bounds::<2>(&format!("(b) c = {c}"), &ladder, limit);
+        bounds::<2>(&format!("(b) c = {c} moved"), &moved(ladder), limit);
     }
-    bounds("(c)", &on_trapezoid(&corner(0.75).0, 0.75, degree, 8), 3.0);
+    bounds::<2>("(c)", &on_trapezoid(&corner(0.75).0, 0.75, degree, 8), 3.0);
 }
 
 #[test]
@@ -56,7 +56,7 @@ fn the_bound_is_above_the_error_and_below_twice_or_at_a_corner_thrice_the_error(
         ("(a) 4 3", smooth(4.0, 3.0, 1.0 / 3.0)),
         ("(a) 4 3 with a gap", smooth_with_gap()),
     ] {
-        bounds(what, &on_square(&solution, Degree::One, 8), 2.0);
+        bounds::<2>(what, &on_square(&solution, Degree::One, 8), 2.0);
     }
     bounds_of_singular_solutions(Degree::One, 2.0);
 }
@@ -73,7 +73,7 @@ fn the_bound_of_p2_falls_with_h_squared_and_is_below_twice_or_thrice_the_error()
         assert!((1.9..2.2).contains(&rate), "{what}: {rate}");
     }
     // The body force jumps inside triangles: above the error, and not of its order.
-    bounds("(a) 3 2", &on_square(&smooth(3.0, 2.0, 1.0 / 3.0), Degree::Two, 8), 5.0);
+    bounds::<2>("(a) 3 2", &on_square(&smooth(3.0, 2.0, 1.0 / 3.0), Degree::Two, 8), 5.0);
     bounds_of_singular_solutions(Degree::Two, 3.0);
 }
 

@@ -85,6 +85,26 @@ fn bodies(blocks: &[Block], pairs: &[Pair]) -> Problem {
     pairs.iter().fold(problem, |problem, pair| problem.with_pair(pair.clone()))
 }
 
+/// Two unit squares, the one on the other, with so many cells along each side.
+fn two_squares(cells: [usize; 2], materials: [Material<f64>; 2], pair: Pair) -> Problem {
+    let (lower, upper) = (rectangle([0.0, 0.0], [1.0, 1.0]), rectangle([0.0, 1.0], [1.0, 2.0]));
+    let block =
+        |name, i: usize, map| Block { name, cells: [cells[i]; 2], material: materials[i], map };
+    bodies(&[block("lower", 0, &lower), block("upper", 1, &upper)], &[pair])
+}
+
+/// Their pair, its sides in either order.
+fn between(swapped: bool) -> Pair {
+    let [first, second] = ["lower.top", "upper.bottom"];
+    if swapped { Pair::new(second, first) } else { Pair::new(first, second) }
+}
+
+/// The lower one of modulus 1 by itself.
+fn one_square(n: usize) -> Problem {
+    let lower = rectangle([0.0, 0.0], [1.0, 1.0]);
+    bodies(&[Block { name: "lower", cells: [n, n], material: young(1.0, 0.3), map: &lower }], &[])
+}
+
 fn method(degree: Degree) -> Method {
     Method { degree, ..Method::default() }
 }

@@ -165,7 +165,7 @@ fn vanishes(sample: &Sample, terms: Terms) -> Verdict {
 
 /// The residual is zero at the exact solution.
 pub fn residual_vanishes() -> Outcome {
-    draws::hold(48, samples(), &CLASSES, |sample| vanishes(sample, OF_8))
+    draws::hold(24, samples(), &CLASSES, |sample| vanishes(sample, OF_8))
 }
 
 fn rejected(terms: Terms) -> Outcome {

@@ -3,12 +3,12 @@
 //! the order, so every double in the ball is one.
 //!
 //! That two sums of doubles are the same, or ordered, is more than a SAT solver can show: where it comes to that, numbers are
-//! whole. `src/kernel/tests/rounding.rs` draws doubles and has exact squares.
+//! whole. `props/tests/program/balls.rs` draws doubles and compares them with exact numbers.
 
 use signorini::kernel::ball::larger;
 use signorini::kernel::{Ball, DoubleDouble, Enclosing, PreciseBall, positive_part};
 
-use crate::harness::{any, assume};
+use crate::harness::{any, assume, bit};
 use crate::harnesses;
 
 /// A ball and one of its numbers, both of whole numbers: sums of them are exact.
@@ -17,10 +17,6 @@ fn whole_member() -> (Ball, f64) {
     assume(i32::from(off.unsigned_abs()) <= i32::from(radius));
     let (centre, off) = (f64::from(centre), f64::from(off));
     (Ball::around(centre, f64::from(radius)), centre + off)
-}
-
-fn bit() -> i32 {
-    i32::from(any::<bool>())
 }
 
 /// The same of numbers within 1.
@@ -135,45 +131,6 @@ harnesses! {
         let part = if centre <= 0.0 { Ball::from(0) } else { ball };
         assert!(contains(part, positive_part(x)));
     }
-    /// A product is rounded outwards. At given numbers: two products of doubles are more than a solver can compare.
-    holds products_of_balls_are_rounded_outwards_at_seven_pairs() {
-        for k in 1..8 {
-            let (x, y) = (f64::from(k) / 10.0, f64::from(2 * k - 9) / 3.0);
-            let product = Ball::exactly(x) * Ball::exactly(y);
-            assert!(product.lower() < x * y && x * y < product.upper());
-        }
-    }
-    /// The false twin: rounded to nearest.
-    fails control_products_of_balls_are_rounded_to_nearest_at_seven_pairs([]) {
-        for k in 1..8 {
-            let (x, y) = (f64::from(k) / 10.0, f64::from(2 * k - 9) / 3.0);
-            let product = Ball::exactly(x) * Ball::exactly(y);
-            assert!(product.lower() == x * y || x * y == product.upper());
-        }
-    }
-    /// Each quotient adds its rounding: 1/9/5/11/17 in balls has 1/8415, and so the double nearest to that.
-    holds four_quotients_of_balls_keep_their_roundings() {
-        let quotient = [9, 5, 11, 17].into_iter().fold(Ball::from(1), |q, d| q / Ball::from(d));
-        let nearest = 1.0 / 8415.0;
-        assert!(quotient.lower() <= nearest && nearest <= quotient.upper());
-    }
-    /// The false twin: the same quotients of doubles.
-    fails control_four_quotients_of_doubles_are_the_nearest([]) {
-        let quotient = Ball::exactly(1.0 / 9.0 / 5.0 / 11.0 / 17.0);
-        let nearest = 1.0 / 8415.0;
-        assert!(quotient.lower() <= nearest && nearest <= quotient.upper());
-    }
-    /// Radii are rounded upwards: to 1 the radius 2^-54 is added eight times.
-    holds radii_are_not_lost_in_eight_sums() within 10 {
-        let small = Ball::around(0.0, f64::EPSILON / 4.0);
-        let sum = (0..8).fold(Ball::around(0.0, 1.0), |sum, _| sum + small);
-        assert!(sum.upper() >= 1.0 + 2.0 * f64::EPSILON);
-    }
-    /// The false twin: radii rounded to nearest.
-    fails control_radii_are_rounded_to_nearest_in_eight_sums([]) within 10 {
-        let sum = (0..8).fold(1.0, |sum: f64, _| sum + f64::EPSILON / 4.0);
-        assert!(sum >= 1.0 + 2.0 * f64::EPSILON);
-    }
     /// The radius of a product has r s, too.
     holds products_of_balls_contain_the_products_of_their_ends_within_3() {
         let whole = || f64::from(2 * bit() + bit());
@@ -211,27 +168,6 @@ harnesses! {
     fails control_doubles_keep_what_a_sum_loses_for_all_i8([1.0, 1.0]) {
         let (a, b) = (f64::from(any::<i8>()), f64::from(any::<i8>()) * (f64::EPSILON / 4.0));
         assert!((a + b) - a == b);
-    }
-    /// A product of two doubles is exact: 2^27 + 1 and 2^27 - 1 have the product 2^54 - 1.
-    holds double_doubles_keep_the_last_digit_of_a_product() {
-        let product = DoubleDouble::product(134_217_729.0, 134_217_727.0);
-        assert!(product.head() == 18_014_398_509_481_984.0 && product.tail() == -1.0);
-        let thirds = DoubleDouble::product(1.0 / 3.0, 3.0);
-        assert!(thirds.head() == 1.0 && thirds.tail() == -f64::EPSILON / 4.0);
-    }
-    /// The false twin: the head alone.
-    fails control_doubles_keep_the_last_digit_of_a_product([]) {
-        assert!(DoubleDouble::product(1.0 / 3.0, 3.0).tail() == 0.0);
-    }
-    /// Products one after the other keep the roundings of all of them: X^N in doubles is two doubles off.
-    holds products_of_balls_keep_the_roundings_of_nine_products() within 14 {
-        let power = (0..9).fold(Ball::from(1), |power, _| power * Ball::point(1.3));
-        assert!(power.lower() <= 10.604499373000003 && 10.604499373000003 <= power.upper());
-    }
-    /// The false twin: doubles do.
-    fails control_doubles_keep_the_roundings_of_nine_products([]) within 14 {
-        let power = (0..9).fold(1.0, |power: f64, _| power * 1.3);
-        assert!(power == 10.604499373000003);
     }
     /// The larger of two bounds is no bound where one is no number.
     holds larger_of_two_bounds_is_not_below_either_for_all_doubles() {

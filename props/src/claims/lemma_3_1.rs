@@ -8,7 +8,7 @@
 use signorini::kernel::{ContactPoint, positive_part};
 
 use super::prop_2_1::{conditions_2, touching};
-use crate::harness::{any, assume};
+use crate::harness::{assume, within_3, within_7};
 use crate::numbers::Whole;
 use crate::verdict::{Ordered, Verdict};
 use crate::{ensure, given, harnesses};
@@ -46,33 +46,29 @@ pub fn control_theta_minus_one_in_6<S: Ordered>(v: [S; 6]) -> Verdict {
     rearranged(v, S::from(-1))
 }
 
-fn bit() -> i32 {
-    i32::from(any::<bool>())
+/// A point that the obstacle touches, and a test function there.
+fn touched() -> [ContactPoint<Whole>; 2] {
+    let point = touching(within_3);
+    let test = ContactPoint { u_n: within_7(), gap: Whole(0), sigma_n: within_7(), ..point };
+    [point, test]
 }
 
-fn within_3() -> Whole {
-    Whole((2 * bit() + bit()) * (1 - 2 * bit()))
-}
-
-fn within_7() -> Whole {
-    Whole((4 * bit() + 2 * bit() + bit()) * (1 - 2 * bit()))
+/// Whether the contact terms of (8) are -int sigma_n(u) v_n (times gamma): \[P(u)\]+ P(v) - gamma^2 s t = -gamma s v.
+fn are_consistent([point, test]: &[ContactPoint<Whole>; 2]) -> bool {
+    let s = point.gamma * point.sigma_n;
+    positive_part(point.p()) * test.p0() - s * point.gamma * test.sigma_n == -(s * test.u_n)
 }
 
 harnesses! {
-    /// The contact terms of (8) at an exact solution are -int sigma_n(u) v_n (times gamma): \[P(u)\]+ P(v) - gamma^2 s t = -gamma s v.
+    /// The contact terms of (8) at an exact solution.
     holds contact_terms_are_consistent_where_2_holds_within_7() {
-        let point = touching(within_3);
-        let test = ContactPoint { u_n: within_7(), gap: Whole(0), sigma_n: within_7(), gamma: point.gamma };
-        assume(conditions_2(&point));
-        let s = point.gamma * point.sigma_n;
-        assert!(positive_part(point.p()) * test.p0() - s * point.gamma * test.sigma_n == -(s * test.u_n));
+        let points = touched();
+        assume(conditions_2(&points[0]));
+        assert!(are_consistent(&points));
     }
     /// The false twin: whatever the point.
     fails control_contact_terms_are_consistent_everywhere_within_7([0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]) {
-        let point = touching(within_3);
-        let test = ContactPoint { u_n: within_7(), gap: Whole(0), sigma_n: within_7(), gamma: point.gamma };
-        let s = point.gamma * point.sigma_n;
-        assert!(positive_part(point.p()) * test.p0() - s * point.gamma * test.sigma_n == -(s * test.u_n));
+        assert!(are_consistent(&touched()));
     }
 }
 

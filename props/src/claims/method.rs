@@ -5,7 +5,7 @@ use signorini::kernel::contact_edge::integral_of_product;
 use signorini::kernel::edge_integral::{ExactEdge, positive_interval, value_at};
 use signorini::kernel::{P1, positive_part};
 
-use crate::harness::{any, assume};
+use crate::harness::{any, assume, bit};
 use crate::numbers::Whole;
 use crate::verdict::{Ordered, Verdict};
 use crate::{ensure, given, harnesses};
@@ -115,24 +115,19 @@ pub fn control_edge_not_cut<S: Ordered>(p: [S; 2]) -> Verdict {
     Verdict::Holds(class(p))
 }
 
-/// 0 or 1.
-fn bit() -> Whole {
-    Whole(i32::from(any::<bool>()))
-}
-
 harnesses! {
     /// Six times the integral of a product of two affine functions, by the mass matrix. It has degree 1 in each value, so
     /// the grid decides for all.
     holds integral_of_a_product_is_the_mass_matrix_on_the_unit_grid() {
         let (six, two) = (Whole(6), Whole(2));
-        let [a, b, c, d] = [bit(), bit(), bit(), bit()];
+        let [a, b, c, d] = [bit(), bit(), bit(), bit()].map(Whole);
         let integral = integral_of_product([six * a, six * b], [c, d]);
         assert!(integral == two * a * c + a * d + b * c + two * b * d);
     }
     /// The false twin: lumped.
     fails control_integral_of_a_product_is_lumped_on_the_unit_grid([1.0, 0.0, 0.0, 1.0]) {
         let (six, three) = (Whole(6), Whole(3));
-        let [a, b, c, d] = [bit(), bit(), bit(), bit()];
+        let [a, b, c, d] = [bit(), bit(), bit(), bit()].map(Whole);
         assert!(integral_of_product([six * a, six * b], [c, d]) == three * a * c + three * b * d);
     }
     /// Where P has no root inside, its positive interval is all of the edge or nothing, without a division.

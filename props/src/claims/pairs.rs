@@ -376,7 +376,7 @@ fn hold(predicate: Predicate) -> Outcome {
     let of = |cases: u32, degree: Degree| {
         draws::hold(cases, pairs(), &CLASSES, |draw| predicate(draw, degree, Mistake::None))
     };
-    Ok(format!("{}; P2: {}", of(40, Degree::One)?, of(10, Degree::Two)?))
+    Ok(format!("{}; P2: {}", of(20, Degree::One)?, of(5, Degree::Two)?))
 }
 
 fn reject(predicate: Predicate, mistake: Mistake) -> Outcome {

@@ -2,7 +2,7 @@
 
 use signorini::kernel::{positive_part, positive_part_slope};
 
-use crate::harness::{any, assume};
+use crate::harness::{any, assume, byte, finite, number};
 use crate::numbers::Whole;
 use crate::verdict::{Ordered, Verdict};
 use crate::{ensure, given, harnesses};
@@ -78,53 +78,44 @@ pub fn control_negative_part_for_the_positive_part<S: Ordered>([a]: [S; 1]) -> V
 harnesses! {
     /// a <= \[a\]+, \[a\]+ >= 0, idempotent.
     holds positive_part_is_an_upper_bound_for_all_finite_doubles() {
-        let a: f64 = any();
-        assume(a.is_finite());
+        let a = finite();
         let p = positive_part(a);
         assert!(a <= p && p >= 0.0 && positive_part(p) == p);
     }
     /// The false twin: \[a\]+ > 0.
     fails control_positive_part_is_positive_for_all_finite_doubles([0.0]) {
-        let a: f64 = any();
-        assume(a.is_finite());
+        let a = finite();
         assert!(positive_part(a) > 0.0);
     }
     /// The structure behind a \[a\]+ = \[a\]+^2: either factor is 0, or the two are the same double, bit for bit.
     holds positive_part_is_zero_or_the_number_itself_for_all_doubles_but_nan() {
-        let a: f64 = any();
-        assume(!a.is_nan());
+        let a = number();
         let p = positive_part(a);
         assert!(p.to_bits() == 0 || p.to_bits() == a.to_bits());
     }
     /// The false twin: always the number itself.
     fails control_positive_part_is_the_number_itself_for_all_doubles_but_nan([-1.0]) {
-        let a: f64 = any();
-        assume(!a.is_nan());
+        let a = number();
         assert!(positive_part(a).to_bits() == a.to_bits());
     }
     /// What is not positive gives +0, -0 too.
     holds positive_part_is_never_minus_zero_for_all_doubles_but_nan() {
-        let a: f64 = any();
-        assume(!a.is_nan());
+        let a = number();
         assert!(positive_part(a).is_sign_positive());
     }
     /// The false twin: by a test for negative.
     fails control_a_test_for_negative_gives_no_minus_zero_for_all_doubles_but_nan([-0.0]) {
-        let a: f64 = any();
-        assume(!a.is_nan());
+        let a = number();
         let part = if a < 0.0 { 0.0 } else { a };
         assert!(part.is_sign_positive());
     }
     /// \[a\]+ is the point of \[0, oo) nearest to a, where the products are exact.
     holds positive_part_is_the_projection_on_the_half_line_for_all_i8() {
-        let (a, m): (i8, i8) = (any(), any());
-        let v = [i32::from(a), i32::from(m)].map(Whole);
-        assert!(!positive_part_is_the_projection_on_the_half_line(v).fails());
+        assert!(!positive_part_is_the_projection_on_the_half_line([byte(), byte()]).fails());
     }
     /// The false twin: the nearest point of the whole line.
     fails control_positive_part_is_the_nearest_of_all_numbers_for_all_i8([-1.0, -1.0]) {
-        let (a, m): (i8, i8) = (any(), any());
-        let (a, m) = (Whole(i32::from(a)), Whole(i32::from(m)));
+        let (a, m) = (byte(), byte());
         let p = positive_part(a);
         assert!((m - p) * (a - p) <= Whole(0));
     }
@@ -143,37 +134,33 @@ harnesses! {
     }
     /// \[a\]+ - \[-a\]+ = a without rounding.
     holds positive_and_negative_part_add_up_for_all_finite_doubles() {
-        let a: f64 = any();
-        assume(a.is_finite());
+        let a = finite();
         assert!(positive_part(a) - positive_part(-a) == a);
         assert!(positive_part(a) == 0.0 || positive_part(-a) == 0.0);
     }
     /// The false twin: they are added.
     fails control_positive_plus_negative_part_is_the_number_for_all_finite_doubles([-1.0]) {
-        let a: f64 = any();
-        assume(a.is_finite());
+        let a = finite();
         assert!(positive_part(a) + positive_part(-a) == a);
     }
     /// The slope that Newton uses: 1 exactly where a > 0.
     holds slope_is_one_exactly_for_positive_doubles() {
-        let a: f64 = any();
-        assume(!a.is_nan());
+        let a = number();
         assert!(positive_part_slope(a) == if a > 0.0 { 1.0 } else { 0.0 });
     }
     /// The false twin: 1 at zero too.
     fails control_slope_is_one_for_all_nonnegative_doubles([0.0]) {
-        let a: f64 = any();
-        assume(!a.is_nan());
+        let a = number();
         assert!(positive_part_slope(a) == if a >= 0.0 { 1.0 } else { 0.0 });
     }
     /// a \[a\]+ = \[a\]+^2 as printed.
     holds number_times_positive_part_is_its_square_for_all_i8() {
-        let a = Whole(i32::from(any::<i8>()));
+        let a = byte();
         assert!(a * positive_part(a) == positive_part(a) * positive_part(a));
     }
     /// The false twin: a^2.
     fails control_number_times_positive_part_is_the_square_of_the_number_for_all_i8([-1.0]) {
-        let a = Whole(i32::from(any::<i8>()));
+        let a = byte();
         assert!(a * positive_part(a) == a * a);
     }
 }

@@ -6,8 +6,7 @@ use signorini::kernel::element::stiffness;
 use signorini::kernel::{ContactEdge, Material, P1, Plane, Triangle, positive_part};
 use signorini::nalgebra::Vector2;
 
-use crate::harness::{any, assume};
-use crate::numbers::Whole;
+use crate::harness::{assume, byte, finite};
 use crate::verdict::{Ordered, Verdict};
 use crate::{ensure, harnesses};
 
@@ -143,39 +142,35 @@ pub fn control_half_the_curvature<S: Ordered>([a, b]: [S; 2]) -> Verdict {
 harnesses! {
     /// a <= b implies \[a\]+ <= \[b\]+.
     holds positive_part_is_monotone_for_all_finite_doubles() {
-        let (a, b): (f64, f64) = (any(), any());
-        assume(a.is_finite() && b.is_finite() && a <= b);
+        let (a, b) = (finite(), finite());
+        assume(a <= b);
         assert!(positive_part(a) <= positive_part(b));
     }
     /// The false twin: strictly.
     fails control_positive_part_is_strictly_monotone_for_all_finite_doubles([-1.0, 0.0]) {
-        let (a, b): (f64, f64) = (any(), any());
-        assume(a.is_finite() && b.is_finite() && a < b);
+        let (a, b) = (finite(), finite());
+        assume(a < b);
         assert!(positive_part(a) < positive_part(b));
     }
     /// Lipschitz with ordered inputs: two subtractions compared.
     holds positive_part_is_lipschitz_for_all_ordered_finite_doubles() {
-        let (a, b): (f64, f64) = (any(), any());
-        assume(a.is_finite() && b.is_finite() && a <= b);
+        let (a, b) = (finite(), finite());
+        assume(a <= b);
         assert!(positive_part(b) - positive_part(a) <= b - a);
     }
     /// The false twin: equality.
     fails control_positive_part_keeps_distances_for_all_ordered_finite_doubles([-1.0, 0.0]) {
-        let (a, b): (f64, f64) = (any(), any());
-        assume(a.is_finite() && b.is_finite() && a <= b);
+        let (a, b) = (finite(), finite());
+        assume(a <= b);
         assert!(positive_part(b) - positive_part(a) == b - a);
     }
     /// The inequality as written, where its products are exact.
     holds inequality_of_theorem_3_3_for_all_i8() {
-        let (a, b): (i8, i8) = (any(), any());
-        let v = [i32::from(a), i32::from(b)].map(Whole);
-        assert!(!positive_parts_are_monotone(v).fails());
+        assert!(!positive_parts_are_monotone([byte(), byte()]).fails());
     }
     /// The false twin: turned.
     fails control_inequality_of_theorem_3_3_turned_for_all_i8([1.0, -1.0]) {
-        let (a, b): (i8, i8) = (any(), any());
-        let v = [i32::from(a), i32::from(b)].map(Whole);
-        assert!(!control_monotonicity_turned(v).fails());
+        assert!(!control_monotonicity_turned([byte(), byte()]).fails());
     }
 }
 

@@ -6,12 +6,10 @@
 use std::cell::RefCell;
 use std::cmp::Ordering;
 use std::fmt;
-use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use num_bigint::BigInt;
 use num_rational::BigRational;
-use num_traits::{Signed, ToPrimitive, Zero};
-use signorini::kernel::{Enclosing, Scalar};
+use num_traits::Signed;
 
 struct Arena {
     scope: u32,
@@ -106,31 +104,6 @@ impl From<i32> for Exact {
     }
 }
 
-macro_rules! operator {
-    ($operator:ident, $function:ident, $work:expr) => {
-        impl $operator for Exact {
-            type Output = Exact;
-
-            fn $function(self, other: Exact) -> Exact {
-                Exact::new(self.with_both(other, $work))
-            }
-        }
-    };
-}
-
-operator!(Add, add, |a, b| a + b);
-operator!(Sub, sub, |a, b| a - b);
-operator!(Mul, mul, |a, b| a * b);
-operator!(Div, div, |a, b| a / b);
-
-impl Neg for Exact {
-    type Output = Exact;
-
-    fn neg(self) -> Exact {
-        Exact::new(self.with(|a| -a))
-    }
-}
-
 impl PartialEq for Exact {
     fn eq(&self, other: &Exact) -> bool {
         self.with_both(*other, |a, b| a == b)
@@ -143,53 +116,13 @@ impl PartialOrd for Exact {
     }
 }
 
-signorini::entry_of_nalgebra!(Exact);
-
-impl Scalar for Exact {
-    fn split(
-        self,
-        nonpositive: impl FnOnce(Exact) -> Exact,
-        positive: impl FnOnce(Exact) -> Exact,
-    ) -> Exact {
-        if self.with(|a| a.is_negative() || a.is_zero()) {
-            nonpositive(self)
-        } else {
-            positive(self)
-        }
-    }
-}
-
-/// For the checker of certificates: the truth, but for roots.
-impl Enclosing for Exact {
-    fn exactly(value: f64) -> Exact {
-        Exact::of_double(value)
-    }
-
-    /// Below the root by less than 2^-200 over the denominator; exact for squares of fractions with that denominator.
-    fn sqrt(self) -> Exact {
-        let value = self.value();
-        let (numerator, denominator) = (value.numer(), value.denom());
-        let root: BigInt = ((numerator * denominator) << 400_u32).sqrt();
-        Exact::new(BigRational::new(root, denominator << 200_u32))
-    }
-
-    /// The next double.
-    fn upper(self) -> f64 {
-        let value = self.value();
-        let is_above = |x: f64| BigRational::from_float(x).is_none_or(|x| x >= value);
-        let mut x = value.to_f64().unwrap_or(f64::INFINITY);
-        while !is_above(x) {
-            x = x.next_up();
-        }
-        while is_above(x.next_down()) {
-            x = x.next_down();
-        }
-        x
-    }
-
-    fn lower(self) -> f64 {
-        -(-self).upper()
-    }
+super::number! { Exact:
+    + |a, b| Exact::new(a.with_both(b, |a, b| a + b));
+    - |a, b| Exact::new(a.with_both(b, |a, b| a - b));
+    * |a, b| Exact::new(a.with_both(b, |a, b| a * b));
+    / |a, b| Exact::new(a.with_both(b, |a, b| a / b));
+    neg |a| Exact::new(a.with(|a| -a));
+    nonpositive |a| a.with(|a| !a.is_positive());
 }
 
 impl fmt::Debug for Exact {
@@ -200,6 +133,8 @@ impl fmt::Debug for Exact {
 
 #[cfg(test)]
 mod tests {
+    use signorini::kernel::Scalar;
+
     use super::*;
 
     #[test]
@@ -216,18 +151,6 @@ mod tests {
             assert_eq!(answer, Exact::from(expected));
         }
         assert_eq!((-Exact::ratio(7, 2)).abs(), Exact::of_double(3.5));
-    }
-
-    #[test]
-    fn ends_are_the_next_doubles_and_roots_of_squares_are_exact() {
-        let third = Exact::ratio(1, 3);
-        assert!(Exact::of_double(third.lower()) < third && third < Exact::of_double(third.upper()));
-        assert_eq!(third.upper(), third.lower().next_up());
-        assert_eq!((Exact::of_double(-0.1).lower(), Exact::of_double(-0.1).upper()), (-0.1, -0.1));
-        assert_eq!(Exact::ratio(49, 4).sqrt(), Exact::ratio(7, 2));
-        let root = Exact::from(2).sqrt();
-        let next = root + Exact::of_double(2.0_f64.powi(-200));
-        assert!(root * root < Exact::from(2) && Exact::from(2) < next * next);
     }
 
     #[test]

@@ -6,9 +6,6 @@
 //! errors add up; with the magnitude of 1/b taken as |b|_sum / b^2, so do the products of magnitudes.
 
 use std::cmp::Ordering;
-use std::ops::{Add, Div, Mul, Neg, Sub};
-
-use signorini::kernel::Scalar;
 
 /// A number with the sum of the magnitudes of its terms.
 #[derive(Clone, Copy, Debug)]
@@ -42,54 +39,6 @@ impl From<i32> for Magnitude {
     }
 }
 
-impl Add for Magnitude {
-    type Output = Magnitude;
-
-    fn add(self, other: Magnitude) -> Magnitude {
-        Magnitude { value: self.value + other.value, sum: self.sum + other.sum, coordinate: false }
-    }
-}
-
-impl Sub for Magnitude {
-    type Output = Magnitude;
-
-    fn sub(self, other: Magnitude) -> Magnitude {
-        if self.coordinate && other.coordinate {
-            Magnitude::of_double(self.value - other.value)
-        } else {
-            self + -other
-        }
-    }
-}
-
-impl Mul for Magnitude {
-    type Output = Magnitude;
-
-    fn mul(self, other: Magnitude) -> Magnitude {
-        Magnitude { value: self.value * other.value, sum: self.sum * other.sum, coordinate: false }
-    }
-}
-
-impl Div for Magnitude {
-    type Output = Magnitude;
-
-    fn div(self, other: Magnitude) -> Magnitude {
-        Magnitude {
-            value: self.value / other.value,
-            sum: self.sum * other.sum / (other.value * other.value),
-            coordinate: false,
-        }
-    }
-}
-
-impl Neg for Magnitude {
-    type Output = Magnitude;
-
-    fn neg(self) -> Magnitude {
-        Magnitude { value: -self.value, coordinate: false, ..self }
-    }
-}
-
 impl PartialEq for Magnitude {
     fn eq(&self, other: &Magnitude) -> bool {
         self.sum == other.sum
@@ -104,16 +53,19 @@ impl PartialOrd for Magnitude {
     }
 }
 
-signorini::entry_of_nalgebra!(Magnitude);
-
-impl Scalar for Magnitude {
-    fn split(
-        self,
-        nonpositive: impl FnOnce(Magnitude) -> Magnitude,
-        positive: impl FnOnce(Magnitude) -> Magnitude,
-    ) -> Magnitude {
-        if self.sum <= 0.0 { nonpositive(self) } else { positive(self) }
-    }
+super::number! { Magnitude:
+    + |a, b| Magnitude { value: a.value + b.value, sum: a.sum + b.sum, coordinate: false };
+    - |a, b| match a.coordinate && b.coordinate {
+        true => Magnitude::of_double(a.value - b.value),
+        false => a + -b,
+    };
+    * |a, b| Magnitude { value: a.value * b.value, sum: a.sum * b.sum, coordinate: false };
+    / |a, b| {
+        let sum = a.sum * b.sum / (b.value * b.value);
+        Magnitude { value: a.value / b.value, sum, coordinate: false }
+    };
+    neg |a| Magnitude { value: -a.value, coordinate: false, ..a };
+    nonpositive |a| a.sum <= 0.0;
 }
 
 #[cfg(test)]

@@ -3,10 +3,6 @@
 //! Only for code that divides by nothing, or by a divisor that leaves no remainder; anything else panics, and so does
 //! an overflow.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
-
-use signorini::kernel::Scalar;
-
 /// An integer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Whole(
@@ -20,58 +16,17 @@ impl From<i32> for Whole {
     }
 }
 
-impl Add for Whole {
-    type Output = Whole;
-
-    fn add(self, other: Whole) -> Whole {
-        Whole(self.0 + other.0)
-    }
-}
-
-impl Sub for Whole {
-    type Output = Whole;
-
-    fn sub(self, other: Whole) -> Whole {
-        Whole(self.0 - other.0)
-    }
-}
-
-impl Mul for Whole {
-    type Output = Whole;
-
-    fn mul(self, other: Whole) -> Whole {
-        Whole(self.0 * other.0)
-    }
-}
-
-impl Div for Whole {
-    type Output = Whole;
-
-    fn div(self, other: Whole) -> Whole {
-        let quotient = self.0 / other.0;
-        assert!(quotient * other.0 == self.0);
+super::number! { Whole:
+    + |a, b| Whole(a.0 + b.0);
+    - |a, b| Whole(a.0 - b.0);
+    * |a, b| Whole(a.0 * b.0);
+    / |a, b| {
+        let quotient = a.0 / b.0;
+        assert!(quotient * b.0 == a.0);
         Whole(quotient)
-    }
-}
-
-impl Neg for Whole {
-    type Output = Whole;
-
-    fn neg(self) -> Whole {
-        Whole(-self.0)
-    }
-}
-
-signorini::entry_of_nalgebra!(Whole);
-
-impl Scalar for Whole {
-    fn split(
-        self,
-        nonpositive: impl FnOnce(Whole) -> Whole,
-        positive: impl FnOnce(Whole) -> Whole,
-    ) -> Whole {
-        if self.0 <= 0 { nonpositive(self) } else { positive(self) }
-    }
+    };
+    neg |a| Whole(-a.0);
+    nonpositive |a| a.0 <= 0;
 }
 
 #[cfg(test)]
@@ -84,7 +39,7 @@ mod tests {
     }
 
     #[test]
-    #[should_panic(expected = "quotient * other.0 == self.0")]
+    #[should_panic(expected = "quotient * b.0 == a.0")]
     fn a_remainder_panics() {
         let _ = Whole(7) / Whole(2);
     }

@@ -6,11 +6,9 @@
 use std::cell::RefCell;
 use std::cmp::Ordering;
 use std::fmt::Write;
-use std::ops::{Add, Div, Mul, Neg, Sub};
-
-use signorini::kernel::Scalar;
 
 use crate::Verdict;
+use crate::numbers::number;
 use crate::statement::Statement;
 
 #[derive(Default)]
@@ -86,31 +84,6 @@ impl From<i32> for Float {
     }
 }
 
-macro_rules! operator {
-    ($operator:ident, $function:ident, $name:literal) => {
-        impl $operator for Float {
-            type Output = Float;
-
-            fn $function(self, other: Float) -> Float {
-                applied($name, &[self, other])
-            }
-        }
-    };
-}
-
-operator!(Add, add, "fp.add RNE");
-operator!(Sub, sub, "fp.sub RNE");
-operator!(Mul, mul, "fp.mul RNE");
-operator!(Div, div, "fp.div RNE");
-
-impl Neg for Float {
-    type Output = Float;
-
-    fn neg(self) -> Float {
-        applied("fp.neg", &[self])
-    }
-}
-
 impl PartialEq for Float {
     fn eq(&self, other: &Float) -> bool {
         self.asked("fp.eq", *other)
@@ -147,16 +120,13 @@ impl PartialOrd for Float {
     }
 }
 
-signorini::entry_of_nalgebra!(Float);
-
-impl Scalar for Float {
-    fn split(
-        self,
-        nonpositive: impl FnOnce(Float) -> Float,
-        positive: impl FnOnce(Float) -> Float,
-    ) -> Float {
-        if self <= Float::from(0) { nonpositive(self) } else { positive(self) }
-    }
+number! { Float:
+    + |a, b| applied("fp.add RNE", &[a, b]);
+    - |a, b| applied("fp.sub RNE", &[a, b]);
+    * |a, b| applied("fp.mul RNE", &[a, b]);
+    / |a, b| applied("fp.div RNE", &[a, b]);
+    neg |a| applied("fp.neg", &[a]);
+    nonpositive |a| a <= Float::from(0);
 }
 
 /// The failing paths of a statement: the names of their files, and the problems. That of a statement that must hold is impossible; of

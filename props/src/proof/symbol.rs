@@ -10,13 +10,12 @@
 use std::cell::{Cell, RefCell};
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
-use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
-use signorini::kernel::Scalar;
 
 use super::polynomial::{Polynomial, integer};
+use crate::numbers::number;
 
 /// A set of signs: from the right, a bit for negative, for zero and for positive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -258,59 +257,6 @@ impl From<i32> for Sym {
     }
 }
 
-impl Add for Sym {
-    type Output = Sym;
-
-    fn add(self, other: Sym) -> Sym {
-        self.combined(other, |a, b| a + b)
-    }
-}
-
-impl Sub for Sym {
-    type Output = Sym;
-
-    fn sub(self, other: Sym) -> Sym {
-        self.combined(other, |a, b| a - b)
-    }
-}
-
-impl Mul for Sym {
-    type Output = Sym;
-
-    fn mul(self, other: Sym) -> Sym {
-        RUN.with_borrow_mut(|run| {
-            let product = run.value(self).times(run.value(other)).ok_or(TOO_LARGE);
-            run.keep_or_fail(product)
-        })
-    }
-}
-
-impl Neg for Sym {
-    type Output = Sym;
-
-    fn neg(self) -> Sym {
-        RUN.with_borrow_mut(|run| {
-            let value = -run.value(self);
-            run.keep(value)
-        })
-    }
-}
-
-impl Div for Sym {
-    type Output = Sym;
-
-    fn div(self, divisor: Sym) -> Sym {
-        RUN.with_borrow_mut(|run| {
-            let (a, b) = (run.value(self).clone(), run.value(divisor).clone());
-            let quotient = match run.inverse(&b) {
-                Some(inverse) => a.times(&inverse).ok_or(TOO_LARGE),
-                None => Err("division by zero"),
-            };
-            run.keep_or_fail(quotient)
-        })
-    }
-}
-
 impl PartialEq for Sym {
     fn eq(&self, other: &Sym) -> bool {
         self.ask(*other, Signs::ZERO)
@@ -345,16 +291,32 @@ impl PartialOrd for Sym {
     }
 }
 
-signorini::entry_of_nalgebra!(Sym);
-
-impl Scalar for Sym {
-    fn split(self, nonpositive: impl FnOnce(Sym) -> Sym, positive: impl FnOnce(Sym) -> Sym) -> Sym {
-        if self <= Sym::from(0) { nonpositive(self) } else { positive(self) }
-    }
+number! { Sym:
+    + |a, b| a.combined(b, |a, b| a + b);
+    - |a, b| a.combined(b, |a, b| a - b);
+    * |a, b| RUN.with_borrow_mut(|run| {
+        let product = run.value(a).times(run.value(b)).ok_or(TOO_LARGE);
+        run.keep_or_fail(product)
+    });
+    / |a, b| RUN.with_borrow_mut(|run| {
+        let (a, b) = (run.value(a).clone(), run.value(b).clone());
+        let quotient = match run.inverse(&b) {
+            Some(inverse) => a.times(&inverse).ok_or(TOO_LARGE),
+            None => Err("division by zero"),
+        };
+        run.keep_or_fail(quotient)
+    });
+    neg |a| RUN.with_borrow_mut(|run| {
+        let value = -run.value(a);
+        run.keep(value)
+    });
+    nonpositive |a| a <= Sym::from(0);
 }
 
 #[cfg(test)]
 mod tests {
+    use signorini::kernel::Scalar;
+
     use super::*;
 
     #[test]

@@ -11,14 +11,12 @@
 //! error itself. Where an edge is cut, u^h is irrational; one step makes a much better point u', whose own enclosure is so small
 //! that |u~ - u'| stands for the error.
 
-use signorini::solve::discretize_any;
-
 use props::claim::Outcome;
 use props::claims::one_solution::{
-    BETWEEN, Certificate, Certifier, Draw, IRRATIONAL, NARROW, P1, P1_BY_POINTS, P2_BY_POINTS,
-    Point, Rule, Solved, WIDE, power, problems,
+    Certificate, Certifier, Draw, IRRATIONAL, NARROW, P1, P2_BY_POINTS, Point, Rule, of_solved,
+    on_small_meshes, power, problems,
 };
-use props::discrete::{CUT, exactly};
+use props::discrete::exactly;
 use props::elimination::{dot, square};
 use props::numbers::Exact;
 use props::verdict::Verdict;
@@ -144,31 +142,12 @@ fn inside(
 }
 
 /// The solver's result on a drawn problem, certified: A is positive definite, and u^h is as near as (C0) to (C2) say.
-fn certified(draw: &Draw, (degree, quadrature): Rule, tenth: Option<Bound>) -> Verdict {
-    let Ok(solved) = Solved::new(draw, degree, quadrature) else {
-        return Verdict::Fails("the solver has no solution");
-    };
-    let Ok(d) = discretize_any(&solved.problem, &solved.method) else {
-        return Verdict::Fails("there is no discrete problem");
-    };
-    let (asked, nothing) = (Asked { share: 40, tenth }, |_: &[[Exact; 2]], _| Verdict::Holds(""));
-    let found = compared(&Certifier::new(&d), &exactly(&solved.u), asked, false, &[], nothing);
-    found.unwrap_or_else(Verdict::Fails)
-}
-
-fn on_small_meshes() -> Outcome {
-    let mut text = Vec::new();
-    for (cases, rule, most, gap, class) in [
-        (6, P1, [2, 2], WIDE, "open"),
-        (6, P1, [2, 2], NARROW, "pressed"),
-        (12, P1, [2, 2], BETWEEN, IRRATIONAL),
-        (4, P1_BY_POINTS, [2, 1], BETWEEN, CUT),
-        (4, P2_BY_POINTS, [1, 1], BETWEEN, CUT),
-    ] {
-        let drawn = problems(most, gap);
-        text.push(draws::hold(cases, drawn, &[class], |draw| certified(draw, rule, None))?);
-    }
-    Ok(text.join("; "))
+fn certified(draw: &Draw, rule: Rule, tenth: Option<Bound>) -> Verdict {
+    of_solved(draw, rule, |d, u| {
+        let (asked, nothing) =
+            (Asked { share: 40, tenth }, |_: &[[Exact; 2]], _| Verdict::Holds(""));
+        compared(&Certifier::new(d), &exactly(u), asked, false, &[], nothing)
+    })
 }
 
 /// A tenth of the right side of each bound in turn, in full contact, where u^h is rational.
@@ -184,6 +163,6 @@ fn a_tenth() -> Outcome {
 }
 
 checks! {
-    the_residual_bounds_the_distance_to_the_one_solution => on_small_meshes();
+    the_residual_bounds_the_distance_to_the_one_solution => on_small_meshes(|draw, rule| certified(draw, rule, None));
     control_a_tenth_of_the_radius_encloses => a_tenth();
 }

@@ -15,15 +15,13 @@ use signorini::proof::enclosure;
 use signorini::proof::enclosure::{Enclosure, Unproved, Verifier};
 use signorini::proof::intervals::Arithmetic;
 use signorini::proof::korn::Korn;
-use signorini::solve::{
-    ContactQuadrature, Gamma0, Method, Settings, SolveError, discretize_any, solve_discrete,
-};
+use signorini::solve::{Gamma0, Method, Settings, SolveError, discretize_any, solve_discrete};
 
 use super::{at_points, certified, pressed, rounding};
 use props::claim::{Outcome, noticed, text};
 use props::claims::one_solution::{
-    BETWEEN, Certifier, Draw, IRRATIONAL, NARROW, P1, P1_BY_POINTS, P2_BY_POINTS, Solved, WIDE,
-    power, problems, problems_by_contact, triangle,
+    Certifier, Draw, IRRATIONAL, NARROW, P1, P1_BY_POINTS, P2_BY_POINTS, Rule, of_solved,
+    on_small_meshes, power, problems, problems_by_contact, triangle,
 };
 use props::discrete::{CUT, Nodal, exactly};
 use props::elimination::square;
@@ -72,24 +70,29 @@ pub fn factor_of(system: &System, times: f64) -> Result<Factor, SolveError> {
 
 /// The solver's result on a drawn problem, certified in exact arithmetic, with the enclosures of the solver, in balls and in doubles:
 /// all contain the exact u^h, or a point whose own radius is a thousand times smaller.
-fn enclosed(degree: Degree, draw: &Draw, quadrature: ContactQuadrature, asked: Asked) -> Verdict {
-    let Ok(solved) = Solved::new(draw, degree, quadrature) else {
-        return Verdict::Fails("the solver has no solution");
-    };
-    let Ok(d) = discretize_any(&solved.problem, &solved.method) else {
-        return Verdict::Fails("there is no discrete problem");
-    };
+fn enclosed(draw: &Draw, rule: Rule, asked: Asked) -> Verdict {
+    of_solved(draw, rule, |d, u| around(d, u, draw, asked))
+}
+
+fn around(
+    d: &Discretization<'_>,
+    u: &[[f64; 2]],
+    draw: &Draw,
+    asked: Asked,
+) -> Result<Verdict, &'static str> {
     // Prescribed components too: the enclosure counts what they are off by.
-    let u = moved(&solved.u, asked.noise);
-    let reported = match reported(&d, &u, asked, draw) {
+    let u = moved(u, asked.noise);
+    let reported = match reported(d, &u, asked, draw) {
         Ok(reported) => reported,
-        Err(verdict) => return verdict,
+        Err(verdict) => return Ok(verdict),
     };
-    let (certifier, found) = (Certifier::new(&d), exactly(&u));
+    let (certifier, found) = (Certifier::new(d), exactly(&u));
     let scale = square(&certifier.k, &certifier.problem.free(&found));
     let radius = |of: &Enclosure| Exact::of_double(of.radius) * Exact::of_double(asked.factor);
     for (of, share) in &reported {
-        ensure!(radius(of) * radius(of) <= power(*share) * power(*share) * scale);
+        if !(radius(of) * radius(of) <= power(*share) * power(*share) * scale) {
+            return Err("a radius is at most 2^-share |u~|_a");
+        }
     }
     let radii: Vec<Exact> = reported.iter().map(|(of, _)| radius(of)).collect();
     let beside = |exact: &[[Exact; 2]], slack: Exact| {
@@ -105,8 +108,7 @@ fn enclosed(degree: Degree, draw: &Draw, quadrature: ContactQuadrature, asked: A
     };
     let of_certificate = certified::Asked { share: asked.share, tenth: None };
     let by_contact = draw.by_contact;
-    let found = certified::compared(&certifier, &found, of_certificate, by_contact, &radii, beside);
-    found.unwrap_or_else(Verdict::Fails)
+    certified::compared(&certifier, &found, of_certificate, by_contact, &radii, beside)
 }
 
 /// The enclosures of the solver, with the binary digits that their radii have less than |u~|_a. None where vertices are moved: on
@@ -208,19 +210,7 @@ fn quantities(
 }
 
 fn hold(asked: Asked) -> Outcome {
-    let mut text = Vec::new();
-    for (cases, (degree, quadrature), most, gap, class) in [
-        (6, P1, [2, 2], WIDE, "open"),
-        (6, P1, [2, 2], NARROW, "pressed"),
-        (12, P1, [2, 2], BETWEEN, IRRATIONAL),
-        (4, P1_BY_POINTS, [2, 1], BETWEEN, CUT),
-        (4, P2_BY_POINTS, [1, 1], BETWEEN, CUT),
-    ] {
-        text.push(draws::hold(cases, problems(most, gap), &[class], |draw| {
-            enclosed(degree, draw, quadrature, asked)
-        })?);
-    }
-    Ok(text.join("; "))
+    on_small_meshes(|draw, rule| enclosed(draw, rule, asked))
 }
 
 /// Draws of bodies that contact alone holds, around the result and around any point near it. Where an edge is open in part,
@@ -228,13 +218,13 @@ fn hold(asked: Asked) -> Outcome {
 fn reported_of_what_contact_holds() -> Outcome {
     let mut text = Vec::new();
     for asked in [RESULT, Asked { noise: 1e-4, ..MOVED }] {
-        for (cases, (degree, quadrature), most, steeper, classes) in [
+        for (cases, rule, most, steeper, classes) in [
             (3, P1, [2, 2], 6.0, &["pressed"][..]),
             (3, P1_BY_POINTS, [2, 2], 12.0, &["pressed", CUT]),
             (2, P2_BY_POINTS, [1, 1], 6.0, &["pressed"]),
         ] {
             text.push(draws::hold(cases, problems_by_contact(most, steeper), classes, |draw| {
-                enclosed(degree, draw, quadrature, asked)
+                enclosed(draw, rule, asked)
             })?);
         }
     }
@@ -244,9 +234,7 @@ fn reported_of_what_contact_holds() -> Outcome {
 /// A third of the radii there.
 fn a_third_of_what_contact_holds() -> Outcome {
     let asked = Asked { factor: 1.0 / 3.0, noise: 1e-4, ..MOVED };
-    draws::reject(problems_by_contact([2, 2], 6.0), |draw| {
-        enclosed(Degree::One, draw, ContactQuadrature::Exact, asked)
-    })
+    draws::reject(problems_by_contact([2, 2], 6.0), |draw| enclosed(draw, P1, asked))
 }
 
 /// A body on a round obstacle, so that directions of contact turn along each edge: the kappa that the enclosure proves is that
@@ -313,10 +301,9 @@ fn proved_kappa_on(
 /// In full contact, where u^h is rational and each of the bounds is looked at.
 fn rejected(asked: Asked) -> Outcome {
     let mut text = Vec::new();
-    for ((degree, quadrature), most) in [(P1, [2, 1]), (P2_BY_POINTS, [1, 1])] {
-        text.push(draws::reject(problems(most, NARROW), |draw| {
-            enclosed(degree, draw, quadrature, asked)
-        })?);
+    for (rule, most) in [(P1, [2, 1]), (P2_BY_POINTS, [1, 1])] {
+        let drawn = problems(most, NARROW);
+        text.push(draws::reject(drawn, |draw| enclosed(draw, rule, asked))?);
     }
     Ok(text.join("; "))
 }
@@ -335,7 +322,7 @@ fn on_a_finer_mesh() -> Outcome {
         kappa: 10,
         by_contact: false,
     };
-    Exact::scope(|| match enclosed(Degree::One, &draw, ContactQuadrature::Exact, RESULT) {
+    Exact::scope(|| match enclosed(&draw, P1, RESULT) {
         Verdict::Holds(IRRATIONAL) => Ok(format!("40 unknowns: {IRRATIONAL}")),
         other => Err(format!("{other:?}")),
     })

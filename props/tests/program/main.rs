@@ -36,6 +36,7 @@ mod geometry;
 mod material;
 mod pressed;
 mod quantities;
+mod rationals;
 mod refusals;
 mod rounding;
 mod sharpness;

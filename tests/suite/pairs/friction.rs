@@ -14,27 +14,15 @@ use crate::common::{DEGREES, dense};
 
 /// Two unit blocks, the lower one of modulus 1; the upper one is pressed down, turned and dragged by its top.
 fn dragged(cells: [usize; 2], modulus: f64, friction: &Friction, swapped: bool) -> Problem {
-    let (lower, upper) = (rectangle([0.0, 0.0], [1.0, 1.0]), rectangle([0.0, 1.0], [1.0, 2.0]));
-    let block =
-        |name, n, modulus, map| Block { name, cells: [n, n], material: young(modulus, 0.3), map };
-    let mut sides = ["lower.top", "upper.bottom"];
-    if swapped {
-        sides.reverse();
-    }
-    let pair = Pair::new(sides[0], sides[1]).with_friction(friction.clone());
-    bodies(
-        &[block("lower", cells[0], 1.0, &lower), block("upper", cells[1], modulus, &upper)],
-        &[pair],
-    )
-    .with("lower.bottom", Condition::displacement(|_| 0.0, |[x, _]| 0.05 + 0.02 * (x - 0.5)))
-    .with("upper.top", Condition::displacement(|_| 0.03, |_| 0.0))
+    let materials = [1.0, modulus].map(|modulus| young(modulus, 0.3));
+    two_squares(cells, materials, between(swapped).with_friction(friction.clone()))
+        .with("lower.bottom", Condition::displacement(|_| 0.0, |[x, _]| 0.05 + 0.02 * (x - 0.5)))
+        .with("upper.top", Condition::displacement(|_| 0.03, |_| 0.0))
 }
 
 /// The lower block under a rigid obstacle that is dragged: it is dragged back.
 fn under_a_rough_obstacle(n: usize, friction: &Friction) -> Problem {
-    let lower = rectangle([0.0, 0.0], [1.0, 1.0]);
-    let block = Block { name: "lower", cells: [n, n], material: young(1.0, 0.3), map: &lower };
-    bodies(&[block], &[])
+    one_square(n)
         .with("lower.bottom", Condition::displacement(|_| -0.03, |[x, _]| 0.05 + 0.02 * (x - 0.5)))
         .with("lower.top", Condition::contact(|_| 0.0))
         .with_friction("lower.top", friction.clone())
@@ -247,21 +235,21 @@ fn cylinders(cells: [usize; 2], drag: f64, mu: f64) -> Problem {
 
 #[test]
 fn dragged_cylinders_stick_and_slide_as_cattaneo_and_mindlin_say() {
-    // On 14 and 10 edges to a.
-    are_mindlins(&[(Degree::One, [68, 52], 0.033), (Degree::Two, [48, 36], 0.01)]);
+    // On 10 and 5 edges to a.
+    are_mindlins(&[(Degree::One, [48, 36], [0.05, 0.02]), (Degree::Two, [24, 18], [0.03, 0.01])]);
 }
 
 #[test]
 #[ignore = "half a minute: run by .ci/run"]
 fn dragged_cylinders_on_finer_meshes_stick_and_slide_as_cattaneo_and_mindlin_say() {
-    // On 24 edges to a.
-    are_mindlins(&[(Degree::One, [116, 88], 0.015)]);
+    // On 24 and 10 edges to a.
+    are_mindlins(&[(Degree::One, [116, 88], [0.015, 0.01]), (Degree::Two, [48, 36], [0.01, 0.01])]);
 }
 
-/// Of P1 and P2 on these cells; by moments what sticks is off by that much of c at most.
-fn are_mindlins(of: &[(Degree, [usize; 2], f64)]) {
+/// Of P1 and P2 on these cells; by moments what sticks, and the second moment of the shear stress, are off by that much at most.
+fn are_mindlins(of: &[(Degree, [usize; 2], [f64; 2])]) {
     let mu = 0.3;
-    for &(degree, cells, most) in of {
+    for &(degree, cells, [most, second_moment]) in of {
         let problem = cylinders(cells, 0.0033, mu);
         let s = proved(&problem, &method(degree));
         let [shear, force] = s.boundaries[0].resultant.map(f64::abs);
@@ -316,8 +304,11 @@ fn are_mindlins(of: &[(Degree, [usize; 2], f64)]) {
         // The shear stress is c - |x| to the power 1/2 above the bound there, and what sticks ends short of that by a part of an edge:
         // by half of one of the coarser body at most.
         let edge = 0.4 * 0.09 / (0.6 * cells[1] as f64 / 2.0);
-        assert!((stuck_on - c).abs() <= edge / 2.0 && off[1].abs() <= 1e-2, "{degree:?}: {off:?}");
-        // By moments c is short by a twenty-fifth of an edge of the coarser body with P2, by a fifth of one with P1.
+        assert!(
+            (stuck_on - c).abs() <= edge / 2.0 && off[1].abs() <= second_moment,
+            "{degree:?}: {off:?}"
+        );
+        // By moments c is short by a sixteenth of an edge of the coarser body with P2, by a quarter of one with P1.
         assert!(off[2].abs() <= most && off[0] < 1.2 * off[2], "{degree:?}: {off:?}");
         // The control: as if all of it slid.
         assert!((second / (mu * force * a * a / 4.0) - 1.0).abs() > 0.1);
@@ -326,16 +317,9 @@ fn are_mindlins(of: &[(Degree, [usize; 2], f64)]) {
 
 /// Two unit squares with lambda = mu = 1, the upper one so many times stiffer, clamped below.
 fn squares(cells: [usize; 2], ratio: f64, friction: Friction) -> Problem {
-    let (lower, upper) = (rectangle([0.0, 0.0], [1.0, 1.0]), rectangle([0.0, 1.0], [1.0, 2.0]));
-    let block = |name, n, stiffness, map| Block {
-        name,
-        cells: [n, n],
-        material: Material::lame(stiffness, stiffness, Plane::Strain),
-        map,
-    };
-    let blocks = [block("lower", cells[0], 1.0, &lower), block("upper", cells[1], ratio, &upper)];
-    let pair = Pair::new("lower.top", "upper.bottom").with_friction(friction);
-    bodies(&blocks, &[pair]).with("lower.bottom", Condition::clamped())
+    let materials = [1.0, ratio].map(|mu| Material::lame(mu, mu, Plane::Strain));
+    two_squares(cells, materials, between(false).with_friction(friction))
+        .with("lower.bottom", Condition::clamped())
 }
 
 #[test]
@@ -426,7 +410,7 @@ fn the_limits_of_round_bodies_are_those_of_dense_algebra() {
 fn near_a_solution_there_is_one_for_small_and_large_coefficients_after_few_factorisations() {
     let mut most = 0;
     for mu in [0.1, 0.3, 0.6, 1.0] {
-        for (cells, ratio) in [([7, 11], 1.0), ([14, 22], 10.0), ([22, 14], 1.0)] {
+        for (cells, ratio) in [([7, 11], 1.0), ([11, 14], 10.0), ([14, 11], 1.0)] {
             let problem = dragged(cells, ratio, &Friction::Coulomb(mu), false);
             let s = proved(&problem, &method(Degree::One));
             let enclosure = s.enclosure.as_ref().unwrap();
@@ -463,29 +447,29 @@ fn a_square_on_a_rough_obstacle_has_the_limits_of_another_program() {
 }
 
 #[test]
-fn few_factorisations_lead_to_a_solution_of_thirty_problems() {
-    are_few(&[0.1, 0.3, 1.0], [11, 7]);
+fn few_factorisations_lead_to_a_solution_of_eighteen_problems() {
+    are_few(&[0.1, 0.3, 1.0], &[8], &[([7, 11], 1.0), ([11, 7], 10.0)]);
 }
 
 #[test]
 #[ignore = "a quarter of a minute: run by .ci/run"]
 fn few_factorisations_lead_to_a_solution_of_fifty_problems() {
-    are_few(&[0.1, 0.2, 0.3, 0.6, 1.0], [14, 22]);
+    let pairs = [([7, 11], 1.0), ([7, 11], 10.0), ([14, 22], 10.0)];
+    are_few(&[0.1, 0.2, 0.3, 0.6, 1.0], &[8, 16], &pairs);
 }
 
-/// Five problems with each coefficient and degree, the last of two blocks of these cells.
-fn are_few(coefficients: &[f64], cells: [usize; 2]) {
+/// With each coefficient and degree a block of each of these numbers of cells on a floor, and two blocks of these cells and ratio of moduli.
+fn are_few(coefficients: &[f64], floors: &[usize], pairs: &[([usize; 2], f64)]) {
     let mut counts = [Vec::new(), Vec::new()];
     for (degree, counts) in DEGREES.into_iter().zip(&mut counts) {
         for &mu in coefficients {
             let friction = Friction::Coulomb(mu);
-            let floor = |n| (format!("{n} cells"), under_a_rough_obstacle(n, &friction));
-            let pair = |(cells, ratio)| {
+            let floor = |&n: &usize| (format!("{n} cells"), under_a_rough_obstacle(n, &friction));
+            let pair = |&(cells, ratio): &([usize; 2], f64)| {
                 let said = format!("{cells:?} cells, E2/E1 = {ratio}");
                 (said, dragged(cells, ratio, &friction, false))
             };
-            let pairs = [([7, 11], 1.0), ([7, 11], 10.0), (cells, 10.0)].map(pair);
-            for (said, problem) in [8, 16].map(floor).into_iter().chain(pairs) {
+            for (said, problem) in floors.iter().map(floor).chain(pairs.iter().map(pair)) {
                 let (s, _) = solve(&problem, &method(degree), &Settings::default()).unwrap();
                 let count = s.newton.factorizations;
                 println!("{degree:?}, {said}, mu = {mu}: {count}");

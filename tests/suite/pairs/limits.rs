@@ -8,26 +8,14 @@ use crate::common::DEGREES;
 
 /// Two unit blocks, the lower one of modulus 1, pressed and tilted from below; the upper one stands still.
 fn tilted(cells: [usize; 2], modulus: f64, swapped: bool) -> Problem {
-    let (lower, upper) = (rectangle([0.0, 0.0], [1.0, 1.0]), rectangle([0.0, 1.0], [1.0, 2.0]));
-    let block =
-        |name, n, modulus, map| Block { name, cells: [n, n], material: young(modulus, 0.3), map };
-    let mut sides = ["lower.top", "upper.bottom"];
-    if swapped {
-        sides.reverse();
-    }
-    bodies(
-        &[block("lower", cells[0], 1.0, &lower), block("upper", cells[1], modulus, &upper)],
-        &[Pair::new(sides[0], sides[1])],
-    )
-    .with("lower.bottom", Condition::displacement(|_| 0.0, |[x, _]| 0.05 + 0.1 * (x - 0.5)))
-    .with("upper.top", Condition::clamped())
+    two_squares(cells, [1.0, modulus].map(|modulus| young(modulus, 0.3)), between(swapped))
+        .with("lower.bottom", Condition::displacement(|_| 0.0, |[x, _]| 0.05 + 0.1 * (x - 0.5)))
+        .with("upper.top", Condition::clamped())
 }
 
 /// The same lower block under a rigid obstacle.
 fn rigid(n: usize) -> Problem {
-    let lower = rectangle([0.0, 0.0], [1.0, 1.0]);
-    let block = Block { name: "lower", cells: [n, n], material: young(1.0, 0.3), map: &lower };
-    bodies(&[block], &[])
+    one_square(n)
         .with("lower.bottom", Condition::displacement(|_| 0.0, |[x, _]| 0.05 + 0.1 * (x - 0.5)))
         .with("lower.top", Condition::contact(|_| 0.0))
 }
