@@ -393,7 +393,7 @@ fn of_problem(problem: Option<&str>) -> String {
     problem.map_or(String::new(), |problem| format!(", of the problem with {problem}"))
 }
 
-/// What the summary of an audit says of the case that a certificate is of.
+/// The case that a certificate is of, in the summary of an audit.
 pub struct AuditedCase {
     /// Its file.
     pub file: PathBuf,

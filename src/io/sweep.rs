@@ -668,15 +668,6 @@ mod tests {
     }
 
     #[test]
-    fn the_last_axis_changes_first() {
-        let axes = [axis("a=1,2"), axis("b=3,4,5")];
-        assert_eq!(count(&axes).unwrap(), 6);
-        let runs: Vec<String> = combinations(&axes).iter().map(|values| values.join("")).collect();
-        assert_eq!(runs, ["13", "14", "15", "23", "24", "25"]);
-        assert_eq!(combinations(&[]), [Vec::<String>::new()]);
-    }
-
-    #[test]
     fn too_many_runs_and_a_key_on_two_axes_are_refused() {
         let many = axis(&format!("a={}", ["1"; 101].join(",")));
         let axes = [many.clone(), ParameterAxis { key: "b".to_owned(), ..many }];

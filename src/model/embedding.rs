@@ -391,18 +391,6 @@ mod tests {
     }
 
     #[test]
-    fn a_vertex_that_hangs_beside_an_edge_is_named_with_its_distance() {
-        let left = grid([1, 1], [0.0, 0.0], [1.0, 1.0], |x| x);
-        let right = grid([1, 2], [1.0, 0.0], [2.0, 1.0], |[x, y]| [x + 1e-6 * x * x, y - 0.1]);
-        let message = together(&[left, right]).unwrap_err().to_string();
-        assert_eq!(
-            message,
-            "vertex 6 at (1.000001, 0.4) hangs inside the edge between vertices 1 and 3 of triangle 0, \
-             1e-6 beside it: neighbours must share whole edges"
-        );
-    }
-
-    #[test]
     fn slots_that_are_meant_slivers_thin_strips_and_fine_meshes_beside_coarse_ones_are_no_seams() {
         let left = grid([2, 4], [0.0, 0.0], [1.0, 1.0], |x| x);
         let slot = |width: f64, n| grid([2, n], [1.0 + width, 0.0], [2.0, 1.0], |x| x);
