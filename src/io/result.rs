@@ -644,6 +644,14 @@ pub(super) mod tests {
     }
 
     #[test]
+    fn the_size_of_a_mesh_is_its_largest_diameter() {
+        let vertices = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [3.0, 4.0]];
+        let mesh = Mesh::new(vertices, vec![[0, 1, 2], [1, 3, 2]], []).unwrap();
+        let sizes = MeshSizes::new(&mesh, 9, 2);
+        assert_relative_eq!(sizes.h_max, 20.0_f64.sqrt());
+    }
+
+    #[test]
     fn a_nan_or_an_infinity_is_refused_by_its_path() {
         type Spoil = fn(&mut Results);
         let spoils: [(Spoil, &str); 5] = [
