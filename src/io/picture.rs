@@ -116,41 +116,31 @@ impl Drawn {
 
     /// The entries of the legend.
     fn entries<'w>(&self, scene: &Scene, magnified: &'w str) -> Vec<(Option<Group>, &'w str)> {
-        let dashed = |line: Group, dashes: &str| line.set("stroke-dasharray", dashes);
-        let when = |is_there: bool, sample: Option<Group>, words: &'static str| {
-            is_there.then_some((sample, words))
+        let mut entries: Vec<(Option<Group>, &'w str)> = Vec::new();
+        let mut when = |is_there: bool, sample: Option<Group>, words| {
+            if is_there {
+                entries.push((sample, words));
+            }
         };
+        let dashed = |line: Group, dashes: &str| Some(line.set("stroke-dasharray", dashes));
         let wall = hatched([SAMPLE.map(|[x, y]| [x, y - 3.0]).to_vec()]);
-        let axis = dashed(sample(DARK, 1.0), "14 4 3 4");
-        let friction = sample(panel::OPEN, 1.6);
-        let [before, after] = [
-            vec![
-                when(true, Some(dashed(sample(GREY, 1.2), "6 4")), "undeformed"),
-                when(scene.of_revolution, Some(axis), "axis"),
-                when(
-                    !scene.interfaces.is_empty(),
-                    Some(sample(DARK, 1.0)),
-                    "border of two materials",
-                ),
-                when(self.obstacle.is_some(), wall, "rigid obstacle"),
-            ],
-            vec![
-                when(self.forces.is_some(), Some(pointed(FORCE)), "load"),
-                when(self.motions.is_some(), Some(pointed(MOTION)), "prescribed displacement"),
-                when(
-                    self.cross.is_some(),
-                    Some(loads::cross([15.0, -4.5])),
-                    "largest von Mises stress",
-                ),
-                when(self.pressure.is_some(), Some(pressed()), "contact pressure"),
-                when(self.pressure.is_none(), None, "no contact pressure"),
-                when(panel::has_shear(scene), Some(friction), "size of the friction"),
-            ],
-        ];
-        let mut entries: Vec<(Option<Group>, &'w str)> = before.into_iter().flatten().collect();
-        entries.extend(loads::support_entries(scene));
-        entries.extend(after.into_iter().flatten());
-        entries.push((None, magnified));
+        when(true, dashed(sample(GREY, 1.2), "6 4"), "undeformed");
+        when(scene.of_revolution, dashed(sample(DARK, 1.0), "14 4 3 4"), "axis");
+        let has_borders = !scene.interfaces.is_empty();
+        when(has_borders, Some(sample(DARK, 1.0)), "border of two materials");
+        when(self.obstacle.is_some(), wall, "rigid obstacle");
+        for (sample, words) in loads::support_entries(scene) {
+            when(true, sample, words);
+        }
+        when(self.forces.is_some(), Some(pointed(FORCE)), "load");
+        when(self.motions.is_some(), Some(pointed(MOTION)), "prescribed displacement");
+        let cross = loads::cross([15.0, -4.5]);
+        when(self.cross.is_some(), Some(cross), "largest von Mises stress");
+        when(self.pressure.is_some(), Some(pressed()), "contact pressure");
+        when(self.pressure.is_none(), None, "no contact pressure");
+        let friction = Some(sample(panel::OPEN, 1.6));
+        when(panel::has_shear(scene), friction, "size of the friction");
+        when(true, None, magnified);
         entries
     }
 }
