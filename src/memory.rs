@@ -16,7 +16,7 @@ pub struct OutOfMemory {
     /// The bytes needed.
     pub(crate) needed: u64,
     /// The bytes available, if the system tells.
-    pub available: Option<u64>,
+    pub(crate) available: Option<u64>,
 }
 
 /// The number of bytes that need no check.

@@ -51,15 +51,15 @@ pub(super) struct Contact {
 /// A part of an edge.
 #[derive(Clone, Copy)]
 pub(super) struct Side {
-    pub edge: BoundaryEdge,
+    pub(crate) edge: BoundaryEdge,
     /// Where on the edge the contact begins and ends.
-    pub places: [f64; 2],
+    pub(crate) places: [f64; 2],
     /// The length of the whole edge.
-    pub length: f64,
+    pub(crate) length: f64,
     /// The part of the edge below which places are the same: one length on all edges of the contact.
-    pub same: f64,
+    pub(crate) same: f64,
     /// An end of the contact was moved to an end or the middle of the edge, by more than rounding.
-    pub moved: bool,
+    pub(crate) moved: bool,
 }
 
 /// A part of a contact, in units of it, with the tractions at its ends: along the direction of contact and across, to the left.

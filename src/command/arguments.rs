@@ -216,7 +216,7 @@ pub(crate) struct SolveOptions {
 
 /// The target of an adaptive solve.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Within {
+pub(crate) struct Within {
     /// The key of the case file that says the same, with its value.
     pub(crate) setting: String,
 }

@@ -15,7 +15,7 @@ use super::arguments::CaseArguments;
 use super::progress::Phases;
 use super::{Done, folder, read, summarised};
 
-pub fn certify(
+pub(crate) fn certify(
     arguments: &CaseArguments,
     displacement: &Path,
     out: Option<&Path>,

@@ -6,7 +6,6 @@ use std::time::{Duration, Instant};
 use signorini::io::Failure;
 use signorini::io::files::spare;
 use signorini::io::result::Results;
-use signorini::io::summary;
 use signorini::io::sweep::{self, Extent, ParameterAxis, Sweep};
 
 use super::progress::Phases;
@@ -63,7 +62,7 @@ pub(super) fn ended(sweep: &Sweep, folder: &Path, quiet: bool) -> Result<Done, F
     } else {
         FAILED
     };
-    Ok(Done { code, ..summarised(&summary::swept(sweep, &written), quiet) })
+    Ok(Done { code, ..summarised(&sweep.summary(&written), quiet) })
 }
 
 /// The exit code of a run with these results.

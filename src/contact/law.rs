@@ -35,7 +35,7 @@ impl Law {
     }
 
     /// The number of components of the jump that it feels.
-    pub fn components(self) -> usize {
+    pub(crate) fn components(self) -> usize {
         match self {
             Law::Friction(_) => 2,
             _ => self.responses().len(),
@@ -52,7 +52,7 @@ impl Law {
 
     /// The integrals of (8) and J_h over a piece with this gamma for P with the nodal values `p`, component after component; with the
     /// weight r where it has these `radii` at its ends. Friction is for plane bodies.
-    pub fn integrals<T: Copy + Into<DoubleDouble>>(
+    pub(crate) fn integrals<T: Copy + Into<DoubleDouble>>(
         self,
         rule: &EdgeRule,
         (degree, gamma): (Degree, f64),
@@ -126,7 +126,7 @@ fn bilateral<T: Copy + Into<DoubleDouble>>(
 
 /// The integrals of (8) and J_h over a piece, s in \[0, 1\]; multiply all but `active` by |E| / gamma, and `active` by |E|.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Integrals {
+pub(crate) struct Integrals {
     /// 1/2 int \[P\]+^2
     pub(crate) energy: f64,
     /// int \[P\]+ N_a

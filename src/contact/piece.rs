@@ -74,7 +74,7 @@ impl Stretch {
 
 impl PieceGeometry {
     /// Returns whether the direction of contact turns along the piece.
-    pub fn turns(&self) -> bool {
+    pub(crate) fn turns(&self) -> bool {
         self.nodes[0].direction != self.nodes[1].direction
     }
 
@@ -138,7 +138,7 @@ pub(crate) struct Chords<S> {
     /// Their mean, the length of the piece.
     pub(crate) length: S,
     /// Each over their mean.
-    pub ratios: [S; 2],
+    pub(crate) ratios: [S; 2],
 }
 
 /// r along a side of a piece of a body of revolution.
@@ -147,7 +147,7 @@ pub(crate) struct PieceRadii<S> {
     /// At the two ends of the piece, the means over its sides: the weight of its integrals.
     pub(crate) of_piece: [S; 2],
     /// There on the side itself.
-    pub of_side: [S; 2],
+    pub(crate) of_side: [S; 2],
     /// At the start and the end of the side's edge, and at the corner opposite.
     pub(crate) of_triangle: [S; 3],
 }
@@ -185,7 +185,7 @@ impl<S: Scalar> Chords<S> {
 
 /// The data of a side of a piece, in any numbers.
 #[derive(Clone, Copy, Debug)]
-pub struct SideData<S> {
+pub(crate) struct SideData<S> {
     /// The triangle.
     pub(crate) triangle: Triangle<S>,
     /// Its material.
@@ -212,9 +212,9 @@ pub struct Side<S = f64> {
     /// Its entries among the nodes of the piece's triangles.
     pub entries: Range<usize>,
     /// For each node of the piece the entry of the edge's node that is next to it.
-    pub nearest: Vec<usize>,
+    pub(crate) nearest: Vec<usize>,
     /// The functionals P0 and those of the stress of the displacement e_r, in a body of revolution, where it is no rigid motion.
-    pub rings: Option<[Vec<S>; 2]>,
+    pub(crate) rings: Option<[Vec<S>; 2]>,
 }
 
 /// A piece of Gamma_C.
@@ -338,7 +338,7 @@ fn across<S: Scalar>(d: Vector2<S>) -> Vector2<S> {
 
 impl<S: Scalar + From<f64>> Piece<S> {
     /// The piece with this geometry and these sides, whose functionals follow `start` others.
-    pub fn new(
+    pub(crate) fn new(
         geometry: &Arc<PieceGeometry>,
         space: &Space,
         start: usize,
@@ -432,7 +432,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     }
 
     /// The name of the boundary of the second side, if there is one.
-    pub fn partner(&self) -> Option<&Arc<str>> {
+    pub(crate) fn partner(&self) -> Option<&Arc<str>> {
         self.geometry.stretches.get(1).map(|stretch| &stretch.boundary)
     }
 
@@ -451,7 +451,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     }
 
     /// The nodes of the edges on which it lies.
-    pub fn edge_nodes(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn edge_nodes(&self) -> impl Iterator<Item = usize> + '_ {
         let of = |(side, stretch): (&Side<S>, &Stretch)| {
             let first = side.entries.start;
             let on_edge = self.degree.edge_nodes(stretch.edge.local).into_iter();
@@ -488,7 +488,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     }
 
     /// n~ at node `a`.
-    pub fn direction(&self, a: usize) -> Vector2<S> {
+    pub(crate) fn direction(&self, a: usize) -> Vector2<S> {
         if self.geometry.along_normal {
             self.normal()
         } else {
@@ -660,7 +660,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
 
     /// int gamma sigma_n(u) sigma_n(v) for v = N_i e_c, u = N_j e_d of the nodes i and j of its triangles in entry (c, d), with
     /// `weight` = gamma |E|.
-    pub fn stress_product(&self, weight: S, i: usize, j: usize) -> Matrix2<S> {
+    pub(crate) fn stress_product(&self, weight: S, i: usize, j: usize) -> Matrix2<S> {
         let of = |rows: &[Vec<Vector2<S>>]| {
             let (start, end) = (&rows[0], &rows[1]);
             Matrix2::from_fn(|c, d| {
@@ -685,7 +685,7 @@ fn nearest(degree: Degree, stretch: &Stretch) -> Vec<usize> {
 
 impl Piece {
     /// The jump of a field along the direction of each functional: P0 without the stress.
-    pub fn jumps(&self, u: &[[f64; 2]]) -> Vec<f64> {
+    pub(crate) fn jumps(&self, u: &[[f64; 2]]) -> Vec<f64> {
         let count = self.degree.nodes_per_edge();
         let displacement = |(side, stretch): (&Side, &Stretch), a: usize| {
             let nodes = self.degree.edge_nodes(stretch.edge.local).into_iter();
@@ -722,7 +722,7 @@ impl Piece {
 
     /// The places on the edges of its sides that functional `i` compares, each with the triangle and the direction that its
     /// displacement is multiplied by.
-    pub fn compared(&self, mesh: &Mesh, i: usize) -> Vec<(usize, [f64; 2], Vector2<f64>)> {
+    pub(crate) fn compared(&self, mesh: &Mesh, i: usize) -> Vec<(usize, [f64; 2], Vector2<f64>)> {
         let (n, a) = (self.direction_of(i), i % self.degree.nodes_per_edge());
         let of = |(side, stretch): (usize, &Stretch)| {
             let along = if side == 0 { n } else { -n };
@@ -742,7 +742,7 @@ impl Piece {
 
     /// [`Piece::contribution`] on springs that are `stiffness` times as stiff. The law is the same: what friction bears at most does not
     /// depend on them.
-    pub fn softened<T: Copy + Into<DoubleDouble>>(
+    pub(crate) fn softened<T: Copy + Into<DoubleDouble>>(
         &self,
         rule: &EdgeRule,
         stiffness: f64,
@@ -769,7 +769,7 @@ impl Piece {
     }
 
     /// The Bregman distance of the energy of [`Piece::softened`] from P to Q, given by their values at the nodes.
-    pub fn bregman<T: Copy + Into<DoubleDouble>>(
+    pub(crate) fn bregman<T: Copy + Into<DoubleDouble>>(
         &self,
         rule: &EdgeRule,
         stiffness: f64,

@@ -64,7 +64,7 @@ pub(super) struct Hoop<'a, S> {
     /// The integral of v_r that it is tested with, as the share of each node in thirtieths of the area.
     pub(crate) shares: &'a [i32],
     /// A thirtieth of the area.
-    pub thirtieth: S,
+    pub(crate) thirtieth: S,
     /// u_r at each node.
     pub(crate) radial: &'a [S],
     /// The largest r of the triangle.

@@ -405,11 +405,6 @@ fn read_output(table: &Table, mesh: &Mesh) -> Result<(Vec<[f64; 2]>, Option<f64>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::certificates::Ramp;
-    use crate::kernel::{Material, Plane};
-    use crate::model::Condition;
-    use crate::model::Degree;
-    use crate::solve::{ContactQuadrature, Gamma0};
 
     fn read(text: &str) -> Result<Case, FileError> {
         Case::parse(Path::new("x.toml"), text, &[])
@@ -420,76 +415,6 @@ mod tests {
         material = { young = 2.5, poisson = 0.25 }
         boundary.bottom.contact = {}
     ";
-
-    #[test]
-    fn what_is_not_said_has_its_default() {
-        let case = read(SMALL).unwrap();
-        assert_eq!(case.title, "x");
-        assert_eq!(case.method, Method::default());
-        assert_eq!(case.settings, Settings::default());
-        assert!(case.probes.is_empty());
-        assert_eq!(case.adapt, None);
-        assert_eq!(case.problem.material, Material::young_poisson(2.5, 0.25, Plane::Strain).into());
-        assert_eq!(case.problem.mesh.vertices()[5], [2.0, 1.0]);
-        assert_eq!(case.problem.mesh.triangles()[0], [0, 1, 4], "the diagonal is right");
-        assert_eq!(case.problem.body_force.each_ref().map(|f| f.degree()), [Some(0); 2]);
-        assert_eq!(case.problem.conditions.len(), 1);
-        let Some(Condition::Contact { gap }) = case.problem.conditions.get("bottom") else {
-            panic!("no contact")
-        };
-        assert_eq!((gap.degree(), gap.at([0.5, 0.5])), (Some(0), 0.0));
-    }
-
-    #[test]
-    fn everything_that_can_be_said_is_read() {
-        let case = read(
-            r#"
-            title = "All"
-            [mesh]
-            rectangle = { width = 2, height = 1.0, nx = 2, ny = 1, diagonal = "crossed" }
-            [material]
-            lambda = -0.5
-            mu = 1
-            plane = "stress"
-            [load]
-            body = ["x", "-4 + 10*y"]
-            [boundary.left]
-            displacement = ["y", "free"]
-            [boundary.top]
-            traction = ["0", "-x"]
-            [boundary.bottom]
-            contact = { gap = "0.1*x^2" }
-            [method]
-            degree = 2
-            gamma0 = 1
-            contact_quadrature = { gauss = 4 }
-            allow_noncoercive = true
-            [solver]
-            tolerance = 1e-8
-            max_iterations = 7
-            proof = 1e-7
-            [output]
-            probes = [[0, 1], [0.5, 0.25]]
-            "#,
-        )
-        .unwrap();
-        let p = [2.0, 3.0];
-        assert_eq!(case.title, "All");
-        assert_eq!(case.problem.mesh.triangles().len(), 8);
-        assert_eq!(case.problem.material, Material::lame(-0.5, 1.0, Plane::Stress).into());
-        assert_eq!(case.problem.body_force.each_ref().map(|f| f.at(p)), [2.0, 26.0]);
-        let conditions = &case.problem.conditions;
-        let Condition::Displacement([Some(x), None]) = &conditions["left"] else { panic!() };
-        let Condition::Traction([_, y]) = &conditions["top"] else { panic!() };
-        let Condition::Contact { gap } = &conditions["bottom"] else { panic!() };
-        assert_eq!([x.at(p), y.at(p), gap.at(p)], [3.0, -2.0, 0.4]);
-        let quadrature = ContactQuadrature::Gauss(4);
-        let (degree, gamma0) = (Degree::Two, Gamma0::Value(1.0));
-        let method = Method { degree, gamma0, quadrature, allow_noncoercive: true };
-        assert_eq!(case.method, method);
-        assert_eq!(case.settings, Settings { tolerance: 1e-8, max_iterations: 7, proof: 1e-7 });
-        assert_eq!(case.probes, [[0.0, 1.0], [0.5, 0.25]]);
-    }
 
     #[test]
     fn the_echo_of_lame_coefficients_does_not_overflow_where_the_moduli_do_not() {
@@ -508,41 +433,6 @@ mod tests {
             let max_relative = 4.0 * f64::EPSILON;
             approx::assert_relative_eq!(found[0], young, max_relative = max_relative);
             approx::assert_relative_eq!(found[1], poisson, max_relative = max_relative);
-        }
-    }
-
-    #[test]
-    fn targets_are_shares_in_percent_and_forces_are_asked_for_by_their_boundary() {
-        let with = |settings: &str| read(&format!("{SMALL}\n{settings}"));
-        let target = with("adapt.target = \"0.5 %\"").unwrap().adapt;
-        let expected = Target { relative: 0.005, max_unknowns: method::MOST_UNKNOWNS };
-        assert_eq!(target, Some((expected, None)));
-        let case = with("adapt.target = { force = \"bottom\", within = \"0.1 %\" }").unwrap();
-        let found = case.adapt.map(|(target, force)| (target.relative, force));
-        assert_eq!(found, Some((0.001, Some("bottom".to_owned()))));
-        let case =
-            with("certify.quantities = [\"force bottom\", \"force bottom x 0 0.25 ramp 0.1\"]");
-        let ramp = Ramp { axis: 0, between: [0.0, 0.25], width: 0.1 };
-        let expected = [None, Some(ramp)].map(|weight| ("bottom".to_owned(), weight));
-        assert_eq!(case.unwrap().asked.forces, expected);
-        let target = "such as \"1 %\"";
-        for (wrong, expected) in [
-            ("adapt.target = \"0 %\"", target),
-            ("adapt.target = \"100 %\"", target),
-            ("adapt.target = \"1\"", target),
-            ("adapt.target = 0.01", target),
-            ("adapt.target = \"nan %\"", target),
-            ("adapt.max_unknowns = 10", "target"),
-            ("adapt.target = { force = \"top\", within = \"0.1 %\" }", "contact boundary"),
-            ("adapt.target = { force = \"bottom\" }", "within"),
-            ("certify.quantities = [\"force top\"]", "contact boundary"),
-            ("certify.quantities = [\"peak bottom\"]", "force NAME"),
-            ("certify.quantities = [\"force bottom x 1 0 ramp 0.1\"]", "force NAME"),
-            ("certify.quantities = [\"force bottom z 0 1 ramp 0.1\"]", "force NAME"),
-            ("certify.quantities = [\"force bottom x 0 1 ramp 0\"]", "force NAME"),
-        ] {
-            let error = with(wrong).err().unwrap().to_string();
-            assert!(error.contains(expected), "{wrong}: {error}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What `signorini check` says of a case before it is solved: what holds on each boundary, how long that is, which load acts there,
+//! The summary by `signorini check` of a case before it is solved: what holds on each boundary, how long that is, which load acts there,
 //! where contact is nearest before loading, and whether supports and contact hold the body.
 
 use super::case::{Case, Measure};
@@ -144,7 +144,7 @@ fn force(force: [f64; 2], shown: &QuantityFormat) -> String {
     shown.with_unit(shown.components(force), Measure::Force)
 }
 
-/// What is prescribed, with its load or its gap.
+/// The condition in words, with its load or its gap.
 fn of_condition(
     condition: &Condition,
     name: &str,

@@ -241,13 +241,6 @@ mod tests {
     }
 
     #[test]
-    fn square_is_the_product_to_the_bit() {
-        for x in [0.1, -1.0 / 3.0, 1e200, 5e-324, -0.0] {
-            assert_eq!(parse("x^2").at([x, 0.0]).to_bits(), (x * x).to_bits());
-        }
-    }
-
-    #[test]
     fn functions_of_a_ball_contain_those_of_its_numbers_and_of_a_smaller_one_do_not() {
         for text in [
             "-x",
@@ -319,24 +312,17 @@ mod tests {
         let end = "expected an operator (+ - * / ^) or the end";
         for (text, expected) in [
             ("", format!("column 1: found the end, {atom}")),
-            (")", format!("column 1: found ')', {atom}")),
             ("()", format!("column 2: found ')', {atom}")),
             ("-inf", format!("column 2: found 'inf', {atom}")),
-            ("x1", format!("column 1: found 'x1', {atom}")),
             ("x**2", format!("column 3: found '*', {atom} (a power is x^2)")),
             ("π", format!("column 1: found 'π', {atom}")),
             ("x·y", format!("column 2: found '·', {end}")),
             ("x y", format!("column 3: found 'y', {end}")),
-            ("x)", format!("column 2: found ')', {end}")),
             ("x, y", format!("column 2: found ',', {end} (decimals have a point: 0.5)")),
             ("1..2", format!("column 3: found '.2', {end}")),
             ("2exp(x)", format!("column 2: found 'exp', {end}")),
-            ("x\u{0}", format!("column 2: found '\\0', {end}")),
             ("(x", "column 3: found the end, expected an operator (+ - * / ^) or ')'".into()),
-            (".", "column 1: found '.', expected a number".into()),
             ("1e", "column 3: found the end, expected the digits of the exponent".into()),
-            ("é+1e+", "column 1: found 'é', expected a number, x, y, pi, a function or '('".into()),
-            ("1e-x", "column 4: found 'x', expected the digits of the exponent".into()),
             ("1e999", "column 1: found '1e999', expected a number below 1.8e308".into()),
             ("sin x", "column 5: found 'x', expected '(' after sin".into()),
             (
@@ -347,11 +333,6 @@ mod tests {
             (
                 "max(x)",
                 "column 6: found ')', expected an operator (+ - * / ^) or ',': max takes two arguments"
-                    .into(),
-            ),
-            (
-                "min(x,y,1)",
-                "column 8: found ',', expected an operator (+ - * / ^) or ')': min takes two arguments"
                     .into(),
             ),
         ] {
@@ -383,15 +364,6 @@ mod tests {
             message(&sum(MOST_OPERATIONS + 1)),
             "column 20004: found the end, expected at most 10000 operations"
         );
-    }
-
-    #[test]
-    fn deep_expressions_are_evaluated_as_flat_ones() {
-        let deep: String = (0..150).map(|k| format!("sin({k}*x)*(y - ")).collect();
-        let deep = parse(&(deep + "y" + &")".repeat(150)));
-        let [x, y] = [0.3, 0.7];
-        let expected = (0..150).rev().fold(y, |sum, k| (f64::from(k) * x).sin() * (y - sum));
-        assert_eq!(deep.at([x, y]), expected);
     }
 
     #[test]

@@ -36,7 +36,7 @@ pub fn read_field(path: &Path, mesh: &Mesh, degree: Degree) -> Result<Vec<[f64; 
         .map_err(|problem| Failure::from(problem).at(path, Position::File))
 }
 
-/// What is said of other files.
+/// The message about other files.
 const OTHER: &str = "expected a file that ends in .csv, with the columns x, y, ux and uy; \
                      docs/certificates.md has the lines of Python that write one from any file that meshio reads";
 

@@ -228,18 +228,6 @@ mod tests {
     const SET: [&str; 3] = ["a.txt", "b.txt", "result.json"];
 
     #[test]
-    fn files_appear_together_when_published() {
-        let scratch = Scratch::new("together");
-        let folder = scratch.0.join("new/case");
-        let mut output = Output::new(&folder).unwrap();
-        output.stage("a.txt", b"first").unwrap();
-        assert!(!folder.join("a.txt").exists());
-        assert_eq!(output.publish(&[]).unwrap(), [folder.join("a.txt")]);
-        assert_eq!(fs::read(folder.join("a.txt")).unwrap(), b"first");
-        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
-    }
-
-    #[test]
     fn a_file_that_cannot_be_written_leaves_the_earlier_run_untouched() {
         let scratch = Scratch::new("earlier");
         fs::write(scratch.0.join("a.txt"), b"earlier").unwrap();
@@ -252,24 +240,6 @@ mod tests {
         drop(output);
         assert_eq!(names(&scratch.0), ["a.txt", "b.txt"]);
         assert_eq!(fs::read(scratch.0.join("a.txt")).unwrap(), b"earlier");
-    }
-
-    #[test]
-    fn a_folder_below_a_file_is_refused_by_name() {
-        let scratch = Scratch::new("below");
-        let file = scratch.0.join("file");
-        fs::write(&file, b"").unwrap();
-        let folder = file.join("case");
-        let error = Output::new(&folder).unwrap_err();
-        let expected = format!("cannot make the folder {}: Not a directory", folder.display());
-        assert_eq!(error.to_string(), expected);
-        let error = Output::new(&file).unwrap_err();
-        let expected = format!(
-            "cannot make the folder {}: a file of this name is there; choose another folder: --out DIR",
-            file.display()
-        );
-        assert_eq!(error.to_string(), expected);
-        assert_eq!(names(&scratch.0), ["file"]);
     }
 
     #[test]

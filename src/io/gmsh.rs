@@ -5,7 +5,7 @@
 //! | section | what is taken from it |
 //! | --- | --- |
 //! | `$PhysicalNames` | the names of the physical points, curves and surfaces |
-//! | `$Entities`, `$PartitionedEntities` (4.1) | which point, curve or surface belongs to which physical groups |
+//! | `$Entities` (4.1) | which point, curve or surface belongs to which physical groups |
 //! | `$Nodes` | the vertices; those that are no corner of a triangle (the centre of an arc) are left out |
 //! | `$Elements` | triangles and quadrangles: the body, by physical surface; lines: the boundary parts; physical points |
 //!
@@ -83,13 +83,13 @@ fn read_sections(cursor: &mut Cursor) -> Result<RawMesh> {
     read_format(cursor)?;
     let version = cursor.version;
     let (mut names, mut remarks) = (None, Vec::new());
-    let (mut groups, mut parts, mut nodes, mut elements) = (None, None, None, None);
+    let (mut groups, mut nodes, mut elements) = (None, None, None);
     while let Some((start, section)) = cursor.section()? {
         let is_second = match (section, version) {
             ("PhysicalNames", _) => names.replace(read_names(cursor)?).is_some(),
             ("Entities", Version::Four) => groups.replace(read_entities(cursor)?).is_some(),
             ("PartitionedEntities", Version::Four) => {
-                parts.replace(read_partitioned_entities(cursor)?).is_some()
+                return Err(cursor.wrong_at(start, in_partitions()));
             }
             ("Nodes", Version::Four) => nodes.replace(read_nodes(cursor)?).is_some(),
             ("Nodes" | "ParametricNodes", Version::Two) => {
@@ -98,9 +98,8 @@ fn read_sections(cursor: &mut Cursor) -> Result<RawMesh> {
             }
             ("Elements", Version::Four) => elements.replace(read_elements(cursor)?).is_some(),
             ("Elements", Version::Two) => {
-                let (all, of_each, remark) = read_elements_of_2(cursor)?;
+                let (all, of_each) = read_elements_of_2(cursor)?;
                 groups = Some(of_each);
-                remarks.extend(remark);
                 elements.replace(all).is_some()
             }
             _ => {
@@ -121,12 +120,6 @@ fn read_sections(cursor: &mut Cursor) -> Result<RawMesh> {
     };
     let nodes = nodes.ok_or_else(|| missing("Nodes"))?;
     let elements: Elements = elements.ok_or_else(|| missing("Elements"))?;
-    if let Some(parts) = parts {
-        check_parts(cursor, &parts, &elements)?;
-        for (all, of_parts) in groups.get_or_insert_default().iter_mut().zip(parts.groups) {
-            all.extend(of_parts);
-        }
-    }
     if let Some(groups) = &groups {
         check_entities(cursor, groups, &elements)?;
     }
@@ -256,10 +249,8 @@ fn check_entities(cursor: &Cursor, groups: &Groups, elements: &Elements) -> Resu
             );
             return Err(cursor.in_the_file(said));
         }
-        let unknown =
-            elements.entities(dimension).into_iter().find(|entity| !known.contains_key(entity));
-        if let Some(entity) = unknown {
-            let tag = elements.one_on(dimension, entity).unwrap_or_default();
+        let mut entities = elements.entities(dimension).into_iter();
+        if let Some((entity, tag)) = entities.find(|(entity, _)| !known.contains_key(entity)) {
             let kind = KINDS[dimension];
             let said = format!("element {tag} lies on {kind} {entity}, which is not in $Entities");
             return Err(cursor.in_the_file(said));
@@ -272,32 +263,20 @@ fn check_entities(cursor: &Cursor, groups: &Groups, elements: &Elements) -> Resu
 /// box around it, the physical groups and (except of a point) what bounds it. Returns the groups.
 fn read_entities(cursor: &mut Cursor) -> Result<Groups> {
     let mut all = Groups::default();
-    read_each_entity(cursor, |cursor, dimension| {
-        let tag = cursor.int("the tag of an entity")?;
-        let groups = read_entity(cursor, dimension)?;
-        if let Some(of_dimension) = all.get_mut(dimension) {
-            of_dimension.insert(tag, groups);
-        }
-        Ok(())
-    })?;
-    Ok(all)
-}
-
-/// Reads the counts of points, curves, surfaces and volumes, then so many of each.
-fn read_each_entity(
-    cursor: &mut Cursor,
-    mut read: impl FnMut(&mut Cursor, usize) -> Result<()>,
-) -> Result<()> {
     let mut counts = [0; 4];
     for count in &mut counts {
         *count = cursor.size("a number of entities")?;
     }
     for (dimension, count) in counts.into_iter().enumerate() {
         for _ in 0..count {
-            read(cursor, dimension)?;
+            let tag = cursor.int("the tag of an entity")?;
+            let groups = read_entity(cursor, dimension)?;
+            if let Some(of_dimension) = all.get_mut(dimension) {
+                of_dimension.insert(tag, groups);
+            }
         }
     }
-    Ok(())
+    Ok(all)
 }
 
 /// Reads what follows the tag of an entity, and returns its groups.
@@ -316,58 +295,6 @@ fn read_entity(cursor: &mut Cursor, dimension: usize) -> Result<Vec<i32>> {
         }
     }
     Ok(groups)
-}
-
-/// The entities of a mesh in partitions.
-struct PartitionedEntities {
-    groups: Groups,
-    /// How many partitions there are.
-    count: usize,
-    /// The surfaces in each of them.
-    surfaces: BTreeMap<i32, Vec<i32>>,
-}
-
-/// `$PartitionedEntities`: the number of partitions; the ghost entities; the counts of entities, then of each the tag, dimension
-/// and tag of its parent, its partitions, and the rest as in `$Entities`.
-fn read_partitioned_entities(cursor: &mut Cursor) -> Result<PartitionedEntities> {
-    let count = cursor.size("the number of partitions")?;
-    for _ in 0..cursor.size("the number of ghost entities")? {
-        cursor.int("the tag of a ghost entity")?;
-        cursor.int("the partition of a ghost entity")?;
-    }
-    let mut all =
-        PartitionedEntities { groups: Groups::default(), count, surfaces: BTreeMap::new() };
-    read_each_entity(cursor, |cursor, dimension| {
-        let tag = cursor.int("the tag of an entity")?;
-        cursor.int("the dimension of the parent of an entity")?;
-        cursor.int("the tag of the parent of an entity")?;
-        for _ in 0..cursor.size("the number of partitions of an entity")? {
-            let partition = cursor.int("the tag of a partition")?;
-            if dimension == 2 {
-                all.surfaces.entry(partition).or_default().push(tag);
-            }
-        }
-        let groups = read_entity(cursor, dimension)?;
-        if let Some(of_dimension) = all.groups.get_mut(dimension) {
-            of_dimension.insert(tag, groups);
-        }
-        Ok(())
-    })?;
-    Ok(all)
-}
-
-/// Refuses a file that holds some of the partitions only.
-fn check_parts(cursor: &Cursor, parts: &PartitionedEntities, elements: &Elements) -> Result<()> {
-    let used = elements.entities(2);
-    let is_there = |surfaces: &Vec<i32>| surfaces.iter().any(|surface| used.contains(surface));
-    let found = parts.surfaces.values().filter(|surfaces| is_there(surfaces)).count();
-    if found >= parts.count {
-        return Ok(());
-    }
-    let count = parts.count;
-    Err(cursor.in_the_file(format!(
-        "the file has triangles of {found} of the {count} partitions of the mesh; expected all of them in one file (Mesh.PartitionSplitMeshFiles = 0)"
-    )))
 }
 
 /// `$Nodes`: the number of blocks, three numbers of no use here; then in each block dimension and tag of an entity,
@@ -428,8 +355,7 @@ fn read_elements(cursor: &mut Cursor) -> Result<Elements> {
             let tag = cursor.size("the tag of an element")?;
             let kind = kind(cursor, start, tag, number)?;
             if i == 0 {
-                let room = elements.reserve(kind, cursor.at_most(count));
-                room.map_err(|lack| cursor.in_the_file(lack))?;
+                cursor.make_room(&mut elements.all, count)?;
             }
             read_element(cursor, kind, tag, entity, &mut elements)?;
         }
@@ -482,11 +408,10 @@ fn read_nodes_of_2(cursor: &mut Cursor, is_parametric: bool) -> Result<Vec<Node>
 /// first is the physical group, 0 for none, the second the entity), the nodes. In a binary file elements of one type follow
 /// each other: type, how many, the number of labels, and of each tag, labels, nodes. An element of two groups appears once for each.
 /// The third label, if there is one, is the number of partitions, and those follow. Returns the elements on entities of their own for
-/// each pair of labels, the groups of those, and a remark where the file may be a part of a mesh.
-fn read_elements_of_2(cursor: &mut Cursor) -> Result<(Elements, Groups, Option<String>)> {
+/// each pair of labels, and the groups of those.
+fn read_elements_of_2(cursor: &mut Cursor) -> Result<(Elements, Groups)> {
     const LABELS: &str = "the number of labels";
     let (mut elements, mut groups) = (Elements::default(), Groups::default());
-    let mut partitions = BTreeSet::new();
     let mut entities: HashMap<[i32; 2], i32> = HashMap::new();
     let mut left = cursor.count("the number of elements")?;
     while left > 0 {
@@ -521,7 +446,7 @@ fn read_elements_of_2(cursor: &mut Cursor) -> Result<(Elements, Groups, Option<S
             let [group, entity, _, partition] = first;
             let pair = [group, entity];
             if partition > 0 && kind.dimension() == 2 {
-                partitions.insert(partition);
+                return Err(cursor.wrong_at(start, in_partitions()));
             }
             let count = entities.len() as i32;
             let entity = *entities.entry(pair).or_insert(count);
@@ -531,118 +456,10 @@ fn read_elements_of_2(cursor: &mut Cursor) -> Result<(Elements, Groups, Option<S
         }
         left -= together;
     }
-    let remark = part_of_a_mesh(&partitions).map_err(|said| cursor.in_the_file(said))?;
-    Ok((elements, groups, remark))
+    Ok((elements, groups))
 }
 
-/// Says that triangles of one partition may be a part of the mesh: files by partition do not say how many there are.
-///
-/// # Errors
-/// The partitions that are missing.
-fn part_of_a_mesh(partitions: &BTreeSet<i32>) -> std::result::Result<Option<String>, String> {
-    let most = partitions.last().copied().unwrap_or(0);
-    match (1..most).find(|partition| !partitions.contains(partition)) {
-        Some(missing) => Err(format!(
-            "the file has triangles of partition {most} of the mesh, and none of partition {missing}; expected all of them in one file (Mesh.PartitionSplitMeshFiles = 0)"
-        )),
-        None if most == 1 => Ok(Some("all triangles are in partition 1: where a mesh is split into a file for each of its partitions, this one is a part of it".to_owned())),
-        None => Ok(None),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use approx::assert_abs_diff_eq;
-
-    use super::*;
-    use crate::model::Mesh;
-
-    const TEXT: &[u8] = include_bytes!("../../tests/meshes/square-ascii.msh");
-    const BINARY: &[u8] = include_bytes!("../../tests/meshes/square-binary.msh");
-    const ALL: &[u8] = include_bytes!("../../tests/meshes/square-all.msh");
-
-    fn parse(bytes: &[u8]) -> Result<Mesh> {
-        from_bytes(bytes, Path::new("x.msh"), None, &[]).map(|made| made.mesh)
-    }
-
-    fn message(bytes: &[u8]) -> String {
-        parse(bytes).err().map_or("no error".to_owned(), |e| e.to_string())
-    }
-
-    /// The number of edges, and the integral of the outward normal.
-    fn part(mesh: &Mesh, name: &str) -> (usize, [f64; 2]) {
-        let edges = mesh.edges_of(name).unwrap();
-        let mut sum = [0.0; 2];
-        for &edge in edges {
-            let (length, n) = mesh.length_and_normal(edge);
-            sum = [sum[0] + length * n[0], sum[1] + length * n[1]];
-        }
-        (edges.len(), sum.map(|c| (c * 1e9).round() / 1e9 + 0.0))
-    }
-
-    fn check(mesh: &Mesh) {
-        assert_eq!(mesh.vertices().len(), 12, "the centre of the arc is left out");
-        assert_eq!(mesh.triangles().len(), 13);
-        assert_eq!(mesh.boundary_names().collect::<Vec<_>>(), ["right", "the floor", "top"]);
-        assert_eq!(part(mesh, "the floor"), (2, [0.0, -1.0]));
-        assert_eq!(part(mesh, "right"), (2, [1.0, 0.0]));
-        assert_eq!(part(mesh, "top"), (3, [0.0, 1.0]), "a group that runs against its curve");
-    }
-
-    #[test]
-    fn text_and_binary_give_the_same_mesh() {
-        let (text, binary) = (parse(TEXT).unwrap(), parse(BINARY).unwrap());
-        check(&text);
-        assert_eq!(text.triangles(), binary.triangles());
-        assert_eq!(text.outline(), binary.outline());
-        for (a, b) in text.vertices().iter().zip(binary.vertices()) {
-            // A text file has 16 digits.
-            assert_abs_diff_eq!(a[..], b[..], epsilon = 1e-15);
-        }
-    }
-
-    #[test]
-    fn what_does_not_matter_is_passed_over() {
-        // Unused nodes, points, unnamed curves and parameters; line ends of other systems; sections.
-        let text = String::from_utf8(TEXT.to_vec()).unwrap().replace('\n', "\r\n");
-        let more = b"$Comments\n$Nodes is\n\xff not a section here\n$EndComments\n";
-        for bytes in [ALL, text.as_bytes(), &[BINARY, more].concat()] {
-            check(&parse(bytes).unwrap());
-        }
-    }
-
-    #[test]
-    fn big_endian_files_are_refused_with_the_remedy() {
-        let start = b"$MeshFormat\n4.1 1 8\n".len();
-        let mut bytes = BINARY.to_vec();
-        bytes[start..start + 4].reverse();
-        let said = message(&bytes);
-        let expected = "found the bytes of a big-endian machine, expected little-endian numbers: export the mesh as text";
-        assert!(said.contains(expected), "{said}");
-    }
-
-    #[test]
-    fn counts_that_the_file_cannot_hold_allocate_nothing() {
-        let huge = String::from_utf8(TEXT.to_vec()).unwrap();
-        for (count, wrong) in [
-            ("\n13 12 1 12", "\n18446744073709551615 12 1 12"),
-            ("\n2 1 0 2\n", "\n2 1 0 18446744073709551615\n"),
-            ("\n2 1 2 8\n", "\n2 1 2 18446744073709551615\n"),
-            ("\n7 7 2 0\n", "\n7 18446744073709551615 2 0\n"),
-            ("\n4\n1 1 ", "\n18446744073709551615\n1 1 "),
-        ] {
-            assert!(huge.contains(count));
-            let e = message(huge.replace(count, wrong).as_bytes());
-            assert!(e.contains("expected"), "{e}");
-        }
-    }
-
-    #[test]
-    fn every_cut_of_a_file_is_an_error() {
-        for file in [TEXT, BINARY] {
-            for length in 0..file.len() - 1 {
-                assert!(parse(&file[..length]).is_err(), "cut at {length}");
-            }
-        }
-    }
+/// The complaint about a mesh in partitions, of which a file may hold some only.
+fn in_partitions() -> String {
+    "the mesh is in partitions; expected one without: gmsh -2 PART.geo, without -part".to_owned()
 }

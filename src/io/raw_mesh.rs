@@ -1,6 +1,6 @@
 //! A mesh as another program lists it, nodes and elements with numbers of their own, and the [`Mesh`] that it makes.
 //!
-//! What is only notation is brought into the notation of this program without a word: a surface whose triangles all run
+//! Mere notation is brought into the notation of this program without a word: a surface whose triangles all run
 //! clockwise is turned, nodes that no triangle uses are left out, elements of higher order with straight edges are read by their
 //! corners, and an element that is listed once for each of its groups is one. What is decided is said in a remark: quadrangles
 //! are split, and a plane z = c is taken for the plane of the body. A group without a name is called by its number.
@@ -32,9 +32,9 @@ pub struct RawMesh {
     pub elements: Elements,
     /// The names of the points, curves and surfaces on which elements lie, by their numbers; one without a name may be left out.
     pub names: ByDimension<BTreeMap<i32, Vec<String>>>,
-    /// What the numbers of nodes and elements are, in messages.
+    /// The origin of the numbers of nodes and elements, in messages.
     pub numbers: &'static str,
-    /// What was decided so far, in sentences for people.
+    /// Decisions so far, in sentences for people.
     pub remarks: Vec<String>,
 }
 
@@ -49,18 +49,35 @@ pub struct Node {
 /// Elements by their corners.
 #[derive(Default)]
 pub struct Elements {
-    points: Vec<Element<1>>,
-    lines: Vec<Element<2>>,
-    triangles: Vec<Element<3>>,
-    quadrangles: Vec<Element<4>>,
+    /// The elements in the order of the file.
+    pub(super) all: Vec<Element>,
     on_edges: Vec<NodeOnEdge>,
 }
 
-/// An element with N corners on an entity: a point, a curve or a surface.
-struct Element<const N: usize> {
+/// An element on an entity: a point, a line, a triangle or a quadrangle.
+pub(super) struct Element {
     tag: usize,
-    nodes: [usize; N],
+    /// The number of its corners.
+    corners: usize,
+    nodes: [usize; 4],
     entity: i32,
+}
+
+impl Element {
+    fn nodes(&self) -> &[usize] {
+        &self.nodes[..self.corners]
+    }
+
+    /// 0 for a point, 1 for a line, 2 for triangles and quadrangles.
+    fn dimension(&self) -> usize {
+        self.corners.min(3) - 1
+    }
+
+    /// The corners of a triangle.
+    fn triangle(&self) -> [usize; 3] {
+        let [a, b, c, _] = self.nodes;
+        [a, b, c]
+    }
 }
 
 /// A node of an element of higher order between the two ends of an edge.
@@ -128,7 +145,7 @@ impl Kind {
     /// The kind of element to which Gmsh gives this number.
     ///
     /// # Errors
-    /// What the element is, and what is expected.
+    /// A message with the kind of the element and those that are expected.
     pub fn of_gmsh(number: i32) -> std::result::Result<Kind, String> {
         if let Some((_, [corners, order, nodes])) = KINDS.into_iter().find(|kind| kind.0 == number)
         {
@@ -154,34 +171,12 @@ impl Kind {
 }
 
 impl Elements {
-    /// Makes room for `count` elements of a kind.
-    pub(super) fn reserve(
-        &mut self,
-        kind: Kind,
-        count: usize,
-    ) -> std::result::Result<(), memory::OutOfMemory> {
-        match kind.corners {
-            1 => memory::reserve(&mut self.points, count),
-            2 => memory::reserve(&mut self.lines, count),
-            3 => memory::reserve(&mut self.triangles, count),
-            _ => memory::reserve(&mut self.quadrangles, count),
-        }
-    }
-
     /// Adds the element `tag` with these nodes, as many as its kind has, on `entity`.
     pub fn add(&mut self, kind: Kind, tag: usize, nodes: &[usize], entity: i32) {
         let Kind { corners, order, .. } = kind;
-        match *nodes {
-            [a, ..] if corners == 1 => self.points.push(Element { tag, nodes: [a], entity }),
-            [a, b, ..] if corners == 2 => self.lines.push(Element { tag, nodes: [a, b], entity }),
-            [a, b, c, ..] if corners == 3 => {
-                self.triangles.push(Element { tag, nodes: [a, b, c], entity });
-            }
-            [a, b, c, d, ..] => {
-                self.quadrangles.push(Element { tag, nodes: [a, b, c, d], entity });
-            }
-            _ => return,
-        }
+        let mut own = [0; 4];
+        own.iter_mut().zip(&nodes[..corners]).for_each(|(own, node)| *own = *node);
+        self.all.push(Element { tag, corners, nodes: own, entity });
         let edges = [0, 0, 1, 3, 4][corners];
         let inner = nodes[corners..].iter().take(edges * (order - 1));
         for (i, &node) in inner.enumerate() {
@@ -192,28 +187,14 @@ impl Elements {
         }
     }
 
-    /// The entities of a dimension on which elements lie.
-    pub(super) fn entities(&self, dimension: usize) -> BTreeSet<i32> {
-        match dimension {
-            0 => self.points.iter().map(|e| e.entity).collect(),
-            1 => self.lines.iter().map(|e| e.entity).collect(),
-            _ => {
-                let quadrangles = self.quadrangles.iter().map(|e| e.entity);
-                self.triangles.iter().map(|e| e.entity).chain(quadrangles).collect()
-            }
-        }
+    /// The elements of a dimension.
+    pub(super) fn of(&self, dimension: usize) -> impl Iterator<Item = &Element> + Clone {
+        self.all.iter().filter(move |element| element.dimension() == dimension)
     }
 
-    /// An element on an entity of this dimension.
-    pub(super) fn one_on(&self, dimension: usize, entity: i32) -> Option<usize> {
-        fn find<const N: usize>(list: &[Element<N>], entity: i32) -> Option<usize> {
-            list.iter().find(|e| e.entity == entity).map(|e| e.tag)
-        }
-        match dimension {
-            0 => find(&self.points, entity),
-            1 => find(&self.lines, entity),
-            _ => find(&self.triangles, entity).or_else(|| find(&self.quadrangles, entity)),
-        }
+    /// The entities of a dimension on which elements lie, each with the tag of one of them.
+    pub(super) fn entities(&self, dimension: usize) -> BTreeMap<i32, usize> {
+        self.of(dimension).map(|element| (element.entity, element.tag)).collect()
     }
 }
 
@@ -245,10 +226,10 @@ impl RawMesh {
     /// The first mistake found, with the numbers of nodes and elements that are used here.
     pub fn made(mut self, share: Option<f64>, pairs: &[Pair]) -> Result<Made> {
         let mut remarks = std::mem::take(&mut self.remarks);
-        let cells = self.elements.triangles.len() + 2 * self.elements.quadrangles.len();
+        let cells: usize = self.elements.of(2).map(|element| element.corners - 2).sum();
         // A map from tags, which is at most half empty and twice as large for a moment while it grows; the lists.
         let map = 3 * bytes_of::<[usize; 2]>(self.nodes.len()).saturating_mul(2);
-        memory::check(map.saturating_add(bytes_of::<[usize; 12]>(cells)))?;
+        memory::check(map.saturating_add(bytes_of::<[usize; 13]>(cells)))?;
         if cells == 0 {
             return Err(noted(MeshError::Empty, NO_TRIANGLE));
         }
@@ -259,12 +240,16 @@ impl RawMesh {
         remarks.extend(self.plane()?);
         let places: Vec<[f64; 2]> = self.nodes.iter().map(|node| plane_place(node.place)).collect();
         let is_mixed = turn(&mut self.elements, &places);
-        let quadrangles = std::mem::take(&mut self.elements.quadrangles);
+        let all = std::mem::take(&mut self.elements.all);
+        let (quadrangles, others): (Vec<Element>, _) =
+            all.into_iter().partition(|e| e.corners == 4);
+        self.elements.all = others;
         remarks.extend(said_of_split(quadrangles.len()));
-        for Element { tag, nodes, entity } in quadrangles {
-            let halves = halves(nodes.map(|node| places[node]));
-            let halves = halves.map(|half| half.map(|corner| nodes[corner]));
-            self.elements.triangles.extend(halves.map(|nodes| Element { tag, nodes, entity }));
+        for Element { tag, nodes, entity, .. } in quadrangles {
+            for [a, b, c] in halves(nodes.map(|node| places[node])) {
+                let nodes = [nodes[a], nodes[b], nodes[c], 0];
+                self.elements.all.push(Element { tag, corners: 3, nodes, entity });
+            }
         }
         if let Some(share) = share {
             self.merge_nodes(&places, share, pairs);
@@ -294,11 +279,8 @@ impl RawMesh {
             }
             Ok(())
         };
-        let Elements { points, lines, triangles, quadrangles, on_edges } = &mut self.elements;
-        points.iter_mut().try_for_each(|e| number(e.tag, &mut e.nodes))?;
-        lines.iter_mut().try_for_each(|e| number(e.tag, &mut e.nodes))?;
-        triangles.iter_mut().try_for_each(|e| number(e.tag, &mut e.nodes))?;
-        quadrangles.iter_mut().try_for_each(|e| number(e.tag, &mut e.nodes))?;
+        let Elements { all, on_edges } = &mut self.elements;
+        all.iter_mut().try_for_each(|e| number(e.tag, &mut e.nodes[..e.corners]))?;
         on_edges.iter_mut().try_for_each(|e| {
             number(e.element, &mut e.ends)?;
             number(e.element, std::slice::from_mut(&mut e.node))
@@ -325,10 +307,8 @@ impl RawMesh {
 
     /// Checks that the corners of triangles and quadrangles lie in a plane z = c, which is a remark if c is not 0.
     fn plane(&self) -> Result<Option<String>> {
-        let Elements { triangles, quadrangles, .. } = &self.elements;
-        let corners = triangles.iter().flat_map(|e| e.nodes);
-        let corners = corners.chain(quadrangles.iter().flat_map(|e| e.nodes));
-        let nodes = || corners.clone().map(|node| &self.nodes[node]);
+        let corners = self.elements.of(2).flat_map(Element::nodes);
+        let nodes = || corners.clone().map(|&node| &self.nodes[node]);
         let by_z = |a: &&Node, b: &&Node| a.place[2].total_cmp(&b.place[2]);
         let (Some(low), Some(high)) = (nodes().min_by(by_z), nodes().max_by(by_z)) else {
             return Ok(None);
@@ -364,8 +344,7 @@ impl RawMesh {
             .iter()
             .map(|pair| pair.boundaries.each_ref().map(|name| self.nodes_on(name)))
             .collect();
-        let Elements { points, lines, triangles, .. } = &mut self.elements;
-        let kept = used(triangles, places.len());
+        let kept = used(self.elements.of(2), places.len());
         let of_kept: Vec<[f64; 2]> = kept.iter().map(|&node| places[node]).collect();
         let are_apart = |v: usize, w: usize| {
             let [v, w] = [kept[v], kept[w]];
@@ -374,45 +353,42 @@ impl RawMesh {
                     || (first.contains(&w) && second.contains(&v))
             })
         };
-        let merged = merge(&of_kept, &[], share, are_apart);
+        let merged = merge(&of_kept, share, are_apart);
         let mut first: Vec<usize> = (0..places.len()).collect();
-        for (&node, &vertex) in kept.iter().zip(&merged.vertex) {
-            first[node] = kept[merged.old_vertex[vertex]];
+        for (&node, vertex) in kept.iter().zip(merged) {
+            first[node] = kept[vertex];
         }
-        let with_first =
-            |nodes: &mut [usize]| nodes.iter_mut().for_each(|node| *node = first[*node]);
-        points.iter_mut().for_each(|point| with_first(&mut point.nodes));
-        lines.iter_mut().for_each(|line| with_first(&mut line.nodes));
-        triangles.iter_mut().for_each(|triangle| with_first(&mut triangle.nodes));
-        lines.retain(|line| line.nodes[0] != line.nodes[1]);
-        triangles.retain(|&Element { nodes: [a, b, c], .. }| a != b && b != c && c != a);
+        self.elements.all.iter_mut().for_each(|e| e.nodes = e.nodes.map(|node| first[node]));
+        self.elements.all.retain(|element| {
+            let nodes = element.nodes();
+            (0..nodes.len()).all(|i| !nodes[..i].contains(&nodes[i]))
+        });
     }
 
     /// The nodes on the curves of this name.
     fn nodes_on(&self, name: &str) -> BTreeSet<usize> {
         let is_named =
-            |line: &&Element<2>| names_of(&self.names[1], line.entity).iter().any(|of| of == name);
-        self.elements.lines.iter().filter(is_named).flat_map(|line| line.nodes).collect()
+            |line: &&Element| names_of(&self.names[1], line.entity).iter().any(|of| of == name);
+        self.elements.of(1).filter(is_named).flat_map(Element::nodes).copied().collect()
     }
 
     /// The mesh of the triangles, in their order.
     fn mesh(self, places: &[[f64; 2]], note: &str, pairs: &[Pair]) -> Result<Mesh> {
         let RawMesh { nodes, elements, names, .. } = self;
-        let Elements { points, lines, triangles, .. } = elements;
-        let (triangles, other_entities) = once(triangles, &names[2]);
-        let kept = used(&triangles, nodes.len());
+        let (triangles, other_entities) = once(elements.of(2).collect(), &names[2]);
+        let kept = used(triangles.iter().copied(), nodes.len());
         let mut vertex_of = vec![None; nodes.len()];
         kept.iter().enumerate().for_each(|(vertex, &node)| vertex_of[node] = Some(vertex));
 
         let mut parts: BTreeMap<String, Vec<[usize; 2]>> = empty(&names[1]);
         let mut faults = BTreeMap::new();
         let mut curves: BTreeMap<String, Vec<[[f64; 2]; 2]>> = BTreeMap::new();
-        for line in &lines {
-            for name in names_of(&names[1], line.entity) {
-                if let [Some(a), Some(b)] = line.nodes.map(|node| vertex_of[node]) {
+        for &Element { nodes: [start, end, ..], entity, .. } in elements.of(1) {
+            for name in names_of(&names[1], entity) {
+                if let [Some(a), Some(b)] = [vertex_of[start], vertex_of[end]] {
                     parts.entry(name.clone()).or_default().push([a, b]);
                 } else {
-                    let ends = line.nodes.map(|node| places[node]);
+                    let ends = [places[start], places[end]];
                     curves.entry(name.clone()).or_default().push(ends);
                     let fault = MeshError::NoSuchEdge { boundary: name.clone(), ends };
                     faults.entry(name.clone()).or_insert(fault);
@@ -431,14 +407,14 @@ impl RawMesh {
             members.dedup();
         });
         let mut named_points: BTreeMap<String, Vec<usize>> = BTreeMap::new();
-        for point in &points {
+        for point in elements.of(0) {
             for name in names_of(&names[0], point.entity) {
                 let of_name = named_points.entry(name.clone()).or_default();
                 of_name.extend(vertex_of[point.nodes[0]].filter(|v| !of_name.contains(v)));
             }
         }
         let corners =
-            triangles.iter().map(|t| t.nodes.map(|node| vertex_of[node].unwrap_or_default()));
+            triangles.iter().map(|t| t.triangle().map(|node| vertex_of[node].unwrap_or_default()));
         let of_kept = kept.iter().map(|&node| places[node]).collect();
         Mesh::with_pairs(of_kept, corners.collect(), parts, pairs)
             .and_then(|mesh| mesh.with_names(surfaces, named_points))
@@ -451,9 +427,9 @@ impl RawMesh {
 }
 
 /// The nodes that are corners of triangles, in order.
-fn used(triangles: &[Element<3>], nodes: usize) -> Vec<usize> {
+fn used<'e>(triangles: impl Iterator<Item = &'e Element>, nodes: usize) -> Vec<usize> {
     let mut is_used = vec![false; nodes];
-    triangles.iter().flat_map(|t| t.nodes).for_each(|node| is_used[node] = true);
+    triangles.flat_map(Element::nodes).for_each(|&node| is_used[node] = true);
     (0..nodes).filter(|&node| is_used[node]).collect()
 }
 
@@ -479,29 +455,29 @@ fn noted(error: MeshError, note: &str) -> Failure {
 const STRAIGHT: f64 = 1e-10;
 
 /// Twice the area of a polygon, positive if it runs counter-clockwise; 0 where it is nothing beside the polygon's size.
-fn turning<const N: usize>(places: [[f64; 2]; N]) -> f64 {
-    let from = |i: usize| Vector2::from(places[i % N]) - Vector2::from(places[0]);
-    let area: f64 = (1..N).map(|i| from(i).perp(&from(i + 1))).sum();
-    let size = Bounds::around(places).size();
+fn turning(places: &[[f64; 2]]) -> f64 {
+    let from = |i: usize| Vector2::from(places[i % places.len()]) - Vector2::from(places[0]);
+    let area: f64 = (1..places.len()).map(|i| from(i).perp(&from(i + 1))).sum();
+    let size = Bounds::around(places.iter().copied()).size();
     if area.abs() > ROUNDED * size * size { area } else { 0.0 }
 }
 
 /// Turns the elements of each surface on which all run clockwise. Returns whether there is one on which some do.
 fn turn(elements: &mut Elements, places: &[[f64; 2]]) -> bool {
-    let place = |node: usize| places[node];
-    let Elements { triangles, quadrangles, .. } = elements;
     // For each surface whether some run clockwise and whether some run the other way.
     let mut found: HashMap<i32, [bool; 2]> = HashMap::new();
-    let areas = triangles.iter().map(|e| (e.entity, turning(e.nodes.map(place))));
-    let more = quadrangles.iter().map(|e| (e.entity, turning(e.nodes.map(place))));
-    for (entity, area) in areas.chain(more) {
-        let [clockwise, other] = found.entry(entity).or_default();
+    for element in elements.of(2) {
+        let corners = element.nodes.map(|node| places[node]);
+        let area = turning(&corners[..element.corners]);
+        let [clockwise, other] = found.entry(element.entity).or_default();
         *clockwise |= area < 0.0;
         *other |= area > 0.0;
     }
-    let is_clockwise = |entity: i32| found.get(&entity) == Some(&[true, false]);
-    triangles.iter_mut().filter(|e| is_clockwise(e.entity)).for_each(|e| e.nodes.swap(1, 2));
-    quadrangles.iter_mut().filter(|e| is_clockwise(e.entity)).for_each(|e| e.nodes.swap(1, 3));
+    for element in elements.all.iter_mut().filter(|element| element.corners > 2) {
+        if found.get(&element.entity) == Some(&[true, false]) {
+            element.nodes.swap(1, element.corners - 1);
+        }
+    }
     found.values().any(|found| *found == [true, true])
 }
 
@@ -512,7 +488,7 @@ const SHORTER: f64 = 1e-6;
 fn halves(places: [[f64; 2]; 4]) -> [[usize; 3]; 2] {
     let diagonals = [[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]]];
     let is_inside = |halves: [[usize; 3]; 2]| {
-        halves.iter().all(|half| turning(half.map(|corner| places[corner])) > 0.0)
+        halves.iter().all(|half| turning(&half.map(|corner| places[corner])) > 0.0)
     };
     let between = |a: usize, b: usize| length(Vector2::from(places[b]) - Vector2::from(places[a]));
     let is_second_shorter = between(1, 3) < (1.0 - SHORTER) * between(0, 2);
@@ -536,15 +512,15 @@ fn said_of_split(quadrangles: usize) -> Option<String> {
 
 /// The triangles, each once even if listed for each of several groups, with the further entities of each. A triangle that is
 /// listed twice for one group stays double, and is refused as an overlap.
-fn once(
-    triangles: Vec<Element<3>>,
+fn once<'e>(
+    triangles: Vec<&'e Element>,
     names: &BTreeMap<i32, Vec<String>>,
-) -> (Vec<Element<3>>, Vec<(usize, i32)>) {
+) -> (Vec<&'e Element>, Vec<(usize, i32)>) {
     if triangles.iter().all(|t| t.entity == triangles[0].entity) {
         return (triangles, Vec::new());
     }
-    let sorted = |(t, triangle): (usize, &Element<3>)| {
-        let mut nodes = triangle.nodes;
+    let sorted = |(t, triangle): (usize, &&Element)| {
+        let mut nodes = triangle.triangle();
         nodes.sort_unstable();
         (nodes, t)
     };

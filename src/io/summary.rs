@@ -9,7 +9,6 @@ use super::result::{
     Adaptation, ContinuousCertificate, DiscreteCertificate, GammaChoice, IsolatedSolution,
     MeshSizes, NewtonHistory, Results, Seconds, StressPeak,
 };
-use super::sweep::Sweep;
 use super::{Case, numbers};
 use crate::certificates::Continuous;
 use crate::certificates::adapt::AdaptedLevel;
@@ -393,7 +392,7 @@ fn of_problem(problem: Option<&str>) -> String {
     problem.map_or(String::new(), |problem| format!(", of the problem with {problem}"))
 }
 
-/// What the summary of an audit says of the case that a certificate is of.
+/// The case that a certificate is of, in the summary of an audit.
 pub struct AuditedCase {
     /// Its file.
     pub file: PathBuf,
@@ -585,13 +584,6 @@ fn distance(certificate: &ContinuousCertificate, lines: &mut Lines) {
     }
 }
 
-pub fn swept(sweep: &Sweep, files: &[PathBuf]) -> String {
-    let (title, table) = (quote::line(&sweep.title), sweep.table());
-    let remarks = sweep.remarks();
-    let remarks = if remarks.is_empty() { remarks } else { format!("\n{remarks}") };
-    format!("{title}\n\n{table}{remarks}\nwritten: {}\n", written(files))
-}
-
 pub(super) fn sizes(mesh: &MeshSizes) -> String {
     let MeshSizes { vertices, triangles, dofs, contact_edges, h_max } = *mesh;
     // P1 has its nodes at the vertices alone.
@@ -681,7 +673,7 @@ fn short(x: f64) -> String {
 }
 
 /// folder/{a, b, c}
-fn written(files: &[PathBuf]) -> String {
+pub(super) fn written(files: &[PathBuf]) -> String {
     let folder = files.first().and_then(|file| file.parent()).unwrap_or(Path::new(""));
     let names: Vec<_> =
         files.iter().flat_map(|f| f.file_name()).map(|n| n.to_string_lossy()).collect();

@@ -411,7 +411,7 @@ impl Sweep {
     }
 
     /// The table for people: columns with four digits, aligned.
-    pub(crate) fn table(&self) -> String {
+    fn table(&self) -> String {
         let mut lines = self.lines(true, &|x| short(x, 4));
         for line in &mut lines {
             let status = line.len() - 1;
@@ -430,7 +430,7 @@ impl Sweep {
     }
 
     /// The remarks on the runs, a line each: those that several runs share once, with the numbers of these; empty if there are none.
-    pub(crate) fn remarks(&self) -> String {
+    fn remarks(&self) -> String {
         let mut remarks: Vec<(String, Vec<String>)> = Vec::new();
         for (i, results) in (1..).zip(&self.results) {
             for text in results.iter().flat_map(summary::remarks) {
@@ -452,8 +452,16 @@ impl Sweep {
         if rest > 0 { shown + &more } else { shown }
     }
 
+    /// The table, the remarks and the names of the `files` that were written, as the command prints them.
+    pub fn summary(&self, files: &[PathBuf]) -> String {
+        let (title, remarks) = (quote::line(&self.title), self.remarks());
+        let remarks = if remarks.is_empty() { remarks } else { format!("\n{remarks}") };
+        let written = summary::written(files);
+        format!("{title}\n\n{}{remarks}\nwritten: {written}\n", self.table())
+    }
+
     /// The text of the table: each number the shortest decimal that reads back to the same double.
-    pub(crate) fn csv(&self) -> String {
+    fn csv(&self) -> String {
         self.lines(false, &csv::number).into_iter().map(csv::line).collect()
     }
 
@@ -665,15 +673,6 @@ mod tests {
         for text in ["method.gamma0", "=1", "a=", "a=x,,y"] {
             assert!(text.parse::<ParameterAxis>().is_err(), "{text}");
         }
-    }
-
-    #[test]
-    fn the_last_axis_changes_first() {
-        let axes = [axis("a=1,2"), axis("b=3,4,5")];
-        assert_eq!(count(&axes).unwrap(), 6);
-        let runs: Vec<String> = combinations(&axes).iter().map(|values| values.join("")).collect();
-        assert_eq!(runs, ["13", "14", "15", "23", "24", "25"]);
-        assert_eq!(combinations(&[]), [Vec::<String>::new()]);
     }
 
     #[test]

@@ -38,18 +38,18 @@ pub struct Constraints {
 
 /// A direction in which a node is held.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Held {
+pub(crate) struct Held {
     /// The node.
-    pub node: usize,
+    pub(crate) node: usize,
     /// d, in which the force on the node acts.
-    pub direction: [f64; 2],
+    pub(crate) direction: [f64; 2],
     /// The force of size `dual . r` along d is this holder's part of a force r on the node.
-    pub dual: [f64; 2],
+    pub(crate) dual: [f64; 2],
 }
 
 impl Held {
     /// This holder's part of the force `r` on its node.
-    pub fn part_of(&self, r: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn part_of(&self, r: [f64; 2]) -> [f64; 2] {
         let size = self.dual[0] * r[0] + self.dual[1] * r[1];
         self.direction.map(|c| size * c)
     }
@@ -101,7 +101,7 @@ impl Constraints {
     }
 
     /// The amount by which the directions in which nodes are held may be off because vertices are rounded.
-    pub fn rounding(&self) -> f64 {
+    pub(crate) fn rounding(&self) -> f64 {
         self.rounding
     }
 
@@ -173,7 +173,7 @@ impl Constraints {
     }
 
     /// The first axes of the frames that are not those of the coordinates, by node; the second is the first turned left.
-    pub fn frames(&self) -> &BTreeMap<usize, [f64; 2]> {
+    pub(crate) fn frames(&self) -> &BTreeMap<usize, [f64; 2]> {
         &self.frames
     }
 
@@ -194,7 +194,7 @@ impl Constraints {
     }
 
     /// The directions in which a node is held.
-    pub fn directions(&self, node: usize) -> impl Iterator<Item = [f64; 2]> {
+    pub(crate) fn directions(&self, node: usize) -> impl Iterator<Item = [f64; 2]> {
         let axes = match self.frames.get(&node) {
             Some(&axis) => [axis, [-axis[1], axis[0]]],
             None => [[1.0, 0.0], [0.0, 1.0]],
@@ -218,7 +218,7 @@ impl Demand<'_> {
 }
 
 /// The components of a vector along `axis` and along `axis` turned left.
-pub fn in_frame<S: Scalar + From<f64>>(axis: [f64; 2], [x, y]: [S; 2]) -> [S; 2] {
+pub(crate) fn in_frame<S: Scalar + From<f64>>(axis: [f64; 2], [x, y]: [S; 2]) -> [S; 2] {
     let axis = axis.map(S::from);
     [axis[0] * x + axis[1] * y, axis[0] * y - axis[1] * x]
 }

@@ -42,7 +42,7 @@ impl Degree {
     }
 
     /// The nodes on a triangle: 3 or 6.
-    pub fn nodes_per_triangle(self) -> usize {
+    pub(crate) fn nodes_per_triangle(self) -> usize {
         3 * self.number()
     }
 
@@ -67,7 +67,7 @@ impl Degree {
     }
 
     /// The shape functions at the barycentric coordinates `l`.
-    pub fn values<S: Scalar>(self, l: [S; 3]) -> Vec<S> {
+    pub(crate) fn values<S: Scalar>(self, l: [S; 3]) -> Vec<S> {
         with_element!(self, E => E::values(l).into())
     }
 
@@ -110,7 +110,7 @@ impl Degree {
 
     /// The amount by which the length of an edge counts more where the direction of contact turns:
     /// [`contact_edge::turning_factor`].
-    pub fn turning_factor<S: Scalar>(self, cosine: S) -> S {
+    pub(crate) fn turning_factor<S: Scalar>(self, cosine: S) -> S {
         with_element!(self, E => contact_edge::turning_factor::<E, _, _, _>(cosine))
     }
 
@@ -144,12 +144,12 @@ impl Degree {
     }
 
     /// As [`Degree::turning_factor`], where the component across acts as well: [`contact_edge::turning_factor_of_both`].
-    pub fn turning_factor_of_both<S: Scalar>(self, cosine: S, root: impl Fn(S) -> S) -> S {
+    pub(crate) fn turning_factor_of_both<S: Scalar>(self, cosine: S, root: impl Fn(S) -> S) -> S {
         with_element!(self, E => contact_edge::turning_factor_of_both::<E, _, _, _>(cosine, root))
     }
 
     /// Calls `f` at the points, with their weights, of a rule that is exact for a product of two gradients.
-    pub fn at_stiffness_points<S: Scalar>(self, f: impl FnMut([S; 3], S)) {
+    pub(crate) fn at_stiffness_points<S: Scalar>(self, f: impl FnMut([S; 3], S)) {
         with_element!(self, E => E::at_stiffness_points(f));
     }
 
@@ -161,19 +161,19 @@ impl Degree {
     }
 
     /// The places inside (0, 1) where that polynomial changes its sign, in no particular order.
-    pub fn roots(self, p: &[f64]) -> Vec<f64> {
+    pub(crate) fn roots(self, p: &[f64]) -> Vec<f64> {
         with_element!(self, E => {
             edge_integral::roots::<E, _, _>(std::array::from_fn(|a| p[a])).collect()
         })
     }
 
     /// The largest value of that polynomial on the edge.
-    pub fn maximum(self, p: &[f64]) -> f64 {
+    pub(crate) fn maximum(self, p: &[f64]) -> f64 {
         with_element!(self, E => edge_integral::maximum::<E, _, _>(std::array::from_fn(|a| p[a])))
     }
 
     /// The Bernstein coefficients of that polynomial, which lies between the least and the largest of them.
-    pub fn bernstein<S: Scalar>(self, p: &[S]) -> Vec<S> {
+    pub(crate) fn bernstein<S: Scalar>(self, p: &[S]) -> Vec<S> {
         let mut coefficients = p.to_vec();
         if self == Degree::Two {
             coefficients[2] = S::from(2) * p[2] - (p[0] + p[1]) / S::from(2);

@@ -145,16 +145,14 @@ impl Mesh {
     /// The ends of the edges of a named curve beside the body.
     ///
     /// # Errors
-    /// [`MeshError::NoSuchCurve`], with the names that there are.
+    /// [`MeshError::NoSuchName`], with the names that there are.
     pub(crate) fn curve(&self, name: &str) -> Result<&[[[f64; 2]; 2]], MeshError> {
-        let curves = &self.topology.curves;
-        curves.get(name).map(Vec::as_slice).ok_or_else(|| MeshError::NoSuchCurve {
-            name: name.to_owned(),
-            known: listed(
-                curves.keys(),
-                "none (in Gmsh a Physical Curve that bounds no surface is one)",
-            ),
-        })
+        named(
+            &self.topology.curves,
+            name,
+            "curve beside the body is named",
+            "in Gmsh a Physical Curve that bounds no surface is one",
+        )
     }
 
     /// Names the edges of the boundary whose two ends are places where `holds`.
@@ -188,31 +186,22 @@ impl Mesh {
     /// The triangles of a named part of the body.
     ///
     /// # Errors
-    /// [`MeshError::NoSuchSurface`], with the names that there are.
+    /// [`MeshError::NoSuchName`], with the names that there are.
     pub fn surface(&self, name: &str) -> Result<&[usize], MeshError> {
-        let surfaces = &self.topology.surfaces;
-        surfaces.get(name).map(Vec::as_slice).ok_or_else(|| {
-            let known = listed(surfaces.keys(), "none (in Gmsh a Physical Surface is one)");
-            MeshError::NoSuchSurface { name: name.to_owned(), known }
-        })
+        let of_gmsh = "in Gmsh a Physical Surface is one";
+        named(&self.topology.surfaces, name, "surface named", of_gmsh)
     }
 
     /// The vertex of a named point.
     ///
     /// # Errors
-    /// [`MeshError::NoSuchPoint`], with the names that there are; [`MeshError::NotOnePoint`] where several vertices, or none, have
+    /// [`MeshError::NoSuchName`], with the names that there are; [`MeshError::NotOnePoint`] where several vertices, or none, have
     /// the name.
     pub fn point(&self, name: &str) -> Result<usize, MeshError> {
-        let points = &self.topology.points;
-        match points.get(name).map(Vec::as_slice) {
-            Some(&[vertex]) => Ok(vertex),
-            Some(several) => {
-                Err(MeshError::NotOnePoint { name: name.to_owned(), count: several.len() })
-            }
-            None => {
-                let known = listed(points.keys(), "none (in Gmsh a Physical Point is one)");
-                Err(MeshError::NoSuchPoint { name: name.to_owned(), known })
-            }
+        let of_gmsh = "in Gmsh a Physical Point is one";
+        match named(&self.topology.points, name, "point named", of_gmsh)? {
+            &[vertex] => Ok(vertex),
+            several => Err(MeshError::NotOnePoint { name: name.to_owned(), count: several.len() }),
         }
     }
 
@@ -244,7 +233,7 @@ impl Mesh {
     }
 
     /// The number of each triangle's edge i, opposite vertex i; the edges of the mesh are counted from 0.
-    pub fn triangle_edges(&self) -> &[[usize; 3]] {
+    pub(crate) fn triangle_edges(&self) -> &[[usize; 3]] {
         &self.topology.triangle_edges
     }
 
@@ -272,18 +261,15 @@ impl Mesh {
     /// The edges of a named boundary part.
     ///
     /// # Errors
-    /// [`MeshError::NoSuchBoundary`], with the names that there are; [`MeshError::InnerEdge`] for a named curve inside the
+    /// [`MeshError::NoSuchName`], with the names that there are; [`MeshError::InnerEdge`] for a named curve inside the
     /// body, [`MeshError::NoSuchEdge`] for one that no triangle has an edge on.
     pub fn edges_of(&self, boundary: &str) -> Result<&[BoundaryEdge], MeshError> {
         if let Some(fault) = self.topology.faults.get(boundary) {
             return Err(fault.clone());
         }
-        let boundaries = &self.topology.boundaries;
-        boundaries.get(boundary).map(Vec::as_slice).ok_or_else(|| {
-            let none = "none (in Gmsh a Physical Curve is one, in a case file where = \"abs(y) < 1e-9\" makes one)";
-            let known = listed(boundaries.keys(), none);
-            MeshError::NoSuchBoundary { name: boundary.to_owned(), known }
-        })
+        let where_from =
+            "in Gmsh a Physical Curve is one, in a case file where = \"abs(y) < 1e-9\" makes one";
+        named(&self.topology.boundaries, boundary, "boundary named", where_from)
     }
 
     /// Checks that no edge has two of these names: an edge that has two may be used by one of them.
@@ -500,105 +486,18 @@ fn check_numbers(
     }
 }
 
-fn listed<'a>(names: impl Iterator<Item = &'a String>, none: &str) -> String {
-    let mut names = names.map(String::as_str).peekable();
-    if names.peek().is_none() { none.to_owned() } else { quote::names(names) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const SQUARE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-
-    fn mesh(vertices: &[[f64; 2]], triangles: &[[usize; 3]]) -> Result<Mesh, MeshError> {
-        Mesh::new(vertices.to_vec(), triangles.to_vec(), [])
-    }
-
-    fn named(parts: &[(&str, &[[usize; 2]])]) -> Result<Mesh, MeshError> {
-        let parts = parts.iter().map(|(name, edges)| ((*name).to_owned(), edges.to_vec()));
-        Mesh::new(SQUARE.to_vec(), vec![[0, 1, 2], [0, 2, 3]], parts)
-    }
-
-    fn message(result: Result<Mesh, MeshError>) -> String {
-        result.unwrap_err().to_string()
-    }
-
-    #[test]
-    fn a_square_of_two_triangles_has_five_edges_four_of_them_outside() {
-        let m = mesh(&SQUARE, &[[0, 1, 2], [0, 2, 3]]).unwrap();
-        assert_eq!(m.edge_count(), 5);
-        assert_eq!(m.outline().len(), 4);
-        assert_eq!(m.triangle_edges()[0][1], m.triangle_edges()[1][2], "the diagonal is shared");
-        assert_eq!(m.diameter(0), 2.0_f64.sqrt());
-    }
-
-    #[test]
-    fn outward_normals_weighted_by_length_add_up_to_zero() {
-        let m = mesh(&SQUARE, &[[0, 1, 2], [0, 2, 3]]).unwrap();
-        let mut sum = [0.0; 2];
-        for &e in m.outline() {
-            let (length, n) = m.length_and_normal(e);
-            sum = [sum[0] + length * n[0], sum[1] + length * n[1]];
-        }
-        assert_eq!(sum, [0.0; 2]);
-    }
-
-    #[test]
-    fn boundary_parts_are_found_by_name_in_either_direction() {
-        let m = named(&[("floor", &[[1, 0]]), ("sides", &[[1, 2], [0, 3]])]).unwrap();
-        let floor = m.edges_of("floor").unwrap();
-        assert_eq!(m.ends(floor[0]), [0, 1]);
-        assert_eq!(m.length_and_normal(floor[0]), (1.0, Vector2::new(0.0, -1.0)));
-        assert_eq!(m.edges_of("sides").unwrap().len(), 2);
-    }
-
-    #[test]
-    fn a_mesh_without_named_boundaries_says_so() {
-        let e = named(&[]).unwrap().edges_of("a").unwrap_err().to_string();
-        assert_eq!(
-            e,
-            "no boundary named 'a'; this mesh has: none (in Gmsh a Physical Curve is one, in a case file where = \"abs(y) < 1e-9\" makes one)"
-        );
-    }
-
-    #[test]
-    fn vertices_that_are_not_there_or_not_needed_are_refused_by_number() {
-        assert_eq!(
-            message(mesh(&SQUARE, &[[0, 1, 2], [0, 2, 7]])),
-            "triangle 1 names vertex 7; expected one of the 4 vertices of this mesh"
-        );
-        let twice = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [-0.0, 0.0], [0.0, 1.0]];
-        assert_eq!(
-            message(mesh(&twice, &[[0, 1, 2], [3, 2, 4]])),
-            "vertices 0 and 3 are both at (0, 0); expected one vertex there (mesh.merge makes them one), or two bodies that are a [[pair]]"
-        );
-        assert_eq!(
-            message(mesh(&SQUARE, &[[0, 1, 2]])),
-            "vertex 3 at (0, 1) belongs to no triangle"
-        );
-    }
-
-    #[test]
-    fn overlapping_and_hanging_triangles_are_refused() {
-        let v = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 3.0]];
-        assert_eq!(
-            message(mesh(&v, &[[0, 1, 2], [0, 1, 3]])),
-            "triangles 0 and 1 overlap: both lie on the same side of the edge from vertex 0 to vertex 1"
-        );
-        let v = [[0.0, 0.0], [2.0, 0.0], [0.0, 2.0], [1.0, 1.0], [2.0, 2.0]];
-        assert_eq!(
-            message(mesh(&v, &[[0, 1, 2], [1, 4, 3], [3, 4, 2]])),
-            "vertex 3 at (1, 1) hangs inside the edge between vertices 1 and 2 of triangle 0: neighbours must share whole edges"
-        );
-    }
-
-    #[test]
-    fn boundary_edges_inside_the_body_are_refused() {
-        let cut = named(&[("cut", &[[0, 2]])]).unwrap();
-        assert_eq!(
-            cut.edges_of("cut").unwrap_err().to_string(),
-            "boundary 'cut': its edge from (0, 0) to (1, 1) lies inside the body, between two triangles; nothing can be prescribed there"
-        );
-    }
+/// The entry of a name; `kind` and how Gmsh makes one are for the message about a name that is not there.
+fn named<'m, T>(
+    all: &'m BTreeMap<String, Vec<T>>,
+    name: &str,
+    kind: &'static str,
+    made: &str,
+) -> Result<&'m [T], MeshError> {
+    all.get(name).map(Vec::as_slice).ok_or_else(|| {
+        let known = match all.is_empty() {
+            true => format!("none ({made})"),
+            false => quote::names(all.keys().map(String::as_str)),
+        };
+        MeshError::NoSuchName { kind, name: name.to_owned(), known }
+    })
 }

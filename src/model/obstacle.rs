@@ -48,7 +48,7 @@ pub enum Obstacle {
         /// Where the body is.
         side: Side,
     },
-    /// What lies beyond a line of straight sides and arcs.
+    /// The region beyond a line of straight sides and arcs.
     Path {
         /// The line.
         path: Arc<Path>,

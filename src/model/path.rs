@@ -38,7 +38,7 @@ pub enum PathError {
 pub struct Path {
     sides: Vec<Side>,
     closed: bool,
-    /// What is small beside it is rounding.
+    /// The largest coordinate: a length that is small beside it is rounding.
     size: f64,
 }
 
@@ -436,37 +436,5 @@ mod tests {
         assert!(seen(&polygon, x).0 < -5e-3 && seen(&path, x).0.abs() < 1e-13);
         let error = Path::through(&[edges[0], edges[9]]).unwrap_err().to_string();
         assert!(error.starts_with("the edges are not one line: at ("), "{error}");
-    }
-
-    #[test]
-    fn what_is_no_line_is_refused() {
-        let said =
-            |points: &[[f64; 2]], radii: &[f64]| Path::new(points, radii).unwrap_err().to_string();
-        let corner = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
-        assert_eq!(
-            said(&[[0.0, 0.0]], &[]),
-            "found 1 points; expected two or more, and three that differ for a closed line"
-        );
-        assert_eq!(
-            said(&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0]], &[]),
-            "the point (1, 0) follows itself; expected points that differ"
-        );
-        assert_eq!(
-            said(&corner, &[1.0, 2.0]),
-            "found 2 radii; expected one, or one for each of the 1 corners"
-        );
-        assert_eq!(
-            said(&[[0.0, 0.0], [1.0, 0.0], [0.5, 0.0]], &[]),
-            "the line turns back at (1, 0); expected a corner"
-        );
-        let error = said(&corner, &[1.5]);
-        assert!(
-            error.starts_with("the arcs of radius 1.5 at (1, 0) and of its neighbour take 1.5"),
-            "{error}"
-        );
-        assert!(
-            error.ends_with("of the side between them, which is 1 long; expected smaller radii"),
-            "{error}"
-        );
     }
 }

@@ -1,30 +1,12 @@
-//! The edges of an outline, met by a line that sweeps over the plane: which of them are near which vertices, whether two cross, and
-//! whether body lies over body.
+//! The edges of an outline, met by a line that sweeps over the plane: whether two cross, and whether body lies over body.
 //!
 //! The sweep line stands upright and goes from left to right. It keeps the edges that it meets in their order from below, the
 //! *column*; that order changes at the ends of edges only, as long as none cross, and two that cross are next to each other in
 //! the column before they do (Shamos and Hoey, *Geometric intersection problems*, 1976). The body lies on the left of each edge:
 //! from below, edges with the body above them and edges with the body below them must take turns, or some of it is covered twice.
-//! Time is proportional to N log N for N edges, whatever their shape, and for what is found near.
+//! Time is proportional to N log N for N edges, whatever their shape.
 
 use nalgebra::Vector2;
-
-/// The edges of an outline.
-pub(super) struct Edges<'a> {
-    /// The places of vertices.
-    pub(crate) places: &'a [Vector2<f64>],
-    /// Start and end of each edge.
-    pub(crate) ends: &'a [[usize; 2]],
-    /// The body lies on the left of each edge; else on the right.
-    pub(crate) body_on_left: bool,
-}
-
-/// A question asked for a vertex: which edges cross the upright segment at x from one height to another?
-pub(super) struct Question {
-    pub(crate) vertex: usize,
-    pub(crate) x: f64,
-    pub(crate) between: [f64; 2],
-}
 
 /// Faults of an outline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,27 +17,10 @@ pub(super) enum Fault {
     Covered { edge: usize, below: Option<usize> },
 }
 
-/// Sweeps until there is a fault; calls back with the vertex of a question and each edge that answers it, until the answer is
-/// to stop.
-pub(super) fn sweep(
-    edges: &Edges,
-    questions: &[Question],
-    mut near: impl FnMut(usize, usize) -> bool,
-) -> Result<(), Fault> {
-    let mut sweep = Sweep::new(edges);
-    let mut questions: Vec<&Question> = questions.iter().collect();
-    questions.sort_unstable_by(|a, b| a.x.total_cmp(&b.x));
-    let mut asked = questions.into_iter().peekable();
-    for rank in 0..sweep.vertices.len() {
-        let x = edges.places[sweep.vertices[rank]].x;
-        while let Some(question) = asked.next_if(|question| question.x < x) {
-            if !sweep.answer(question, &mut near) {
-                return Ok(());
-            }
-        }
-        sweep.pass(rank)?;
-    }
-    Ok(())
+/// Sweeps over the edges with these places of vertices, each from start to end with the body on its left, until there is a fault.
+pub(super) fn sweep(places: &[Vector2<f64>], ends: &[[usize; 2]]) -> Result<(), Fault> {
+    let mut sweep = Sweep::new(places, ends);
+    (0..sweep.vertices.len()).try_for_each(|rank| sweep.pass(rank))
 }
 
 /// Twice the area of the triangle a b c, positive if it is counter-clockwise; 0 where rounding could change the sign.
@@ -75,7 +40,8 @@ pub(super) fn cross([a, b]: [Vector2<f64>; 2], [c, d]: [Vector2<f64>; 2]) -> boo
 }
 
 struct Sweep<'a> {
-    edges: &'a Edges<'a>,
+    places: &'a [Vector2<f64>],
+    ends: &'a [[usize; 2]],
     /// The vertices of the outline in the order in which the line meets them; of those above each other the lower one first.
     vertices: Vec<usize>,
     /// Both ends of each edge by their ranks in that order, the lower rank first.
@@ -86,29 +52,29 @@ struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    fn new(edges: &'a Edges) -> Self {
-        let place = |v: usize| edges.places[v];
-        let mut vertices = edges.ends.as_flattened().to_vec();
+    fn new(places: &'a [Vector2<f64>], ends: &'a [[usize; 2]]) -> Self {
+        let place = |v: usize| places[v];
+        let mut vertices = ends.as_flattened().to_vec();
         vertices.sort_unstable_by(|&v, &w| {
             let ([a, b], [c, d]): ([f64; 2], [f64; 2]) = (place(v).into(), place(w).into());
             a.total_cmp(&c).then(b.total_cmp(&d)).then(v.cmp(&w))
         });
         vertices.dedup();
-        let mut rank = vec![0; edges.places.len()];
+        let mut rank = vec![0; places.len()];
         vertices.iter().enumerate().for_each(|(r, &v)| rank[v] = r);
         let mut at = vec![Vec::new(); vertices.len()];
-        let mut ranks = Vec::with_capacity(edges.ends.len());
-        for (e, ends) in edges.ends.iter().enumerate() {
-            let mut pair = ends.map(|v| rank[v]);
+        let mut ranks = Vec::with_capacity(ends.len());
+        for (e, of_edge) in ends.iter().enumerate() {
+            let mut pair = of_edge.map(|v| rank[v]);
             pair.iter().for_each(|&r| at[r].push(e));
             pair.sort_unstable();
             ranks.push(pair);
         }
-        Sweep { edges, vertices, ranks, at, column: Column::default() }
+        Sweep { places, ends, vertices, ranks, at, column: Column::default() }
     }
 
     fn place(&self, rank: usize) -> Vector2<f64> {
-        self.edges.places[self.vertices[rank]]
+        self.places[self.vertices[rank]]
     }
 
     /// The side of an edge on which `p` lies: above (positive), below (negative), or on it.
@@ -118,8 +84,7 @@ impl<'a> Sweep<'a> {
     }
 
     fn is_body_above(&self, e: usize) -> bool {
-        let runs_right = self.edges.ends[e][0] == self.vertices[self.ranks[e][0]];
-        runs_right == self.edges.body_on_left
+        self.ends[e][0] == self.vertices[self.ranks[e][0]]
     }
 
     /// The edges that end at a vertex leave the column, those that begin there enter it.
@@ -133,7 +98,7 @@ impl<'a> Sweep<'a> {
             left -= usize::from(self.at[rank].contains(&e));
         }
         if left > 0 {
-            // Another edge touches the vertex, which the questions find.
+            // Another edge touches the vertex, which is near it.
             let ranks = &self.ranks;
             self.column.retain(|e| ranks[e][1] != rank);
             at = self.column.first_not(|e| self.side(e, p) > 0.0);
@@ -175,19 +140,6 @@ impl<'a> Sweep<'a> {
         }
         Ok(())
     }
-
-    fn answer(&self, question: &Question, near: &mut impl FnMut(usize, usize) -> bool) -> bool {
-        let &Question { vertex, x, between: [low, high] } = question;
-        let [low, high] = [low, high].map(|y| Vector2::new(x, y));
-        let mut at = self.column.first_not(|e| self.side(e, low) > 0.0);
-        while let Some(e) = self.column.get(at).filter(|&e| self.side(e, high) >= 0.0) {
-            if !near(vertex, e) {
-                return false;
-            }
-            at = self.column.next(at);
-        }
-        true
-    }
 }
 
 /// A sorted list with insertion and removal, in pieces of at most [`MOST`] items, none empty.
@@ -212,11 +164,6 @@ impl Column {
 
     fn get(&self, [k, i]: At) -> Option<usize> {
         self.pieces.get(k)?.get(i).copied()
-    }
-
-    fn next(&self, [k, i]: At) -> At {
-        let is_in = self.pieces.get(k).is_some_and(|piece| i + 1 < piece.len());
-        if is_in { [k, i + 1] } else { [k + 1, 0] }
     }
 
     fn before(&self, [k, i]: At) -> Option<usize> {
@@ -268,55 +215,23 @@ impl Column {
 mod tests {
     use super::*;
 
-    /// Rectangles with the body inside, by their lower left and upper right corners, turned by an angle.
-    fn rectangles(corners: &[[f64; 4]], angle: f64) -> (Vec<Vector2<f64>>, Vec<[usize; 2]>) {
+    /// A stack of 300 bars, which takes several pieces of the column, the last one from this height on.
+    fn stack(last: f64) -> Result<(), Fault> {
         let (mut places, mut ends) = (Vec::new(), Vec::new());
-        for &[a, b, c, d] in corners {
+        for low in (0..299).map(f64::from).chain([last]) {
             let first = places.len();
-            let turned = |[x, y]: [f64; 2]| {
-                let (sin, cos) = angle.sin_cos();
-                Vector2::new(cos * x - sin * y, sin * x + cos * y)
-            };
-            places.extend([[a, b], [c, b], [c, d], [a, d]].map(turned));
-            ends.extend((0..4).map(|i| [first + i, first + (i + 1) % 4]));
+            let corners = [[0.0, low], [10.0, low], [10.0, low + 0.5], [0.0, low + 0.5]];
+            places.extend(corners.map(|[x, y]| Vector2::new(x + low / 1e3, y)));
+            ends.extend((0..4).map(|k| [first + k, first + (k + 1) % 4]));
         }
-        (places, ends)
-    }
-
-    fn swept(corners: &[[f64; 4]], angle: f64) -> Result<(), Fault> {
-        let (places, ends) = rectangles(corners, angle);
-        sweep(&Edges { places: &places, ends: &ends, body_on_left: true }, &[], |_, _| true)
+        sweep(&places, &ends)
     }
 
     #[test]
-    fn outlines_that_cross_or_lie_in_each_other_are_faults_at_any_angle() {
-        let (long, high) = ([-2.0, -0.1, 2.0, 0.1], [-0.1, -2.0, 0.1, 2.0]);
-        for angle in [0.0, 0.1, 0.7, 1.5, 3.0] {
-            // No corner of one lies in the other.
-            assert!(matches!(swept(&[long, high], angle), Err(Fault::Crossing(_))), "{angle}");
-            let inside = [[-1.0, -1.0, 1.0, 1.0], [-0.5, -0.5, 0.5, 0.5]];
-            assert!(matches!(swept(&inside, angle), Err(Fault::Covered { .. })), "{angle}");
-            let apart = [[-2.0, -0.1, -0.2, 0.1], high, [0.2, -0.1, 2.0, 0.1]];
-            assert_eq!(swept(&apart, angle), Ok(()), "control");
+    fn a_stack_of_many_bars_is_taken_and_one_that_overlaps_another_is_found() {
+        assert_eq!(stack(299.0), Ok(()));
+        for within in [0.25, 150.25, 298.25] {
+            assert!(stack(within).is_err(), "{within}");
         }
-    }
-
-    #[test]
-    fn a_question_finds_the_edges_between_two_heights_and_no_others() {
-        // A stack of 300 bars, which takes several pieces of the column.
-        let bars: Vec<[f64; 4]> =
-            (0..300).map(|i| [0.0, f64::from(i), 10.0, f64::from(i) + 0.5]).collect();
-        let (places, ends) = rectangles(&bars, 0.0);
-        let edges = Edges { places: &places, ends: &ends, body_on_left: true };
-        let question = Question { vertex: 7, x: 5.0, between: [99.75, 102.25] };
-        let mut found = Vec::new();
-        let swept = sweep(&edges, &[question], |vertex, e| {
-            assert_eq!(vertex, 7);
-            found.push(e);
-            true
-        });
-        assert_eq!(swept, Ok(()));
-        // Below and above in bars 100, 101 and the lower edge of 102.
-        assert_eq!(found, [400, 402, 404, 406, 408]);
     }
 }

@@ -120,28 +120,3 @@ impl<'a> Space<'a> {
         mean
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::model::{Diagonal, Rectangle};
-    use approx::assert_abs_diff_eq;
-
-    fn mesh() -> Mesh {
-        let diagonal = Diagonal::Crossed;
-        Rectangle { width: 1.0, height: 2.0, nx: 3, ny: 2, diagonal }.mesh().unwrap()
-    }
-
-    #[test]
-    fn the_mean_gradient_of_a_linear_field_is_its_gradient() {
-        let mesh = mesh();
-        for degree in [Degree::One, Degree::Two] {
-            let space = Space::new(&mesh, degree);
-            let nodes = space.nodes().iter();
-            let field: Vec<[f64; 2]> =
-                nodes.map(|[x, y]| [2.0 * x - 3.0 * y, x + 5.0 * y]).collect();
-            let mean = space.mean_gradient(7, &field);
-            assert_abs_diff_eq!(mean, Matrix2::new(2.0, -3.0, 1.0, 5.0), epsilon = 1e-13);
-        }
-    }
-}

@@ -260,39 +260,3 @@ impl Random {
         (z >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn rectangle(diagonal: Diagonal) -> Rectangle {
-        Rectangle { width: 3.0, height: 1.0, nx: 3, ny: 2, diagonal }
-    }
-
-    #[test]
-    fn equal_seeds_give_equal_meshes_and_others_do_not() {
-        let r = rectangle(Diagonal::Crossed);
-        let [a, b, c] = [1, 1, 2].map(|seed| r.perturbed(0.2, seed).unwrap());
-        assert_eq!(a.vertices(), b.vertices());
-        assert_ne!(a.vertices(), c.vertices());
-    }
-
-    #[test]
-    fn impossible_rectangles_are_refused() {
-        let r = rectangle(Diagonal::Right);
-        for (impossible, expected) in [
-            (Rectangle { width: 0.0, ..r }, "width = 0; expected a positive finite length"),
-            (
-                Rectangle { height: f64::NAN, ..r },
-                "height = NaN; expected a positive finite length",
-            ),
-            (Rectangle { ny: 0, ..r }, "ny = 0; expected at least one cell"),
-            (
-                Rectangle { nx: usize::MAX, ..r },
-                "nx = 18446744073709551615 and ny = 2 make more than 4000000 cells; expected fewer",
-            ),
-        ] {
-            assert_eq!(impossible.mesh().unwrap_err().to_string(), expected);
-        }
-    }
-}

@@ -74,7 +74,7 @@ pub struct ContactBoundary {
     /// The largest g - u_n between two bodies; negative where they overlap everywhere.
     #[cfg_attr(feature = "files", serde(skip_serializing_if = "Option::is_none"))]
     pub opening: Option<f64>,
-    /// What friction does; left out without friction.
+    /// The effect of friction; left out without friction.
     #[cfg_attr(feature = "files", serde(skip_serializing_if = "Option::is_none"))]
     pub friction: Option<BoundaryFriction>,
 }
@@ -391,7 +391,7 @@ pub(crate) fn label(boundary: &str, partner: Option<&str>) -> String {
 
 impl ContactBoundary {
     /// Its name, and that of the other body's boundary if there is one.
-    pub fn label(&self) -> String {
+    pub(crate) fn label(&self) -> String {
         label(&self.boundary, self.partner.as_deref())
     }
 

@@ -1,4 +1,4 @@
-//! What is reported: displacement, stresses, contact pressure, resultants, energies, each with its interval, and the verdict.
+//! The results: displacement, stresses, contact pressure, resultants, energies, each with its interval, and the verdict.
 
 #[doc(hidden)]
 pub mod answers;

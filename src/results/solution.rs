@@ -389,7 +389,7 @@ fn put_between(
 
 impl GammaReport {
     /// Reports gamma, kappa and the limit of a discretization.
-    pub fn new(d: &Discretization) -> Self {
+    pub(crate) fn new(d: &Discretization) -> Self {
         let (kappa, coercivity) = (d.kappa(), d.coercivity);
         GammaReport { gamma: d.gamma, gamma0: d.gamma0, kappa, coercivity }
     }

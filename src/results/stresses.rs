@@ -7,7 +7,7 @@ use super::solution::Solution;
 use crate::model::{Degree, Problem};
 
 /// sigma_xx, sigma_yy, sigma_zz, sigma_xy; in a body of revolution sigma_rr, sigma_zz, the hoop stress and sigma_rz.
-pub type Components = [f64; 4];
+pub(crate) type Components = [f64; 4];
 
 /// The von Mises stress, sigma_zz included.
 pub(crate) fn von_mises([xx, yy, zz, xy]: Components) -> f64 {

@@ -50,11 +50,11 @@ use crate::model::mesh::ROUNDED;
 /// The springs of some pieces of Gamma_C that hold the body while it is factored, by the number of the piece: none where it is held
 /// without contact.
 #[derive(Clone, Debug, Default)]
-pub struct Shift(BTreeMap<usize, DMatrix<f64>>);
+pub(crate) struct Shift(BTreeMap<usize, DMatrix<f64>>);
 
 impl Shift {
     /// Those of as few pieces as hold the body.
-    pub fn of(d: &Discretization) -> Self {
+    pub(crate) fn of(d: &Discretization) -> Self {
         if d.slides.is_none() {
             return Shift::default();
         }
@@ -71,7 +71,7 @@ impl Shift {
     ///
     /// # Errors
     /// As [`Factor::with`].
-    pub fn factor(&self, system: &System) -> Result<Factored, SolveError> {
+    pub(crate) fn factor(&self, system: &System) -> Result<Factored, SolveError> {
         if self.is_none() {
             return Factor::with(&system.structure, &system.matrix).map(|l| Arc::new(l).into());
         }

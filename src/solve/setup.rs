@@ -22,15 +22,15 @@ pub fn check(problem: &Problem, method: &Method) -> Result<Outline, SolveError> 
 #[non_exhaustive]
 pub struct Outline {
     /// The number of nodes; each has two degrees of freedom.
-    pub nodes: usize,
+    pub(crate) nodes: usize,
     /// How many of the degrees of freedom are prescribed.
-    pub prescribed: usize,
+    pub(crate) prescribed: usize,
     /// How many edges Gamma_C has.
-    pub contact_edges: usize,
+    pub(crate) contact_edges: usize,
     /// How many rigid motions the supports leave free.
-    pub free_motions: usize,
+    pub(crate) free_motions: usize,
     /// How many of them contact does not stop either.
-    pub slides: usize,
+    pub(crate) slides: usize,
     /// gamma0, kappa and where the limit comes from.
     pub gamma: GammaReport,
 }

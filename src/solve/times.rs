@@ -27,7 +27,7 @@ pub struct Times {
 impl Times {
     /// Adds the times of two solves.
     #[must_use]
-    pub fn plus(&self, other: &Times) -> Times {
+    pub(crate) fn plus(&self, other: &Times) -> Times {
         Times {
             discretize: self.discretize + other.discretize,
             matrix: self.matrix + other.matrix,

@@ -1,7 +1,5 @@
 // Two surfaces under an arc, three of their sides with a name. Gmsh 4.8.4 made
-//   square-ascii.msh:   gmsh -2 -format msh41 -o square-ascii.msh square.geo
 //   square-binary.msh:  gmsh -2 -format msh41 -bin -o square-binary.msh square.geo
-//   square-all.msh:     gmsh -2 -format msh41 -save_all -parametric -o square-all.msh square.geo
 lc = 0.5;
 Point(10) = {0, 0, 0, lc};
 Point(20) = {1, 0, 0, lc};

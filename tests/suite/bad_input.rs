@@ -4,7 +4,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use signorini::io::Case;
+use signorini::io::{Case, gmsh};
+use signorini::model::Mesh;
 
 pub const CASE: &str = r#"title = "Block"
 [mesh]
@@ -310,15 +311,25 @@ fn binary_meshes_that_are_cut_or_damaged_are_refused() {
             "bad.msh, byte 5200: the file ends, expected the tag of a physical group: it is cut short",
         ),
         (
+            message_of_mesh("binary", &[&BINARY[..20], &[0, 0, 0, 1]].concat()),
+            "bad.msh, byte 20: found the bytes of a big-endian machine, expected little-endian numbers: export the mesh as text (Mesh.Binary = 0)",
+        ),
+        (
             message_of_mesh("binary", &with(25, 0)),
             "bad.msh, byte 25: found '\\0EndMeshFormat', expected $EndMeshFormat",
         ),
     ]);
 }
 
-/// Every cut of a file is an error, as the reader's own test says; here what a person reads of some.
+/// Every cut of a file is an error; of some, what a person reads.
 #[test]
 fn text_meshes_that_are_cut() {
+    for file in [MESH.as_bytes(), include_bytes!("../meshes/square-binary.msh")] {
+        for length in 0..file.len() - 1 {
+            let read = gmsh::from_bytes(&file[..length], Path::new("x.msh"), None, &[]);
+            assert!(read.is_err(), "cut at {length}");
+        }
+    }
     let message_at =
         |end: &str| message_of_mesh("cut", &MESH.as_bytes()[..MESH.find(end).unwrap()]);
     compare([
@@ -331,5 +342,56 @@ fn text_meshes_that_are_cut() {
             "bad.msh:27: the file ends, expected a coordinate of a node: it is cut short",
         ),
         (message_at("$EndNodes"), "bad.msh:30: the file ends, expected $EndNodes: it is cut short"),
+    ]);
+}
+
+#[test]
+fn lists_that_are_no_mesh_are_refused_by_number_and_boundaries_run_in_either_direction() {
+    const SQUARE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let mesh = |vertices: &[[f64; 2]], triangles: &[[usize; 3]], edge: [usize; 2]| {
+        let named = [("a".to_owned(), vec![edge])];
+        Mesh::new(vertices.to_vec(), triangles.to_vec(), named)
+    };
+    let said = |vertices: &[[f64; 2]], triangles: &[[usize; 3]], edge| {
+        let mesh = mesh(vertices, triangles, edge);
+        let edges = mesh.and_then(|mesh| mesh.edges_of("a").map(<[_]>::len));
+        edges.map_or_else(|error| error.to_string(), |count| format!("{count} edge"))
+    };
+    let two = [[0, 1, 2], [0, 2, 3]];
+    let twice = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [-0.0, 0.0], [0.0, 1.0]];
+    let across = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 3.0]];
+    let hanging = [[0.0, 0.0], [2.0, 0.0], [0.0, 2.0], [1.0, 1.0], [2.0, 2.0]];
+    compare([
+        (said(&SQUARE, &two, [1, 0]), "1 edge"),
+        (said(&SQUARE, &two, [0, 1]), "1 edge"),
+        (
+            said(&SQUARE, &two, [0, 2]),
+            "boundary 'a': its edge from (0, 0) to (1, 1) lies inside the body, between two triangles; nothing can be prescribed there",
+        ),
+        (
+            said(&SQUARE, &[[0, 1, 2], [0, 2, 7]], [0, 1]),
+            "triangle 1 names vertex 7; expected one of the 4 vertices of this mesh",
+        ),
+        (said(&SQUARE, &[[0, 1, 2]], [0, 1]), "vertex 3 at (0, 1) belongs to no triangle"),
+        (
+            said(&twice, &[[0, 1, 2], [3, 2, 4]], [0, 1]),
+            "vertices 0 and 3 are both at (0, 0); expected one vertex there (mesh.merge makes them one), or two bodies that are a [[pair]]",
+        ),
+        (
+            said(&across, &[[0, 1, 2], [0, 1, 3]], [0, 1]),
+            "triangles 0 and 1 overlap: both lie on the same side of the edge from vertex 0 to vertex 1",
+        ),
+        (
+            said(&hanging, &[[0, 1, 2], [1, 4, 3], [3, 4, 2]], [0, 1]),
+            "vertex 3 at (1, 1) hangs inside the edge between vertices 1 and 2 of triangle 0: neighbours must share whole edges",
+        ),
+        (
+            Mesh::new(SQUARE.to_vec(), two.to_vec(), [])
+                .unwrap()
+                .edges_of("a")
+                .unwrap_err()
+                .to_string(),
+            "no boundary named 'a'; this mesh has: none (in Gmsh a Physical Curve is one, in a case file where = \"abs(y) < 1e-9\" makes one)",
+        ),
     ]);
 }

@@ -23,7 +23,7 @@ const SPLIT: &str = "of the mesh are split into two triangles each, along their 
 const NO_ENTITIES: &str = "the mesh file has names of groups, but no $Entities";
 
 /// The meshes that are read, with how their boundaries are named, their area, and what the remark has, if there is one.
-const READ: [(&str, Named, f64, &str); 39] = [
+const READ: [(&str, Named, f64, &str); 35] = [
     ("msh41", Names, 1.0, ""),
     ("msh41_binary", Names, 1.0, ""),
     ("msh22", Names, 1.0, ""),
@@ -48,10 +48,6 @@ const READ: [(&str, Named, f64, &str); 39] = [
     ("clockwise", Names, 1.0, ""),
     ("clockwise_22", Names, 1.0, ""),
     ("one_surface_clockwise", Names, 2.0, ""),
-    ("partitions", Names, 1.0, ""),
-    ("partitions_binary", Names, 1.0, ""),
-    ("partitions_with_ghosts", Names, 1.0, ""),
-    ("partitions_22", Names, 1.0, ""),
     ("quadrangles", Names, 1.0, SPLIT),
     ("quadrangles_order_2", Names, 1.0, SPLIT),
     ("quadrangles_and_triangles", Names, 2.0, SPLIT),
@@ -82,13 +78,10 @@ const REFUSED: [(&str, &str); 7] = [
     ("shell_3d", "3D is not solved; expected a mesh in a plane z = constant"),
     ("curved", "is curved: node"),
     (
-        "one_partition",
-        "the file has triangles of 1 of the 2 partitions of the mesh; expected all of them in one file",
+        "partitions",
+        ":22: the mesh is in partitions; expected one without: gmsh -2 PART.geo, without",
     ),
-    (
-        "second_partition_22",
-        "the file has triangles of partition 2 of the mesh, and none of partition 1",
-    ),
+    ("partitions_22", ": the mesh is in partitions; expected one without"),
 ];
 
 fn file(name: &str) -> PathBuf {
@@ -153,16 +146,21 @@ fn every_variant_is_in_one_of_the_lists() {
     names.sort();
     let mut listed: Vec<&str> =
         READ.iter().map(|row| row.0).chain(REFUSED.map(|row| row.0)).collect();
-    // These have tests of their own.
-    listed.extend(["first_partition_22", "meshio_quadrangles"]);
+    // This one has a test of its own.
+    listed.push("meshio_quadrangles");
     listed.sort_unstable();
     assert_eq!(names, listed);
 }
 
 #[test]
-fn a_first_partition_may_be_a_part_and_is_read_with_a_remark() {
-    let made = gmsh::read(&file("first_partition_22"), None, &[]).unwrap();
-    assert!(made.remarks[0].starts_with("all triangles are in partition 1"), "{:?}", made.remarks);
+fn line_ends_of_other_systems_and_sections_of_no_use_are_passed_over() {
+    let text = std::fs::read(file("msh41")).unwrap();
+    let other = String::from_utf8(text.clone()).unwrap().replace('\n', "\r\n").into_bytes();
+    let more = b"$Comments\n$Nodes is\n\xff not a section here\n$EndComments\n";
+    let read = |bytes: &[u8]| gmsh::from_bytes(bytes, &file("msh41"), None, &[]).unwrap().mesh;
+    for bytes in [other, [&text, &more[..]].concat()] {
+        assert_eq!(read(&bytes).vertices(), read(&text).vertices());
+    }
 }
 
 #[test]

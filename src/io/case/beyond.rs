@@ -1,6 +1,6 @@
 //! Keys of other programs that this program lacks: their subject is not computed, or has another key here.
 
-/// What is said of a key, and the keys of which it is said, alone or as the first part of a longer key (`yield_stress`).
+/// Messages about keys, and the keys that get each, alone or as the first part of a longer key (`yield_stress`).
 const ELSEWHERE: [(&str, &str); 10] = [
     ("torsion is not computed by this program", "torsion torque twist"),
     (
@@ -40,28 +40,4 @@ pub(super) fn not_here(word: &str) -> Option<String> {
     };
     let found = ELSEWHERE.iter().find(|(_, keys)| keys.split(' ').any(asks));
     found.map(|(said, _)| (*said).to_owned())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn keys_that_ask_for_what_is_not_computed_are_told_from_others() {
-        for (key, what) in [
-            ("Yield-Stress", "plasticity"),
-            ("yield", "plasticity"),
-            ("density", "dynamics"),
-            ("torque", "torsion"),
-        ] {
-            let said = not_here(key);
-            assert_eq!(said, Some(format!("{what} is not computed by this program")), "{key}");
-        }
-        assert!(not_here("Friction-Coefficient").is_some_and(|said| said.contains("coulomb")));
-        assert!(not_here("master").is_some_and(|said| said.ends_with("are a [[pair]]")));
-        assert!(not_here("axisymmetric").is_some_and(|said| said.contains("body.plane")));
-        for key in ["nonsense", "yung", "tolerence", "densities", "timeout"] {
-            assert_eq!(not_here(key), None, "{key}");
-        }
-    }
 }

@@ -19,7 +19,7 @@ pub(super) struct Meshed {
     pub(crate) structured: Option<Structured>,
     pub(crate) perturbation: Option<Perturbation>,
     pub(crate) file: Option<PathBuf>,
-    /// What was decided when the file was read.
+    /// Decisions made when the file was read, in sentences for people.
     pub(crate) remarks: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! What acts on the body: supports as hatching (held altogether) or as a row of rollers (held along one direction), loads and
+//! Supports and loads of the body: supports as hatching (held altogether) or as a row of rollers (held along one direction), loads and
 //! prescribed displacements as arrows, the place of the largest stress, and a bar for the scale.
 
 use svg::Node;
@@ -42,7 +42,7 @@ fn lines(case: &Case, s: &Solution, name: &str) -> Vec<Vec<usize>> {
     edges.iter().map(|&edge| along(case, s, edge)).collect()
 }
 
-/// What holds the body, and whether it does so in both components.
+/// The supports of the body, each with whether it holds both components.
 pub(super) fn supports(case: &Case, s: &Solution) -> Vec<(Vec<usize>, bool)> {
     let mut supports = Vec::new();
     for (name, condition) in &case.problem.conditions {

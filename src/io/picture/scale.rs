@@ -1,4 +1,4 @@
-//! What the pictures of a series have in common, so that two of them can be compared by eye: the magnification, the frame, the colours and
+//! The scale that the pictures of a series have in common, so that two of them can be compared by eye: the magnification, the frame, the colours and
 //! the pressures. A picture by itself is a series of one.
 
 use super::body::Colours;

@@ -38,9 +38,9 @@ pub struct Scene {
     /// The edges of the whole boundary, from start to end, the body on their left.
     pub(super) outline: Vec<[usize; 2]>,
     pub(super) contact: Vec<ContactSurface>,
-    /// What holds the body: lines along its boundary, or single points, each with whether both components are held.
+    /// The supports of the body: lines along its boundary, or single points, each with whether both components are held.
     pub(super) supports: Vec<(Vec<usize>, bool)>,
-    /// What moves or loads it: at a point of the body, with its direction and its size beside the largest of its kind.
+    /// Loads and prescribed displacements: at a point of the body, with its direction and its size beside the largest of its kind.
     pub(super) loads: Vec<Load>,
     /// Where the largest von Mises stress is, as a point of the body.
     pub(super) most_stressed: Option<usize>,

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector2;
 
-use super::{check, check_joints, crossing};
+use super::{check, check_joints, closest, crossing};
 use crate::contact::pairs::Pair;
 use crate::contact::pairs::search::Boundary;
 use crate::model::boundary_normals::SmoothBoundary;
@@ -206,11 +206,9 @@ fn check_between(mesh: &Mesh, parts: &[usize], zones: &[Zone]) -> Result<(), Mes
 /// The place where one of two segments that do not cross comes closest to the other, and their distance.
 fn nearest(first: [Vector2<f64>; 2], second: [Vector2<f64>; 2]) -> (Vector2<f64>, f64) {
     let mut best = (first[0], f64::INFINITY);
-    for (ends, [a, b]) in [(first, second), (second, first)] {
+    for (ends, edge) in [(first, second), (second, first)] {
         for x in ends {
-            let along = b - a;
-            let s = ((x - a).dot(&along) / along.dot(&along)).clamp(0.0, 1.0);
-            let distance = length(a + along * s - x);
+            let distance = length(closest(edge, x) - x);
             if distance < best.1 {
                 best = (x, distance);
             }

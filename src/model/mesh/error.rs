@@ -44,8 +44,8 @@ pub enum MeshError {
         quoted(&surfaces[0], '\''), quoted(&surfaces[1], '\'')
     )]
     NoCommonEdge { surfaces: [String; 2] },
-    #[error("no curve beside the body is named {}; this mesh has: {known}", quoted(name, '\''))]
-    NoSuchCurve { name: String, known: String },
+    #[error("no {kind} {}; this mesh has: {known}", quoted(name, '\''))]
+    NoSuchName { kind: &'static str, name: String, known: String },
     #[error(
         "a boundary named {} is made between two surfaces, and the mesh has one already; expected another name for that",
         quoted(name, '\'')
@@ -67,10 +67,6 @@ pub enum MeshError {
     NoSuchEdge { boundary: String, ends: [[f64; 2]; 2] },
     #[error("boundary {}: its edge from ({}, {}) to ({}, {}) lies inside the body, between two triangles; nothing can be prescribed there", quoted(boundary, '\''), number(ends[0][0]), number(ends[0][1]), number(ends[1][0]), number(ends[1][1]))]
     InnerEdge { boundary: String, ends: [[f64; 2]; 2] },
-    #[error("no surface named {}; this mesh has: {known}", quoted(name, '\''))]
-    NoSuchSurface { name: String, known: String },
-    #[error("no point named {}; this mesh has: {known}", quoted(name, '\''))]
-    NoSuchPoint { name: String, known: String },
     #[error("{} {} names {} {number}; expected numbers from 0 on of the {count} {} of this mesh", of[0], quoted(name, '\''), of[1], of[2])]
     Beyond { of: [&'static str; 3], name: String, number: usize, count: usize },
     #[error("{count} points have the name {}; expected one", quoted(name, '\''))]
@@ -84,8 +80,6 @@ pub enum MeshError {
     Nowhere { low: [f64; 2], high: [f64; 2] },
     #[error("the edge from ({}, {}) to ({}, {}) belongs to the boundaries {} and {}; expected a condition on one of them only", number(ends[0][0]), number(ends[0][1]), number(ends[1][0]), number(ends[1][1]), quoted(&names[0], '\''), quoted(&names[1], '\''))]
     NamedTwice { ends: [[f64; 2]; 2], names: [String; 2] },
-    #[error("no boundary named {}; this mesh has: {known}", quoted(name, '\''))]
-    NoSuchBoundary { name: String, known: String },
     #[error("{0}; use a coarser mesh")]
     OutOfMemory(#[from] OutOfMemory),
     #[error("{name} = {}; expected a positive finite length", number(*value))]
@@ -158,12 +152,9 @@ impl MeshError {
             | NamedTwice { .. }
             | NoSuchEdge { .. }
             | InnerEdge { .. }
-            | NoSuchBoundary { .. }
             | NoCommonEdge { .. }
             | NameOfSplit { .. }
-            | NoSuchCurve { .. }
-            | NoSuchSurface { .. }
-            | NoSuchPoint { .. }
+            | NoSuchName { .. }
             | Size { .. }
             | NoCells { .. }
             | TooManyCells { .. } => {}

@@ -19,8 +19,8 @@ impl Mesh {
     /// stays whole: the tip of a slit.
     ///
     /// # Errors
-    /// [`MeshError::NoSuchSurface`], [`MeshError::NoCommonEdge`], and [`MeshError::NameOfSplit`] if there is such a boundary.
-    pub fn split_between(&self, surfaces: &[String; 2]) -> Result<Mesh, MeshError> {
+    /// [`MeshError::NoSuchName`], [`MeshError::NoCommonEdge`], and [`MeshError::NameOfSplit`] if there is such a boundary.
+    pub(crate) fn split_between(&self, surfaces: &[String; 2]) -> Result<Mesh, MeshError> {
         let members = |name: &str| -> Result<BTreeSet<usize>, MeshError> {
             Ok(self.surface(name)?.iter().copied().collect())
         };
@@ -220,7 +220,7 @@ mod tests {
         );
         assert!(matches!(
             glued.split_between(&names(["a", "c"])),
-            Err(MeshError::NoSuchSurface { .. })
+            Err(MeshError::NoSuchName { .. })
         ));
     }
 }

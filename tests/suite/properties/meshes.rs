@@ -74,7 +74,7 @@ fn merged(share: f64, told: f64) -> Outcome {
             coordinates().fold(0.0, f64::max) - coordinates().fold(1.0, f64::min)
         };
         let distance = share * extent(0).max(extent(1));
-        let groups = merge(&vertices, &[], told, |_, _| false).vertex;
+        let merged = merge(&vertices, told, |_, _| false);
         // By spreading the smallest number along steps.
         let mut first: Vec<usize> = (0..vertices.len()).collect();
         for _ in 0..vertices.len() {
@@ -88,7 +88,7 @@ fn merged(share: f64, told: f64) -> Outcome {
         }
         for i in 0..vertices.len() {
             for j in 0..i {
-                if (first[i] == first[j]) != (groups[i] == groups[j]) {
+                if (first[i] == first[j]) != (merged[i] == merged[j]) {
                     return Err(format!("{:?} and {:?}", vertices[i], vertices[j]));
                 }
                 joined.set(joined.get() + usize::from(first[i] == first[j]));
