@@ -5,7 +5,7 @@
 //! | section | what is taken from it |
 //! | --- | --- |
 //! | `$PhysicalNames` | the names of the physical points, curves and surfaces |
-//! | `$Entities` (4.1) | which point, curve or surface belongs to which physical groups |
+//! | `$Entities`, `$PartitionedEntities` (4.1) | which point, curve or surface belongs to which physical groups |
 //! | `$Nodes` | the vertices; those that are no corner of a triangle (the centre of an arc) are left out |
 //! | `$Elements` | triangles and quadrangles: the body, by physical surface; lines: the boundary parts; physical points |
 //!
@@ -83,13 +83,13 @@ fn read_sections(cursor: &mut Cursor) -> Result<RawMesh> {
     read_format(cursor)?;
     let version = cursor.version;
     let (mut names, mut remarks) = (None, Vec::new());
-    let (mut groups, mut nodes, mut elements) = (None, None, None);
+    let (mut groups, mut parts, mut nodes, mut elements) = (None, None, None, None);
     while let Some((start, section)) = cursor.section()? {
         let is_second = match (section, version) {
             ("PhysicalNames", _) => names.replace(read_names(cursor)?).is_some(),
             ("Entities", Version::Four) => groups.replace(read_entities(cursor)?).is_some(),
             ("PartitionedEntities", Version::Four) => {
-                return Err(cursor.wrong_at(start, in_partitions()));
+                parts.replace(read_partitioned_entities(cursor)?).is_some()
             }
             ("Nodes", Version::Four) => nodes.replace(read_nodes(cursor)?).is_some(),
             ("Nodes" | "ParametricNodes", Version::Two) => {
@@ -98,8 +98,9 @@ fn read_sections(cursor: &mut Cursor) -> Result<RawMesh> {
             }
             ("Elements", Version::Four) => elements.replace(read_elements(cursor)?).is_some(),
             ("Elements", Version::Two) => {
-                let (all, of_each) = read_elements_of_2(cursor)?;
+                let (all, of_each, remark) = read_elements_of_2(cursor)?;
                 groups = Some(of_each);
+                remarks.extend(remark);
                 elements.replace(all).is_some()
             }
             _ => {
@@ -120,6 +121,12 @@ fn read_sections(cursor: &mut Cursor) -> Result<RawMesh> {
     };
     let nodes = nodes.ok_or_else(|| missing("Nodes"))?;
     let elements: Elements = elements.ok_or_else(|| missing("Elements"))?;
+    if let Some(parts) = parts {
+        check_parts(cursor, &parts, &elements)?;
+        for (all, of_parts) in groups.get_or_insert_default().iter_mut().zip(parts.groups) {
+            all.extend(of_parts);
+        }
+    }
     if let Some(groups) = &groups {
         check_entities(cursor, groups, &elements)?;
     }
@@ -263,20 +270,32 @@ fn check_entities(cursor: &Cursor, groups: &Groups, elements: &Elements) -> Resu
 /// box around it, the physical groups and (except of a point) what bounds it. Returns the groups.
 fn read_entities(cursor: &mut Cursor) -> Result<Groups> {
     let mut all = Groups::default();
+    read_each_entity(cursor, |cursor, dimension| {
+        let tag = cursor.int("the tag of an entity")?;
+        let groups = read_entity(cursor, dimension)?;
+        if let Some(of_dimension) = all.get_mut(dimension) {
+            of_dimension.insert(tag, groups);
+        }
+        Ok(())
+    })?;
+    Ok(all)
+}
+
+/// Reads the counts of points, curves, surfaces and volumes, then so many of each.
+fn read_each_entity(
+    cursor: &mut Cursor,
+    mut read: impl FnMut(&mut Cursor, usize) -> Result<()>,
+) -> Result<()> {
     let mut counts = [0; 4];
     for count in &mut counts {
         *count = cursor.size("a number of entities")?;
     }
     for (dimension, count) in counts.into_iter().enumerate() {
         for _ in 0..count {
-            let tag = cursor.int("the tag of an entity")?;
-            let groups = read_entity(cursor, dimension)?;
-            if let Some(of_dimension) = all.get_mut(dimension) {
-                of_dimension.insert(tag, groups);
-            }
+            read(cursor, dimension)?;
         }
     }
-    Ok(all)
+    Ok(())
 }
 
 /// Reads what follows the tag of an entity, and returns its groups.
@@ -295,6 +314,58 @@ fn read_entity(cursor: &mut Cursor, dimension: usize) -> Result<Vec<i32>> {
         }
     }
     Ok(groups)
+}
+
+/// The entities of a mesh in partitions.
+struct PartitionedEntities {
+    groups: Groups,
+    /// How many partitions there are.
+    count: usize,
+    /// The surfaces in each of them.
+    surfaces: BTreeMap<i32, Vec<i32>>,
+}
+
+/// `$PartitionedEntities`: the number of partitions; the ghost entities; the counts of entities, then of each the tag, dimension
+/// and tag of its parent, its partitions, and the rest as in `$Entities`.
+fn read_partitioned_entities(cursor: &mut Cursor) -> Result<PartitionedEntities> {
+    let count = cursor.size("the number of partitions")?;
+    for _ in 0..cursor.size("the number of ghost entities")? {
+        cursor.int("the tag of a ghost entity")?;
+        cursor.int("the partition of a ghost entity")?;
+    }
+    let mut all =
+        PartitionedEntities { groups: Groups::default(), count, surfaces: BTreeMap::new() };
+    read_each_entity(cursor, |cursor, dimension| {
+        let tag = cursor.int("the tag of an entity")?;
+        cursor.int("the dimension of the parent of an entity")?;
+        cursor.int("the tag of the parent of an entity")?;
+        for _ in 0..cursor.size("the number of partitions of an entity")? {
+            let partition = cursor.int("the tag of a partition")?;
+            if dimension == 2 {
+                all.surfaces.entry(partition).or_default().push(tag);
+            }
+        }
+        let groups = read_entity(cursor, dimension)?;
+        if let Some(of_dimension) = all.groups.get_mut(dimension) {
+            of_dimension.insert(tag, groups);
+        }
+        Ok(())
+    })?;
+    Ok(all)
+}
+
+/// Refuses a file that holds some of the partitions only.
+fn check_parts(cursor: &Cursor, parts: &PartitionedEntities, elements: &Elements) -> Result<()> {
+    let used = elements.entities(2);
+    let is_there = |surfaces: &Vec<i32>| surfaces.iter().any(|surface| used.contains_key(surface));
+    let found = parts.surfaces.values().filter(|surfaces| is_there(surfaces)).count();
+    if found >= parts.count {
+        return Ok(());
+    }
+    let count = parts.count;
+    Err(cursor.in_the_file(format!(
+        "the file has triangles of {found} of the {count} partitions of the mesh; expected all of them in one file (Mesh.PartitionSplitMeshFiles = 0)"
+    )))
 }
 
 /// `$Nodes`: the number of blocks, three numbers of no use here; then in each block dimension and tag of an entity,
@@ -408,10 +479,11 @@ fn read_nodes_of_2(cursor: &mut Cursor, is_parametric: bool) -> Result<Vec<Node>
 /// first is the physical group, 0 for none, the second the entity), the nodes. In a binary file elements of one type follow
 /// each other: type, how many, the number of labels, and of each tag, labels, nodes. An element of two groups appears once for each.
 /// The third label, if there is one, is the number of partitions, and those follow. Returns the elements on entities of their own for
-/// each pair of labels, and the groups of those.
-fn read_elements_of_2(cursor: &mut Cursor) -> Result<(Elements, Groups)> {
+/// each pair of labels, the groups of those, and a remark where the file may be a part of a mesh.
+fn read_elements_of_2(cursor: &mut Cursor) -> Result<(Elements, Groups, Option<String>)> {
     const LABELS: &str = "the number of labels";
     let (mut elements, mut groups) = (Elements::default(), Groups::default());
+    let mut partitions = BTreeSet::new();
     let mut entities: HashMap<[i32; 2], i32> = HashMap::new();
     let mut left = cursor.count("the number of elements")?;
     while left > 0 {
@@ -446,7 +518,7 @@ fn read_elements_of_2(cursor: &mut Cursor) -> Result<(Elements, Groups)> {
             let [group, entity, _, partition] = first;
             let pair = [group, entity];
             if partition > 0 && kind.dimension() == 2 {
-                return Err(cursor.wrong_at(start, in_partitions()));
+                partitions.insert(partition);
             }
             let count = entities.len() as i32;
             let entity = *entities.entry(pair).or_insert(count);
@@ -456,10 +528,21 @@ fn read_elements_of_2(cursor: &mut Cursor) -> Result<(Elements, Groups)> {
         }
         left -= together;
     }
-    Ok((elements, groups))
+    let remark = part_of_a_mesh(&partitions).map_err(|said| cursor.in_the_file(said))?;
+    Ok((elements, groups, remark))
 }
 
-/// The complaint about a mesh in partitions, of which a file may hold some only.
-fn in_partitions() -> String {
-    "the mesh is in partitions; expected one without: gmsh -2 PART.geo, without -part".to_owned()
+/// Says that triangles of one partition may be a part of the mesh: files by partition do not say how many there are.
+///
+/// # Errors
+/// The partitions that are missing.
+fn part_of_a_mesh(partitions: &BTreeSet<i32>) -> std::result::Result<Option<String>, String> {
+    let most = partitions.last().copied().unwrap_or(0);
+    match (1..most).find(|partition| !partitions.contains(partition)) {
+        Some(missing) => Err(format!(
+            "the file has triangles of partition {most} of the mesh, and none of partition {missing}; expected all of them in one file (Mesh.PartitionSplitMeshFiles = 0)"
+        )),
+        None if most == 1 => Ok(Some("all triangles are in partition 1: where a mesh is split into a file for each of its partitions, this one is a part of it".to_owned())),
+        None => Ok(None),
+    }
 }

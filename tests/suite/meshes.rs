@@ -23,7 +23,7 @@ const SPLIT: &str = "of the mesh are split into two triangles each, along their 
 const NO_ENTITIES: &str = "the mesh file has names of groups, but no $Entities";
 
 /// The meshes that are read, with how their boundaries are named, their area, and what the remark has, if there is one.
-const READ: [(&str, Named, f64, &str); 35] = [
+const READ: [(&str, Named, f64, &str); 39] = [
     ("msh41", Names, 1.0, ""),
     ("msh41_binary", Names, 1.0, ""),
     ("msh22", Names, 1.0, ""),
@@ -48,6 +48,10 @@ const READ: [(&str, Named, f64, &str); 35] = [
     ("clockwise", Names, 1.0, ""),
     ("clockwise_22", Names, 1.0, ""),
     ("one_surface_clockwise", Names, 2.0, ""),
+    ("partitions", Names, 1.0, ""),
+    ("partitions_binary", Names, 1.0, ""),
+    ("partitions_with_ghosts", Names, 1.0, ""),
+    ("partitions_22", Names, 1.0, ""),
     ("quadrangles", Names, 1.0, SPLIT),
     ("quadrangles_order_2", Names, 1.0, SPLIT),
     ("quadrangles_and_triangles", Names, 2.0, SPLIT),
@@ -78,10 +82,13 @@ const REFUSED: [(&str, &str); 7] = [
     ("shell_3d", "3D is not solved; expected a mesh in a plane z = constant"),
     ("curved", "is curved: node"),
     (
-        "partitions",
-        ":22: the mesh is in partitions; expected one without: gmsh -2 PART.geo, without",
+        "one_partition",
+        "the file has triangles of 1 of the 2 partitions of the mesh; expected all of them in one file",
     ),
-    ("partitions_22", ": the mesh is in partitions; expected one without"),
+    (
+        "second_partition_22",
+        "the file has triangles of partition 2 of the mesh, and none of partition 1",
+    ),
 ];
 
 fn file(name: &str) -> PathBuf {
@@ -146,10 +153,16 @@ fn every_variant_is_in_one_of_the_lists() {
     names.sort();
     let mut listed: Vec<&str> =
         READ.iter().map(|row| row.0).chain(REFUSED.map(|row| row.0)).collect();
-    // This one has a test of its own.
-    listed.push("meshio_quadrangles");
+    // These have tests of their own.
+    listed.extend(["first_partition_22", "meshio_quadrangles"]);
     listed.sort_unstable();
     assert_eq!(names, listed);
+}
+
+#[test]
+fn a_first_partition_may_be_a_part_and_is_read_with_a_remark() {
+    let made = gmsh::read(&file("first_partition_22"), None, &[]).unwrap();
+    assert!(made.remarks[0].starts_with("all triangles are in partition 1"), "{:?}", made.remarks);
 }
 
 #[test]

@@ -68,7 +68,16 @@ square("one_surface_clockwise", more=[*RIGHT, "Curve Loop(2) = {2, -7, -6, -5}",
 
 # Partitions.
 square("partitions", "-part", "3")
+square("partitions_binary", "-part", "3", "-part_topo", "-bin")
+square("partitions_with_ghosts", "-part", "3", "-part_ghosts")
 square("partitions_22", "-part", "3", form="msh22")
+for form, names in [("msh41", {"_1": "one_partition", "_2": None}), ("msh22", {"_1": "first_partition_22", "_2": "second_partition_22"})]:
+    square("split", "-part", "2", "-part_split", form=form)
+    for part, name in names.items():
+        if name:
+            (OUT / f"split{part}.msh").rename(OUT / f"{name}.msh")
+        else:
+            (OUT / f"split{part}.msh").unlink()
 
 # Elements, and what is not in the plane.
 square("quadrangles", more=["Recombine Surface{1}"])
