@@ -123,7 +123,7 @@ impl Mesh {
     }
 }
 
-/// The names of the boundaries that [`Mesh::split_between`] makes: of the first surface, and of the second.
+/// The names of the boundaries that splitting a mesh between two surfaces makes: of the first surface, and of the second.
 pub fn split_names([first, second]: &[String; 2]) -> [String; 2] {
     [format!("{first}|{second}"), format!("{second}|{first}")]
 }
