@@ -20,7 +20,7 @@ impl Mesh {
     ///
     /// # Errors
     /// [`MeshError::NoSuchName`], [`MeshError::NoCommonEdge`], and [`MeshError::NameOfSplit`] if there is such a boundary.
-    pub(crate) fn split_between(&self, surfaces: &[String; 2]) -> Result<Mesh, MeshError> {
+    pub fn split_between(&self, surfaces: &[String; 2]) -> Result<Mesh, MeshError> {
         let members = |name: &str| -> Result<BTreeSet<usize>, MeshError> {
             Ok(self.surface(name)?.iter().copied().collect())
         };
@@ -123,7 +123,7 @@ impl Mesh {
     }
 }
 
-/// The names of the boundaries that splitting a mesh between two surfaces makes: of the first surface, and of the second.
+/// The names of the boundaries that [`Mesh::split_between`] makes: of the first surface, and of the second.
 pub fn split_names([first, second]: &[String; 2]) -> [String; 2] {
     [format!("{first}|{second}"), format!("{second}|{first}")]
 }
