@@ -75,11 +75,11 @@ pub struct Adapted {
     /// Its solution.
     pub solution: Solution,
     /// The time that the solves took, all levels together.
-    pub(crate) times: Times,
+    pub times: Times,
     /// Its bound, or why there is none.
     pub certified: Result<Continuous, CertifyError>,
     /// The time that the certificates and the meshes took, all levels together.
-    pub(crate) certifying: std::time::Duration,
+    pub certifying: std::time::Duration,
     /// All levels, from the coarsest on.
     pub levels: Vec<AdaptedLevel>,
     /// The number of the one that is given, from 0.
@@ -118,7 +118,7 @@ pub enum AdaptError {
 
 impl AdaptError {
     /// Tells whether the case is wrong. Otherwise it is right, but there is no result of it here.
-    pub(crate) fn is_wrong_case(&self) -> bool {
+    pub fn is_wrong_case(&self) -> bool {
         match self {
             AdaptError::Solve { error, .. } => error.is_wrong_case(),
             AdaptError::Certify(error) => {

@@ -391,7 +391,7 @@ pub(crate) fn label(boundary: &str, partner: Option<&str>) -> String {
 
 impl ContactBoundary {
     /// Its name, and that of the other body's boundary if there is one.
-    pub(crate) fn label(&self) -> String {
+    pub fn label(&self) -> String {
         label(&self.boundary, self.partner.as_deref())
     }
 

@@ -10,7 +10,7 @@
 //! - DJ d = -s . dy, d^T A d = dw . G dw.
 //!
 //! **Where contact alone holds the body** A has no factor. Factored is K = A + B^T D B, with the springs D of a few pieces
-//! ([`Shift`]) that pull as well as push. With dw for the change of the contact forces and dy for that of y, the equation A d + B^T dw = -r is
+//! (`Shift`) that pull as well as push. With dw for the change of the contact forces and dy for that of y, the equation A d + B^T dw = -r is
 //! K d + B^T (dw - D dy) = -r: what the factor and G see are the forces less those of the springs that are too many. A step solves with
 //! H - D in place of H, of which the pieces with D <= H have nothing: H - D = R E R^T with E = diag(I, -I), dw - D dy = R t - s,
 //! (E + R^T G R) t = R^T G s. That matrix has a Cholesky factor with the signs of E if the tangent is positive definite.

@@ -20,7 +20,7 @@ impl Mesh {
     ///
     /// # Errors
     /// [`MeshError::NoSuchName`], [`MeshError::NoCommonEdge`], and [`MeshError::NameOfSplit`] if there is such a boundary.
-    pub(crate) fn split_between(&self, surfaces: &[String; 2]) -> Result<Mesh, MeshError> {
+    pub fn split_between(&self, surfaces: &[String; 2]) -> Result<Mesh, MeshError> {
         let members = |name: &str| -> Result<BTreeSet<usize>, MeshError> {
             Ok(self.surface(name)?.iter().copied().collect())
         };
