@@ -415,6 +415,12 @@ impl Contact {
         }
     }
 
+    /// The length of part `j`.
+    fn length_of(&self, j: usize) -> f64 {
+        let [s, t] = self.parts[j].ends;
+        self.length * (t - s)
+    }
+
     /// Returns whether only a small part of one of the two edges faces the other.
     pub(crate) fn is_sliver(&self) -> bool {
         self.sides.iter().any(|side| (side.places[1] - side.places[0]).abs() < SLIVER)
@@ -470,9 +476,13 @@ impl Contact {
             let by = (side.places[end] - own.places[end]).abs();
             // Both ends of what is left out are as near as that.
             if own.edge == side.edge && by <= 2.0 * own.same.max(side.same) {
+                let middle = own.within(0.5);
                 own.moved |= by > ROUNDING;
                 own.places[end] = side.places[end];
                 side.places[1 - end] = side.places[end];
+                // Parts that meet in the middle of the edge still do.
+                let ends = self.parts.iter_mut().flat_map(|part| &mut part.ends);
+                ends.filter(|s| **s == middle).for_each(|s| *s = own.within(0.5));
             }
         }
     }
@@ -643,8 +653,7 @@ impl Contact {
 /// have many times as much stress. The shorter of the two parts keeps more of what it has, since it can bear less of a slope; on slivers
 /// between them tractions are constant.
 pub(super) fn even_out(contacts: &mut [Contact]) {
-    let parts = |(k, contact): (usize, &Contact)| (0..contact.parts.len()).map(move |j| (k, j));
-    let order: Vec<(usize, usize)> = contacts.iter().enumerate().flat_map(parts).collect();
+    let mut order = places_of_parts(contacts);
     let mut first = 0;
     while first + 1 < order.len() {
         let mut last = first + 1;
@@ -656,10 +665,16 @@ pub(super) fn even_out(contacts: &mut [Contact]) {
         if !run.windows(2).all(|two| meet(&contacts[two[0].0], &contacts[two[1].0])) {
             continue;
         }
+        if fall_off(contacts, run) {
+            // Of the parts behind the run there are as many as before.
+            let left = order.len() - first;
+            order = places_of_parts(contacts);
+            first = order.len() - left;
+            continue;
+        }
         let at = |(k, j): (usize, usize), end: usize| {
-            let (contact, part) = (&contacts[k], &contacts[k].parts[j]);
-            let length = contact.length * (part.ends[1] - part.ends[0]);
-            (length, [part.pressure[end], part.shear[end]])
+            let part = &contacts[k].parts[j];
+            (contacts[k].length_of(j), [part.pressure[end], part.shear[end]])
         };
         let ((before, p), (after, q)) = (at(run[0], 1), at(run[run.len() - 1], 0));
         if (p[0] == 0.0 || q[0] == 0.0) && !contacts[run[0].0].is_tied() {
@@ -680,6 +695,77 @@ pub(super) fn even_out(contacts: &mut [Contact]) {
             }
         }
     }
+}
+
+/// The contacts and their parts, in turn.
+fn places_of_parts(contacts: &[Contact]) -> Vec<(usize, usize)> {
+    let parts = |(k, contact): (usize, &Contact)| (0..contact.parts.len()).map(move |j| (k, j));
+    contacts.iter().enumerate().flat_map(parts).collect()
+}
+
+/// Where contact ends on the last part of a run or before it, or on the first one or behind it, makes the pressure of all of them one affine
+/// function, with their force and with the pressure at the other end: it falls off on a part that is not much shorter than its neighbour.
+/// On a narrow triangle a pressure that varies by p costs p^2 times the height over the width. Returns whether it did so.
+fn fall_off(contacts: &mut [Contact], run: &[(usize, usize)]) -> bool {
+    let pressure = |(k, j): (usize, usize)| contacts[k].parts.get(j).map(|part| part.pressure);
+    let is_open = |at: (usize, usize)| pressure(at) == Some([0.0; 2]);
+    // The part without pressure that contact may reach into: behind one that is pressed, or as it is.
+    let open = |at: (usize, usize), next: Option<usize>| match next.map(|j| (at.0, j)) {
+        _ if is_open(at) => Some(None),
+        Some(next) if is_open(next) => Some(Some(next.1)),
+        _ => None,
+    };
+    let (first, last) = (run[0], run[run.len() - 1]);
+    let mut order = run.to_vec();
+    let (next, outer, inner) =
+        match (open(first, first.1.checked_sub(1)), open(last, last.1.checked_add(1))) {
+            (None, Some(next)) => (next, 0, 1),
+            (Some(next), None) => (next, 1, 0),
+            _ => return false,
+        };
+    if outer == 1 {
+        order.reverse();
+    }
+    let lengths: Vec<f64> = order.iter().map(|&at| contacts[at.0].length_of(at.1)).collect();
+    let part = |(k, j): (usize, usize)| &contacts[k].parts[j];
+    let forces = order.iter().zip(&lengths).map(|(&at, length)| {
+        let [p, q] = part(at).pressure;
+        length * (p + q) / 2.0
+    });
+    let most = part(order[0]).pressure[outer];
+    let reach = 2.0 * forces.sum::<f64>() / most;
+    let (k, j) = order[order.len() - 1];
+    let before: f64 = lengths[..order.len() - 1].iter().sum();
+    let room = lengths[order.len() - 1] + next.map_or(0.0, |next| contacts[k].length_of(next));
+    let tail = (reach - before).min((1.0 - LEAST_PART) * room);
+    if contacts[k].law != Law::Contact || !(tail >= LEAST_PART * room) {
+        return false;
+    }
+    let mut left = before + tail;
+    let at = |left: f64| most * left / (before + tail);
+    for (&(k, j), length) in order.iter().zip(lengths).take(order.len() - 1) {
+        let pressure = &mut contacts[k].parts[j].pressure;
+        pressure[outer] = at(left);
+        left -= length;
+        pressure[inner] = at(left);
+    }
+    let whole = contacts[k].length;
+    let parts = &mut contacts[k].parts;
+    let start = parts[j].ends[outer];
+    let end = if outer == 0 { start + tail / whole } else { start - tail / whole };
+    match next {
+        Some(next) => parts[next].ends[outer] = end,
+        // The rest of the part stays open.
+        None => {
+            let mut rest = parts[j];
+            rest.ends[outer] = end;
+            parts.insert(if outer == 0 { j + 1 } else { j }, rest);
+        }
+    }
+    let own = &mut parts[if next.is_none() && outer == 1 { j + 1 } else { j }];
+    own.ends[inner] = end;
+    (own.pressure[outer], own.pressure[inner]) = (at(tail), 0.0);
+    true
 }
 
 /// Returns whether a contact ends inside of an edge where the other begins, and tractions may be affine on both.
