@@ -216,6 +216,27 @@ impl Part {
     }
 }
 
+/// The function with these values at the nodes of an edge, at place `s` of it.
+fn value(degree: Degree, nodal: &[f64], s: f64) -> f64 {
+    degree.edge_values(s).iter().zip(nodal).map(|(n, p)| n * p).sum()
+}
+
+/// The direction of contact at both ends of a piece.
+fn directions(piece: &Piece) -> [Vector2<f64>; 2] {
+    let geometry = &piece.geometry;
+    let mut directions = [0, 1].map(|a| geometry.nodes[a].direction);
+    // Of straight sides they differ by rounding.
+    if geometry.stretches.len() > 1 && (directions[1] - directions[0]).amax() <= ROUNDING {
+        directions = [directions[0]; 2];
+    }
+    // What a direction is off an axis is rounding; beside one that is exact, v may be prescribed across.
+    if geometry.law == Law::Sliding {
+        let exact = |x: f64| [0.0, x.signum()].into_iter().find(|y| (x - y).abs() <= ROUNDING);
+        directions = directions.map(|d| d.map(|x| exact(x).unwrap_or(x)));
+    }
+    directions
+}
+
 /// The tractions on a part of a contact between tied bodies: of `value`, which is quadratic along it, the affine function with its force
 /// and moment.
 fn tied([s, t]: [f64; 2], value: impl Fn(f64) -> Vector2<f64>) -> Part {
@@ -239,60 +260,23 @@ fn halves([s, t]: [f64; 2], value: impl Fn(f64) -> Vector2<f64>) -> Vec<Part> {
 impl Contact {
     /// `halved` tells whether each half of an edge has a pressure of its own.
     pub(crate) fn new(problem: &Problem, piece: &Piece, u: &[[f64; 2]], halved: bool) -> Contact {
-        let (geometry, degree, both) = (&piece.geometry, piece.degree, piece.p(u));
-        let (p, across) = both.split_at(geometry.nodes.len());
-        let mut directions = [0, 1].map(|a| geometry.nodes[a].direction);
-        let (mesh, stretches) = (&problem.mesh, geometry.stretches.iter());
+        let (geometry, mesh) = (&piece.geometry, &problem.mesh);
+        let stretches = geometry.stretches.iter();
         let lengths = stretches.clone().map(|s| mesh.length_and_normal(s.edge).0);
         let longest = lengths.fold(0.0, f64::max);
         let sides: Vec<Side> = stretches.map(|s| Side::new(mesh, s, longest)).collect();
-        // Of straight sides they differ by rounding.
-        if sides.len() > 1 && (directions[1] - directions[0]).amax() <= ROUNDING {
-            directions = [directions[0]; 2];
-        }
-        // What a direction is off an axis is rounding; beside one that is exact, v may be prescribed across.
-        if geometry.law == Law::Sliding {
-            let exact = |x: f64| [0.0, x.signum()].into_iter().find(|y| (x - y).abs() <= ROUNDING);
-            directions = directions.map(|d| d.map(|x| exact(x).unwrap_or(x)));
-        }
+        let directions = directions(piece);
         let gap = [0, 1].map(|a| geometry.nodes[a].gap);
-        let turns = directions[0] != directions[1];
         let curved =
             sides.len() > 1 || problem.conditions.get(&**piece.boundary()).is_some_and(is_curved);
         let gap_bulge = match geometry.nodes.get(2) {
             // The direction in the middle is the mean of those at the ends, a little shorter than 1.
-            Some(middle) if turns || curved => {
+            Some(middle) if directions[0] != directions[1] || curved => {
                 let mean = (directions[0] + directions[1]) / 2.0;
                 middle.gap * mean.dot(&middle.direction) - (gap[0] + gap[1]) / 2.0
             }
             _ => geometry.bulge,
         };
-        // Where P has these values at the nodes.
-        let profile = |p: &[f64]| match p {
-            &[start, end] if !turns => Profile::of_affine([start, end], piece.gamma),
-            _ => {
-                let end = match degree.roots(p)[..] {
-                    [root] => Some(root),
-                    _ => None,
-                };
-                let moments = with_hats(degree, p).map(|p| -(p / piece.gamma));
-                Profile::of_moments(moments, p[0] > 0.0, end, turns)
-            }
-        };
-        let between = |[from, to]: [f64; 2]| {
-            let at = |s: f64| {
-                let shapes = degree.edge_values(from + s * (to - from));
-                shapes.iter().zip(p).map(|(n, p)| n * p).sum::<f64>()
-            };
-            profile(&degree.edge_positions().into_iter().map(at).collect::<Vec<f64>>())
-        };
-        let mut breaks = vec![0.0, 1.0];
-        if halved {
-            breaks.extend(sides.iter().filter(|side| side.has(0.5)).map(|side| side.within(0.5)));
-            breaks.sort_by(f64::total_cmp);
-            breaks.dedup_by(|a, b| *a - *b <= SAME_PLACE);
-        }
-        let parts = breaks.windows(2).map(|ends| [ends[0], ends[1]]);
         let mut contact = Contact {
             edge: piece.edge(),
             boundary: Arc::clone(piece.boundary()),
@@ -306,29 +290,9 @@ impl Contact {
             offset: ([0.0; 2], 0.0),
             parts: Vec::new(),
         };
-        contact.parts = match geometry.law {
-            Law::Contact | Law::Friction(_) => {
-                parts.flat_map(|ends| between(ends).parts(ends)).collect()
-            }
-            Law::Sliding | Law::Bonded => {
-                let value = |s: f64| -> Vector2<f64> {
-                    let shapes = degree.edge_values(s);
-                    let at = |values: &[f64]| -> f64 {
-                        shapes.iter().zip(values).map(|(n, p)| n * p).sum()
-                    };
-                    let along = shapes.iter().zip(geometry.directions()).map(|(n, d)| d * *n).sum();
-                    let lambda = -at(p) / piece.gamma;
-                    if across.is_empty() {
-                        return Vector2::new(lambda, 0.0);
-                    }
-                    along * lambda - turned::<f64>(along) * (at(across) / piece.gamma)
-                };
-                let halved = turns && geometry.law == Law::Sliding;
-                let tied =
-                    |ends| if halved { halves(ends, value) } else { vec![tied(ends, value)] };
-                parts.flat_map(tied).collect()
-            }
-        };
+        let (degree, both) = (piece.degree, piece.p(u));
+        let (p, across) = both.split_at(geometry.nodes.len());
+        contact.parts = contact.parts_of(piece, (p, across), halved);
         if contact.is_pair() {
             contact.join_slivers();
         }
@@ -336,12 +300,54 @@ impl Contact {
             contact.glue(piece);
         }
         if let Law::Friction(Bound::Tresca(_)) = geometry.law {
-            contact.drag(|s| {
-                let shapes = degree.edge_values(s);
-                -shapes.iter().zip(across).map(|(n, p)| n * p).sum::<f64>() / piece.gamma
-            });
+            contact.drag(|s| -value(degree, across, s) / piece.gamma);
         }
         contact
+    }
+
+    /// The parts with what P, with the nodal values `p` along the direction of contact and `across`, says of the tractions there.
+    fn parts_of(&self, piece: &Piece, (p, across): (&[f64], &[f64]), halved: bool) -> Vec<Part> {
+        let (geometry, degree, turns) = (&piece.geometry, piece.degree, self.turns());
+        let mut breaks = vec![0.0, 1.0];
+        if halved {
+            let sides = self.sides.iter().filter(|side| side.has(0.5));
+            breaks.extend(sides.map(|side| side.within(0.5)));
+            breaks.sort_by(f64::total_cmp);
+            breaks.dedup_by(|a, b| *a - *b <= SAME_PLACE);
+        }
+        let parts = breaks.windows(2).map(|ends| [ends[0], ends[1]]);
+        // Where P has these values at the nodes.
+        let profile = |p: &[f64]| match p {
+            &[start, end] if !turns => Profile::of_affine([start, end], piece.gamma),
+            _ => {
+                let end = match degree.roots(p)[..] {
+                    [root] => Some(root),
+                    _ => None,
+                };
+                let moments = with_hats(degree, p).map(|p| -(p / piece.gamma));
+                Profile::of_moments(moments, p[0] > 0.0, end, turns)
+            }
+        };
+        let between = |[from, to]: [f64; 2]| {
+            let at = |s: f64| value(degree, p, from + s * (to - from));
+            profile(&degree.edge_positions().into_iter().map(at).collect::<Vec<f64>>())
+        };
+        let traction = |s: f64| -> Vector2<f64> {
+            let shapes = degree.edge_values(s);
+            let along = shapes.iter().zip(geometry.directions()).map(|(n, d)| d * *n).sum();
+            let lambda = -value(degree, p, s) / piece.gamma;
+            if across.is_empty() {
+                return Vector2::new(lambda, 0.0);
+            }
+            along * lambda - turned::<f64>(along) * (value(degree, across, s) / piece.gamma)
+        };
+        match geometry.law {
+            Law::Contact | Law::Friction(_) => {
+                parts.flat_map(|ends| between(ends).parts(ends)).collect()
+            }
+            Law::Sliding if turns => parts.flat_map(|ends| halves(ends, traction)).collect(),
+            Law::Sliding | Law::Bonded => parts.map(|ends| tied(ends, traction)).collect(),
+        }
     }
 
     /// Turns into the frame of glue, x and y: its gap is a vector.
