@@ -141,7 +141,7 @@ fn springs(piece: &Piece) -> DMatrix<f64> {
     piece.contribution(&EdgeRule::Exact, &vec![0.0; piece.p0.len()]).tangent * STIFFNESS
 }
 
-/// What supports, contact that is closed and friction ask for at each node; those of Gamma_D first.
+/// The demands of supports, closed contact and friction at each node; those of Gamma_D first.
 fn demands(
     parts: &ProblemParts,
     space: &Space,

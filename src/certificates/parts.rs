@@ -427,7 +427,7 @@ impl<'a> Conditions<'a> {
         }))
     }
 
-    /// What a support holds of an edge along its normal and along its tangent.
+    /// The condition of a support on an edge, along its normal and along its tangent.
     fn support(
         &mut self,
         name: &str,

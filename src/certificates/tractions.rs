@@ -101,7 +101,7 @@ fn mean_moments(
     moments
 }
 
-/// What is known of the moments on edge `e`, and what they are with as much of `mean` as that leaves.
+/// The known ones of the moments on edge `e`, and all of them, with as much of `mean` as the known ones leave.
 fn prescribed(
     parts: &ProblemParts,
     e: usize,
