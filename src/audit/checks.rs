@@ -63,7 +63,7 @@ pub enum Rejection {
 
 const AXES: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 
-/// What an edge may not have, since p d is to be affine.
+/// The error of an edge along which p d is not affine.
 pub(super) const VARIES: &str = "a pressure that varies along a direction that turns";
 
 /// v . d, if it is not w: to rounding where d is oblique, for there doubles can't be nearer.

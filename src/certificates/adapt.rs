@@ -24,6 +24,7 @@ use super::{Asked, Continuous, certify_with};
 use crate::contact::ContactLine;
 use crate::contact::piece::PieceGeometry;
 use crate::model::boundary_normals::SmoothBoundary;
+use crate::model::mesh::bisection::Refinement;
 use crate::model::{BoundaryEdge, Condition, Degree, Mesh, Problem, Space};
 use crate::quote::quoted;
 use crate::results::Solution;
@@ -213,23 +214,7 @@ pub fn adapt_to(
         let met = reached <= target.relative;
         watcher(Stage::Refine);
         let begin = std::time::Instant::now();
-        // There is no share of an energy that is 0.
-        let finer = if met {
-            Err(None)
-        } else if let Some(Err(reason)) = force.map(|boundary| force_of(&certified, boundary)) {
-            Err(Some(reason))
-        } else if relative.is_finite() {
-            let round: BTreeMap<[usize; 2], [f64; 2]> = round_contact(&problem)
-                .into_iter()
-                .map(|(edge, middle)| ([edge.triangle, edge.local], middle))
-                .collect();
-            let round = |edge: BoundaryEdge| round.get(&[edge.triangle, edge.local]).copied();
-            let marked = marked(shares(&certified, force));
-            let finer = problem.mesh.bisected_along(&newest, &marked, round);
-            finer.map_err(|error| Some(error.to_string()))
-        } else {
-            Err(Some("the body is at rest, its energy is 0".to_owned()))
-        };
+        let finer = if met { Err(None) } else { finer(&problem, &newest, &certified, force) };
         certifying += begin.elapsed();
         start = finer.iter().map(|f| f.prolonged(&problem.mesh, &solution.displacement)).next();
         let best = match before.take() {
@@ -250,7 +235,7 @@ pub fn adapt_to(
         let far_smaller = FAR_SMALLER * target.max_unknowns as f64;
         let is_small = (unknowns(&problem.mesh, method.degree) as f64) < far_smaller;
         if level >= best.level + NO_BETTER && best.reached <= 1.0 && !is_small {
-            let what = if force.is_some() { "what the force lies between" } else { "the bound" };
+            let what = force.map_or("the bound", |_| "what the force lies between");
             break (best, Some(format!("{what} has not come nearer for {NO_BETTER} levels")));
         }
         if unknowns(&finer.mesh, method.degree) > target.max_unknowns {
@@ -274,6 +259,30 @@ struct Best {
     off: f64,
     /// The number that the target is compared with.
     reached: f64,
+}
+
+/// The mesh of `problem`, refined where the bound, or what the force lies between, has its largest shares; or why there is none.
+fn finer(
+    problem: &Problem,
+    newest: &[usize],
+    certified: &Continuous,
+    force: Option<&str>,
+) -> Result<Refinement, Option<String>> {
+    if let Some(Err(reason)) = force.map(|boundary| force_of(certified, boundary)) {
+        return Err(Some(reason));
+    }
+    // There is no share of an energy that is 0.
+    if !certified.relative.is_finite() {
+        return Err(Some("the body is at rest, its energy is 0".to_owned()));
+    }
+    let round: BTreeMap<[usize; 2], [f64; 2]> = round_contact(problem)
+        .into_iter()
+        .map(|(edge, middle)| ([edge.triangle, edge.local], middle))
+        .collect();
+    let round = |edge: BoundaryEdge| round.get(&[edge.triangle, edge.local]).copied();
+    let marked = marked(shares(certified, force));
+    let finer = problem.mesh.bisected_along(newest, &marked, round);
+    finer.map_err(|error| Some(error.to_string()))
 }
 
 /// The interval of a boundary's contact force, or why it is not known.

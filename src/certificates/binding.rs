@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::certificate::{Certificate, Edge, Law, Lift, Role, is_oblique, place};
+use super::certificate::{Certificate, Curved, Edge, Law, Lift, Role, is_oblique, place};
 use super::data::{Data, length_and_normal};
 use super::errors::CertifyError;
 use super::forces::Evidence;
@@ -455,16 +455,34 @@ impl Comparison<'_> {
         if let Some(&Boundary::Contact(line)) = parts.boundary.get(&number) {
             self.facing(e, line, s)?;
         }
-        let Some(curved) = &certificate.curved else { return Ok(()) };
-        same(("bulge of data", self.lengths), &curved.data[e], &bulge)?;
-        // What is prescribed at ends that are no vertices.
+        match &certificate.curved {
+            Some(curved) => {
+                same(("bulge of data", self.lengths), &curved.data[e], &bulge)?;
+                self.at_cuts(e, edge, (number, [a, b]), curved)
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Compares what is prescribed at ends of edge `e` that are no vertices; the edge is a part of that with this number between these
+    /// vertices.
+    fn at_cuts(
+        &self,
+        e: usize,
+        edge: &Edge,
+        (number, [a, b]): (usize, [usize; 2]),
+        curved: &Curved,
+    ) -> Result<(), Difference> {
+        let Comparison { certificate, parts, .. } = *self;
+        let s = self.places_on(edge, b);
         let at_cuts = |c: usize, ends: [Option<f64>; 2], bulge: f64| {
             let [Some(p), Some(q)] = ends else { return Ok(()) };
             for (point, s) in edge.ends.into_iter().zip(s) {
                 if let Some(cut) = point.checked_sub(certificate.vertices.len()) {
                     let expected = (1.0 - s) * p + s * q + 4.0 * s * (1.0 - s) * bulge;
                     let found = curved.prescribed[cut][c];
-                    same(("displacement", self.lengths), found.as_slice(), &[expected])?;
+                    let of = ("displacement", self.lengths);
+                    self.same("edge", e, of, found.as_slice(), &[expected])?;
                 }
             }
             Ok(())

@@ -216,6 +216,27 @@ impl Part {
     }
 }
 
+/// The function with these values at the nodes of an edge, at place `s` of it.
+fn value(degree: Degree, nodal: &[f64], s: f64) -> f64 {
+    degree.edge_values(s).iter().zip(nodal).map(|(n, p)| n * p).sum()
+}
+
+/// The direction of contact at both ends of a piece.
+fn directions(piece: &Piece) -> [Vector2<f64>; 2] {
+    let geometry = &piece.geometry;
+    let mut directions = [0, 1].map(|a| geometry.nodes[a].direction);
+    // Of straight sides they differ by rounding.
+    if geometry.stretches.len() > 1 && (directions[1] - directions[0]).amax() <= ROUNDING {
+        directions = [directions[0]; 2];
+    }
+    // What a direction is off an axis is rounding; beside one that is exact, v may be prescribed across.
+    if geometry.law == Law::Sliding {
+        let exact = |x: f64| [0.0, x.signum()].into_iter().find(|y| (x - y).abs() <= ROUNDING);
+        directions = directions.map(|d| d.map(|x| exact(x).unwrap_or(x)));
+    }
+    directions
+}
+
 /// The tractions on a part of a contact between tied bodies: of `value`, which is quadratic along it, the affine function with its force
 /// and moment.
 fn tied([s, t]: [f64; 2], value: impl Fn(f64) -> Vector2<f64>) -> Part {
@@ -239,60 +260,23 @@ fn halves([s, t]: [f64; 2], value: impl Fn(f64) -> Vector2<f64>) -> Vec<Part> {
 impl Contact {
     /// `halved` tells whether each half of an edge has a pressure of its own.
     pub(crate) fn new(problem: &Problem, piece: &Piece, u: &[[f64; 2]], halved: bool) -> Contact {
-        let (geometry, degree, both) = (&piece.geometry, piece.degree, piece.p(u));
-        let (p, across) = both.split_at(geometry.nodes.len());
-        let mut directions = [0, 1].map(|a| geometry.nodes[a].direction);
-        let (mesh, stretches) = (&problem.mesh, geometry.stretches.iter());
+        let (geometry, mesh) = (&piece.geometry, &problem.mesh);
+        let stretches = geometry.stretches.iter();
         let lengths = stretches.clone().map(|s| mesh.length_and_normal(s.edge).0);
         let longest = lengths.fold(0.0, f64::max);
         let sides: Vec<Side> = stretches.map(|s| Side::new(mesh, s, longest)).collect();
-        // Of straight sides they differ by rounding.
-        if sides.len() > 1 && (directions[1] - directions[0]).amax() <= ROUNDING {
-            directions = [directions[0]; 2];
-        }
-        // What a direction is off an axis is rounding; beside one that is exact, v may be prescribed across.
-        if geometry.law == Law::Sliding {
-            let exact = |x: f64| [0.0, x.signum()].into_iter().find(|y| (x - y).abs() <= ROUNDING);
-            directions = directions.map(|d| d.map(|x| exact(x).unwrap_or(x)));
-        }
+        let directions = directions(piece);
         let gap = [0, 1].map(|a| geometry.nodes[a].gap);
-        let turns = directions[0] != directions[1];
         let curved =
             sides.len() > 1 || problem.conditions.get(&**piece.boundary()).is_some_and(is_curved);
         let gap_bulge = match geometry.nodes.get(2) {
             // The direction in the middle is the mean of those at the ends, a little shorter than 1.
-            Some(middle) if turns || curved => {
+            Some(middle) if directions[0] != directions[1] || curved => {
                 let mean = (directions[0] + directions[1]) / 2.0;
                 middle.gap * mean.dot(&middle.direction) - (gap[0] + gap[1]) / 2.0
             }
             _ => geometry.bulge,
         };
-        // Where P has these values at the nodes.
-        let profile = |p: &[f64]| match p {
-            &[start, end] if !turns => Profile::of_affine([start, end], piece.gamma),
-            _ => {
-                let end = match degree.roots(p)[..] {
-                    [root] => Some(root),
-                    _ => None,
-                };
-                let moments = with_hats(degree, p).map(|p| -(p / piece.gamma));
-                Profile::of_moments(moments, p[0] > 0.0, end, turns)
-            }
-        };
-        let between = |[from, to]: [f64; 2]| {
-            let at = |s: f64| {
-                let shapes = degree.edge_values(from + s * (to - from));
-                shapes.iter().zip(p).map(|(n, p)| n * p).sum::<f64>()
-            };
-            profile(&degree.edge_positions().into_iter().map(at).collect::<Vec<f64>>())
-        };
-        let mut breaks = vec![0.0, 1.0];
-        if halved {
-            breaks.extend(sides.iter().filter(|side| side.has(0.5)).map(|side| side.within(0.5)));
-            breaks.sort_by(f64::total_cmp);
-            breaks.dedup_by(|a, b| *a - *b <= SAME_PLACE);
-        }
-        let parts = breaks.windows(2).map(|ends| [ends[0], ends[1]]);
         let mut contact = Contact {
             edge: piece.edge(),
             boundary: Arc::clone(piece.boundary()),
@@ -306,29 +290,9 @@ impl Contact {
             offset: ([0.0; 2], 0.0),
             parts: Vec::new(),
         };
-        contact.parts = match geometry.law {
-            Law::Contact | Law::Friction(_) => {
-                parts.flat_map(|ends| between(ends).parts(ends)).collect()
-            }
-            Law::Sliding | Law::Bonded => {
-                let value = |s: f64| -> Vector2<f64> {
-                    let shapes = degree.edge_values(s);
-                    let at = |values: &[f64]| -> f64 {
-                        shapes.iter().zip(values).map(|(n, p)| n * p).sum()
-                    };
-                    let along = shapes.iter().zip(geometry.directions()).map(|(n, d)| d * *n).sum();
-                    let lambda = -at(p) / piece.gamma;
-                    if across.is_empty() {
-                        return Vector2::new(lambda, 0.0);
-                    }
-                    along * lambda - turned::<f64>(along) * (at(across) / piece.gamma)
-                };
-                let halved = turns && geometry.law == Law::Sliding;
-                let tied =
-                    |ends| if halved { halves(ends, value) } else { vec![tied(ends, value)] };
-                parts.flat_map(tied).collect()
-            }
-        };
+        let (degree, both) = (piece.degree, piece.p(u));
+        let (p, across) = both.split_at(geometry.nodes.len());
+        contact.parts = contact.parts_of(piece, (p, across), halved);
         if contact.is_pair() {
             contact.join_slivers();
         }
@@ -336,12 +300,54 @@ impl Contact {
             contact.glue(piece);
         }
         if let Law::Friction(Bound::Tresca(_)) = geometry.law {
-            contact.drag(|s| {
-                let shapes = degree.edge_values(s);
-                -shapes.iter().zip(across).map(|(n, p)| n * p).sum::<f64>() / piece.gamma
-            });
+            contact.drag(|s| -value(degree, across, s) / piece.gamma);
         }
         contact
+    }
+
+    /// The parts with what P, with the nodal values `p` along the direction of contact and `across`, says of the tractions there.
+    fn parts_of(&self, piece: &Piece, (p, across): (&[f64], &[f64]), halved: bool) -> Vec<Part> {
+        let (geometry, degree, turns) = (&piece.geometry, piece.degree, self.turns());
+        let mut breaks = vec![0.0, 1.0];
+        if halved {
+            let sides = self.sides.iter().filter(|side| side.has(0.5));
+            breaks.extend(sides.map(|side| side.within(0.5)));
+            breaks.sort_by(f64::total_cmp);
+            breaks.dedup_by(|a, b| *a - *b <= SAME_PLACE);
+        }
+        let parts = breaks.windows(2).map(|ends| [ends[0], ends[1]]);
+        // Where P has these values at the nodes.
+        let profile = |p: &[f64]| match p {
+            &[start, end] if !turns => Profile::of_affine([start, end], piece.gamma),
+            _ => {
+                let end = match degree.roots(p)[..] {
+                    [root] => Some(root),
+                    _ => None,
+                };
+                let moments = with_hats(degree, p).map(|p| -(p / piece.gamma));
+                Profile::of_moments(moments, p[0] > 0.0, end, turns)
+            }
+        };
+        let between = |[from, to]: [f64; 2]| {
+            let at = |s: f64| value(degree, p, from + s * (to - from));
+            profile(&degree.edge_positions().into_iter().map(at).collect::<Vec<f64>>())
+        };
+        let traction = |s: f64| -> Vector2<f64> {
+            let shapes = degree.edge_values(s);
+            let along = shapes.iter().zip(geometry.directions()).map(|(n, d)| d * *n).sum();
+            let lambda = -value(degree, p, s) / piece.gamma;
+            if across.is_empty() {
+                return Vector2::new(lambda, 0.0);
+            }
+            along * lambda - turned::<f64>(along) * (value(degree, across, s) / piece.gamma)
+        };
+        match geometry.law {
+            Law::Contact | Law::Friction(_) => {
+                parts.flat_map(|ends| between(ends).parts(ends)).collect()
+            }
+            Law::Sliding if turns => parts.flat_map(|ends| halves(ends, traction)).collect(),
+            Law::Sliding | Law::Bonded => parts.map(|ends| tied(ends, traction)).collect(),
+        }
     }
 
     /// Turns into the frame of glue, x and y: its gap is a vector.
@@ -415,6 +421,12 @@ impl Contact {
         }
     }
 
+    /// The length of part `j`.
+    fn length_of(&self, j: usize) -> f64 {
+        let [s, t] = self.parts[j].ends;
+        self.length * (t - s)
+    }
+
     /// Returns whether only a small part of one of the two edges faces the other.
     pub(crate) fn is_sliver(&self) -> bool {
         self.sides.iter().any(|side| (side.places[1] - side.places[0]).abs() < SLIVER)
@@ -470,9 +482,13 @@ impl Contact {
             let by = (side.places[end] - own.places[end]).abs();
             // Both ends of what is left out are as near as that.
             if own.edge == side.edge && by <= 2.0 * own.same.max(side.same) {
+                let middle = own.within(0.5);
                 own.moved |= by > ROUNDING;
                 own.places[end] = side.places[end];
                 side.places[1 - end] = side.places[end];
+                // Parts that meet in the middle of the edge still do.
+                let ends = self.parts.iter_mut().flat_map(|part| &mut part.ends);
+                ends.filter(|s| **s == middle).for_each(|s| *s = own.within(0.5));
             }
         }
     }
@@ -643,8 +659,7 @@ impl Contact {
 /// have many times as much stress. The shorter of the two parts keeps more of what it has, since it can bear less of a slope; on slivers
 /// between them tractions are constant.
 pub(super) fn even_out(contacts: &mut [Contact]) {
-    let parts = |(k, contact): (usize, &Contact)| (0..contact.parts.len()).map(move |j| (k, j));
-    let order: Vec<(usize, usize)> = contacts.iter().enumerate().flat_map(parts).collect();
+    let mut order = places_of_parts(contacts);
     let mut first = 0;
     while first + 1 < order.len() {
         let mut last = first + 1;
@@ -656,10 +671,16 @@ pub(super) fn even_out(contacts: &mut [Contact]) {
         if !run.windows(2).all(|two| meet(&contacts[two[0].0], &contacts[two[1].0])) {
             continue;
         }
+        if fall_off(contacts, run) {
+            // Of the parts behind the run there are as many as before.
+            let left = order.len() - first;
+            order = places_of_parts(contacts);
+            first = order.len() - left;
+            continue;
+        }
         let at = |(k, j): (usize, usize), end: usize| {
-            let (contact, part) = (&contacts[k], &contacts[k].parts[j]);
-            let length = contact.length * (part.ends[1] - part.ends[0]);
-            (length, [part.pressure[end], part.shear[end]])
+            let part = &contacts[k].parts[j];
+            (contacts[k].length_of(j), [part.pressure[end], part.shear[end]])
         };
         let ((before, p), (after, q)) = (at(run[0], 1), at(run[run.len() - 1], 0));
         if (p[0] == 0.0 || q[0] == 0.0) && !contacts[run[0].0].is_tied() {
@@ -680,6 +701,77 @@ pub(super) fn even_out(contacts: &mut [Contact]) {
             }
         }
     }
+}
+
+/// The contacts and their parts, in turn.
+fn places_of_parts(contacts: &[Contact]) -> Vec<(usize, usize)> {
+    let parts = |(k, contact): (usize, &Contact)| (0..contact.parts.len()).map(move |j| (k, j));
+    contacts.iter().enumerate().flat_map(parts).collect()
+}
+
+/// Where contact ends on the last part of a run or before it, or on the first one or behind it, makes the pressure of all of them one affine
+/// function, with their force and with the pressure at the other end: it falls off on a part that is not much shorter than its neighbour.
+/// On a narrow triangle a pressure that varies by p costs p^2 times the height over the width. Returns whether it did so.
+fn fall_off(contacts: &mut [Contact], run: &[(usize, usize)]) -> bool {
+    let pressure = |(k, j): (usize, usize)| contacts[k].parts.get(j).map(|part| part.pressure);
+    let is_open = |at: (usize, usize)| pressure(at) == Some([0.0; 2]);
+    // The part without pressure that contact may reach into: behind one that is pressed, or as it is.
+    let open = |at: (usize, usize), next: Option<usize>| match next.map(|j| (at.0, j)) {
+        _ if is_open(at) => Some(None),
+        Some(next) if is_open(next) => Some(Some(next.1)),
+        _ => None,
+    };
+    let (first, last) = (run[0], run[run.len() - 1]);
+    let mut order = run.to_vec();
+    let (next, outer, inner) =
+        match (open(first, first.1.checked_sub(1)), open(last, last.1.checked_add(1))) {
+            (None, Some(next)) => (next, 0, 1),
+            (Some(next), None) => (next, 1, 0),
+            _ => return false,
+        };
+    if outer == 1 {
+        order.reverse();
+    }
+    let lengths: Vec<f64> = order.iter().map(|&at| contacts[at.0].length_of(at.1)).collect();
+    let part = |(k, j): (usize, usize)| &contacts[k].parts[j];
+    let forces = order.iter().zip(&lengths).map(|(&at, length)| {
+        let [p, q] = part(at).pressure;
+        length * (p + q) / 2.0
+    });
+    let most = part(order[0]).pressure[outer];
+    let reach = 2.0 * forces.sum::<f64>() / most;
+    let (k, j) = order[order.len() - 1];
+    let before: f64 = lengths[..order.len() - 1].iter().sum();
+    let room = lengths[order.len() - 1] + next.map_or(0.0, |next| contacts[k].length_of(next));
+    let tail = (reach - before).min((1.0 - LEAST_PART) * room);
+    if contacts[k].law != Law::Contact || !(tail >= LEAST_PART * room) {
+        return false;
+    }
+    let mut left = before + tail;
+    let at = |left: f64| most * left / (before + tail);
+    for (&(k, j), length) in order.iter().zip(lengths).take(order.len() - 1) {
+        let pressure = &mut contacts[k].parts[j].pressure;
+        pressure[outer] = at(left);
+        left -= length;
+        pressure[inner] = at(left);
+    }
+    let whole = contacts[k].length;
+    let parts = &mut contacts[k].parts;
+    let start = parts[j].ends[outer];
+    let end = if outer == 0 { start + tail / whole } else { start - tail / whole };
+    match next {
+        Some(next) => parts[next].ends[outer] = end,
+        // The rest of the part stays open.
+        None => {
+            let mut rest = parts[j];
+            rest.ends[outer] = end;
+            parts.insert(if outer == 0 { j + 1 } else { j }, rest);
+        }
+    }
+    let own = &mut parts[if next.is_none() && outer == 1 { j + 1 } else { j }];
+    own.ends[inner] = end;
+    (own.pressure[outer], own.pressure[inner]) = (at(tail), 0.0);
+    true
 }
 
 /// Returns whether a contact ends inside of an edge where the other begins, and tractions may be affine on both.

@@ -141,6 +141,75 @@ fn springs(piece: &Piece) -> DMatrix<f64> {
     piece.contribution(&EdgeRule::Exact, &vec![0.0; piece.p0.len()]).tangent * STIFFNESS
 }
 
+/// The demands of supports, closed contact and friction at each node; those of Gamma_D first.
+fn demands(
+    parts: &ProblemParts,
+    space: &Space,
+    names: &[String],
+    open: &[bool],
+) -> BTreeMap<usize, Vec<Prescription>> {
+    let mut demands: BTreeMap<usize, Vec<Prescription>> = BTreeMap::new();
+    let mut add = |edge: BoundaryEdge,
+                   boundary: usize,
+                   what: What,
+                   of: &dyn Fn(usize) -> Vec<Vector2<f64>>| {
+        for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
+            let at_node = demands.entry(node).or_default();
+            for direction in of(a) {
+                let demand = Prescription { direction, boundary, what };
+                if !at_node.contains(&demand) {
+                    at_node.push(demand);
+                }
+            }
+        }
+    };
+    for (boundary, name) in names.iter().enumerate() {
+        for &edge in parts.mesh.edges_of(name).unwrap_or_default() {
+            let e = parts.mesh.triangle_edges()[edge.triangle][edge.local];
+            match parts.boundary.get(&e) {
+                Some(&Boundary::Held(held, _)) => {
+                    let axes = [Vector2::x(), Vector2::y()];
+                    let held: Vec<_> = (0..2).filter(|&c| held[c]).map(|c| axes[c]).collect();
+                    add(edge, boundary, What::Support, &|_| held.clone());
+                }
+                Some(&Boundary::Supported(d, ..)) => {
+                    add(edge, boundary, What::Support, &|_| vec![d.into()]);
+                }
+                _ => {}
+            }
+        }
+    }
+    let is_closed = |k: usize| !parts.contact[k].is_tied() && !open[k];
+    let has_friction = |k: usize| parts.contact[k].has_friction();
+    for OnContact { edge, boundary, side, directions, .. } in on_contact(parts, names, is_closed) {
+        add(edge, boundary, What::Along(side), &|a| vec![directions[a]]);
+    }
+    // Open or not, as friction with a given bound acts across gaps.
+    for OnContact { edge, boundary, side, directions, .. } in on_contact(parts, names, has_friction)
+    {
+        add(edge, boundary, What::Across(side), &|a| vec![turned(directions[a])]);
+    }
+    demands
+}
+
+/// The directions at each node along which tied bodies hold each other: where nothing holds both of them, there is no factor.
+fn ties(
+    parts: &ProblemParts,
+    space: &Space,
+    names: &[String],
+) -> BTreeMap<usize, Vec<Vector2<f64>>> {
+    let mut tied: BTreeMap<usize, Vec<Vector2<f64>>> = BTreeMap::new();
+    let is_tied = |k: usize| parts.contact[k].is_tied();
+    for OnContact { edge, directions, contact, .. } in on_contact(parts, names, is_tied) {
+        let is_glued = parts.contact[contact].law == Law::Bonded;
+        for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
+            let across = is_glued.then(|| turned(directions[a]));
+            tied.entry(node).or_default().extend([directions[a]].into_iter().chain(across));
+        }
+    }
+    tied
+}
+
 impl<'a> Lifter<'a> {
     /// For the boundaries with these `names`; `open` tells of the edges of Gamma_C, by their place in `parts.contact`, where
     /// w is free.
@@ -151,50 +220,7 @@ impl<'a> Lifter<'a> {
         open: &[bool],
     ) -> Result<Self, String> {
         let space = Space::new(parts.mesh, degree);
-        let mut demands: BTreeMap<usize, Vec<Prescription>> = BTreeMap::new();
-        let mut add = |edge: BoundaryEdge,
-                       boundary: usize,
-                       what: What,
-                       of: &dyn Fn(usize) -> Vec<Vector2<f64>>| {
-            for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
-                let at_node = demands.entry(node).or_default();
-                for direction in of(a) {
-                    let demand = Prescription { direction, boundary, what };
-                    if !at_node.contains(&demand) {
-                        at_node.push(demand);
-                    }
-                }
-            }
-        };
-        for (boundary, name) in names.iter().enumerate() {
-            for &edge in parts.mesh.edges_of(name).unwrap_or_default() {
-                let e = parts.mesh.triangle_edges()[edge.triangle][edge.local];
-                match parts.boundary.get(&e) {
-                    Some(&Boundary::Held(held, _)) => {
-                        let axes = [Vector2::x(), Vector2::y()];
-                        let held: Vec<_> = (0..2).filter(|&c| held[c]).map(|c| axes[c]).collect();
-                        add(edge, boundary, What::Support, &|_| held.clone());
-                    }
-                    Some(&Boundary::Supported(d, ..)) => {
-                        add(edge, boundary, What::Support, &|_| vec![d.into()]);
-                    }
-                    _ => {}
-                }
-            }
-        }
-        let is_closed = |k: usize| !parts.contact[k].is_tied() && !open[k];
-        let has_friction = |k: usize| parts.contact[k].has_friction();
-        for OnContact { edge, boundary, side, directions, .. } in
-            on_contact(parts, names, is_closed)
-        {
-            add(edge, boundary, What::Along(side), &|a| vec![directions[a]]);
-        }
-        // Open or not, as friction with a given bound acts across gaps.
-        for OnContact { edge, boundary, side, directions, .. } in
-            on_contact(parts, names, has_friction)
-        {
-            add(edge, boundary, What::Across(side), &|a| vec![turned(directions[a])]);
-        }
+        let demands = demands(parts, &space, names, open);
         let mut prescribed = vec![[None; 2]; space.nodes().len()];
         let mut frames = BTreeMap::new();
         for (&node, demands) in &demands {
@@ -214,16 +240,7 @@ impl<'a> Lifter<'a> {
         }
         // A motion that neither supports nor the directions of contact stop, as a part turns about its pin, changes no force.
         let bodies = Parts::new(parts.mesh);
-        // Tied bodies hold each other: where nothing holds both of them, there is no factor.
-        let mut tied: BTreeMap<usize, Vec<Vector2<f64>>> = BTreeMap::new();
-        let is_tied = |k: usize| parts.contact[k].is_tied();
-        for OnContact { edge, directions, contact, .. } in on_contact(parts, names, is_tied) {
-            let is_glued = parts.contact[contact].law == Law::Bonded;
-            for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
-                let across = is_glued.then(|| turned(directions[a]));
-                tied.entry(node).or_default().extend([directions[a]].into_iter().chain(across));
-            }
-        }
+        let tied = ties(parts, &space, names);
         let held = |node: usize| {
             let demanded = demands.get(&node).into_iter().flatten();
             let tied = tied.get(&node).into_iter().flatten();

@@ -180,55 +180,26 @@ fn certify_near(
     (start, field): (&[[f64; 2]], &[[f64; 2]]),
     asked: &Asked,
 ) -> Result<Continuous, CertifyError> {
-    if problem.material.are_of_revolution() {
-        return Err(CertifyError::Unsupported(
-            "the body is one of revolution, and certificates are about plane bodies".to_owned(),
-        ));
-    }
-    check_laws(solution)?;
-    // Beside a quadratic v each is cut in four.
-    let quadratic = solution.degree == Degree::Two && start.len() > problem.mesh.vertices().len();
-    let quarters = if quadratic { 4 } else { 1 };
-    let triangles = problem.mesh.triangles().len();
-    let per_triangle =
-        if asked.forces.is_empty() { PER_TRIANGLE } else { per_triangle_with_forces(triangles) };
-    memory::check(quarters * per_triangle * triangles as u64)?;
+    // The problem, as certificates see it.
+    let quadratic = check(problem, solution, start, asked)?;
     let u = &*solution.displacement;
     let mut parts = ProblemParts::new(problem, solution.degree, &solution.pieces, (u, quadratic))?;
+    // y, under the pressures of tau.
     let y = pressed::displacement(&mut parts, solution.degree, u)?;
     let mesh = &problem.mesh;
     let [y, start, w] = [&y, start, field].map(|nodal| Field::new(mesh, nodal));
     let missed = parts.missed(&w?);
-    let (y, mut start) = (y?, start?);
-    // Between tied bodies v has values of its own where nodes face edges, and along an arc it follows the obstacle, as only a
-    // quadratic one does.
-    if parts.contact.iter().any(|contact| contact.is_tied() || contact.turns()) {
-        start.bulges.get_or_insert_with(|| vec![[0.0; 2]; mesh.edge_count()]);
-    }
-    let mut further = vec![0.0; parts.contact.len()];
-    let mut outside = || {
-        let v = admissible::admissible(&parts, &start, &further);
-        let mut built = build::build(&parts, &y, &v);
-        tie::tie(&mut built.certificate)?;
-        let found = built.penetrations(&parts);
-        found.iter().for_each(|&(k, by)| further[k] += 2.0 * by);
-        Ok::<_, CertifyError>((v, built, found.is_empty()))
-    };
-    // As far as balls ask for.
-    let (mut v, mut built, mut is_out) = outside()?;
-    for _ in 0..PUSHES {
-        if is_out {
-            break;
-        }
-        (v, built, is_out) = outside()?;
-    }
+    // v, and a tau from y.
+    let (v, mut built) = pushed_out(&parts, &y?, start?)?;
+    // A better tau.
     let sweeps = match (asked.forces.is_empty(), problem.pairs.is_empty()) {
         (true, true) => SWEEPS,
         (true, false) => SWEEPS_FOR_PAIRS,
         (false, _) => SWEEPS_FOR_FORCES,
     };
     let topology = sweeps::improve(&mut built.certificate, sweeps, false)?;
-    let (certificate, oscillation) = (&built.certificate, &built.oscillation);
+    // The bound and the forces, in balls.
+    let certificate = &built.certificate;
     let state = certificate.balanced::<Ball>(topology)?;
     let proof = certificate.sum(&state)?;
     let quantities = quantities::prove(&parts, (solution, &v), &built, (&state, &proof), asked);
@@ -239,18 +210,12 @@ fn certify_near(
         norm if norm > 0.0 && !hardly_strains => (Ball::point(bound) / Ball::point(norm)).upper(),
         _ => f64::INFINITY,
     };
-    // The energy of friction is not in J(v).
-    let has_energy =
-        oscillation.reason.is_none() && parts.contact.iter().all(|contact| !contact.has_friction());
-    let energy = has_energy.then(|| {
-        let b = Ball::point(proof.bound);
-        let below = Ball::point(proof.energy[0]) - b * b / Ball::from(2);
-        [below.lower(), proof.energy[1]]
-    });
+    let energy = energy(&parts, &built, &proof);
     // Doubling is exact.
     let compliance =
         energy.filter(|_| is_loaded_only(certificate)).map(|[low, high]| [-2.0 * high, -2.0 * low]);
-    let distances = distances(&problem.mesh, &built, field);
+    // The field that was given.
+    let distances = distances(mesh, &built, field);
     let square = |&d: &f64| Ball::point(d) * Ball::point(d);
     let clipping = distances.iter().map(square).fold(Ball::from(0), |sum, d| sum + d);
     let clipping = clipping.sqrt().upper();
@@ -264,13 +229,8 @@ fn certify_near(
         let together = (as_it_is * as_it_is + beside * beside).sqrt().upper();
         together.min((bound + clipping).next_up())
     };
-    let mut shares = vec![0.0; problem.mesh.triangles().len()];
-    built.origins.iter().zip(&proof.shares).for_each(|(&t, share)| shares[t] += share);
-    oscillation.lifts.iter().for_each(|(&t, z)| shares[t] += z * z);
-    let mut apart = vec![0.0; shares.len()];
-    built.origins.iter().zip(&distances).for_each(|(&t, d)| apart[t] += d * d);
+    let indicators = indicators(mesh, &built, &proof, &distances);
     let problem = certificate.problem(&proof);
-    let both = |(share, distance): (f64, &f64)| share.max(0.0).sqrt() + distance.sqrt();
     let Built { certificate, oscillation, .. } = built;
     Ok(Continuous {
         bound,
@@ -279,7 +239,7 @@ fn certify_near(
         rigorous: oscillation.reason.is_none(),
         reason: oscillation.reason,
         problem,
-        indicators: shares.into_iter().zip(&apart).map(both).collect(),
+        indicators,
         energy,
         compliance,
         certificate,
@@ -289,6 +249,81 @@ fn certify_near(
         missed,
         quantities,
     })
+}
+
+/// Refuses what no certificate is about, and what takes more memory than there is; returns whether v is quadratic beside a solution that is.
+fn check(
+    problem: &Problem,
+    solution: &Solution,
+    start: &[[f64; 2]],
+    asked: &Asked,
+) -> Result<bool, CertifyError> {
+    if problem.material.are_of_revolution() {
+        return Err(CertifyError::Unsupported(
+            "the body is one of revolution, and certificates are about plane bodies".to_owned(),
+        ));
+    }
+    check_laws(solution)?;
+    // Beside a quadratic v each is cut in four.
+    let quadratic = solution.degree == Degree::Two && start.len() > problem.mesh.vertices().len();
+    let quarters = if quadratic { 4 } else { 1 };
+    let triangles = problem.mesh.triangles().len();
+    let per_triangle =
+        if asked.forces.is_empty() { PER_TRIANGLE } else { per_triangle_with_forces(triangles) };
+    memory::check(quarters * per_triangle * triangles as u64)?;
+    Ok(quadratic)
+}
+
+/// v from `start`, pushed out of the obstacle as far as balls ask for, and the certificate of it with the stress of `y`.
+fn pushed_out(
+    parts: &ProblemParts,
+    y: &Field,
+    mut start: Field,
+) -> Result<(Field, Built), CertifyError> {
+    // Between tied bodies v has values of its own where nodes face edges, and along an arc it follows the obstacle, as only a
+    // quadratic one does.
+    if parts.contact.iter().any(|contact| contact.is_tied() || contact.turns()) {
+        start.bulges.get_or_insert_with(|| vec![[0.0; 2]; parts.mesh.edge_count()]);
+    }
+    let mut further = vec![0.0; parts.contact.len()];
+    let mut outside = || {
+        let v = admissible::admissible(parts, &start, &further);
+        let mut built = build::build(parts, y, &v);
+        tie::tie(&mut built.certificate)?;
+        let found = built.penetrations(parts);
+        found.iter().for_each(|&(k, by)| further[k] += 2.0 * by);
+        Ok::<_, CertifyError>((v, built, found.is_empty()))
+    };
+    let (mut v, mut built, mut is_out) = outside()?;
+    for _ in 0..PUSHES {
+        if is_out {
+            break;
+        }
+        (v, built, is_out) = outside()?;
+    }
+    Ok((v, built))
+}
+
+/// J(u) lies between these; the energy of friction is not in J(v), and data outside the exact class leave nothing to say.
+fn energy(parts: &ProblemParts, built: &Built, proof: &Proof) -> Option<[f64; 2]> {
+    let has_friction = parts.contact.iter().any(|contact| contact.has_friction());
+    (built.oscillation.reason.is_none() && !has_friction).then(|| {
+        let b = Ball::point(proof.bound);
+        let below = Ball::point(proof.energy[0]) - b * b / Ball::from(2);
+        [below.lower(), proof.energy[1]]
+    })
+}
+
+/// The root of each triangle's share in the square of the bound, and the distance of v from the field there, which are `distances` on the
+/// triangles of the certificate.
+fn indicators(mesh: &Mesh, built: &Built, proof: &Proof, distances: &[f64]) -> Vec<f64> {
+    let mut shares = vec![0.0; mesh.triangles().len()];
+    built.origins.iter().zip(&proof.shares).for_each(|(&t, share)| shares[t] += share);
+    built.oscillation.lifts.iter().for_each(|(&t, z)| shares[t] += z * z);
+    let mut apart = vec![0.0; shares.len()];
+    built.origins.iter().zip(distances).for_each(|(&t, d)| apart[t] += d * d);
+    let both = |(share, distance): (f64, &f64)| share.max(0.0).sqrt() + distance.sqrt();
+    shares.into_iter().zip(&apart).map(both).collect()
 }
 
 /// Refuses the laws of contact that no certificate is about.

@@ -74,7 +74,7 @@ impl Oscillation {
         let moved: Vec<String> = parts.moved().iter().map(|name| quoted(name, '\'')).collect();
         let moved = (!moved.is_empty()).then(|| {
             format!(
-                "nodes that face those of {} to within a millionth of an edge are taken to do so exactly",
+                "nodes that face those of {} to within a millionth of the longest edge there are taken to do so exactly",
                 moved.join(", ")
             )
         });

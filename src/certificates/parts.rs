@@ -70,125 +70,32 @@ impl<'a> ProblemParts<'a> {
     ) -> Result<Self, CertifyError> {
         let space = Space::new(&problem.mesh, degree);
         let constraints = Constraints::new(problem, &space)?;
-        let mut contact: Vec<Contact> = Vec::with_capacity(pieces.len());
-        let mut left_out = None;
-        for piece in pieces {
-            let mut next = Contact::new(problem, piece, displacement, halved);
-            let last = contact.last_mut();
-            if !next.has_length() {
-                last.into_iter().for_each(|last| last.take_over(&mut next, 1));
-                left_out = Some(next);
-                continue;
-            }
-            left_out.take().iter_mut().for_each(|before| next.take_over(before, 0));
-            last.into_iter().for_each(|last| next.join(&problem.mesh, last));
-            contact.push(next);
-        }
-        even_out(&mut contact);
-        let unsupported = |why: String| Err(CertifyError::Unsupported(why));
+        let contact = contacts(problem, pieces, displacement, halved);
         if let Some(point) = problem.points.first() {
-            return unsupported(format!(
-                "[point.{}] holds a point, which a true solution does not feel",
-                point.name
-            ));
+            let name = &point.name;
+            let why = format!("[point.{name}] holds a point, which a true solution does not feel");
+            return Err(CertifyError::Unsupported(why));
         }
         let mesh = &problem.mesh;
         let number = |edge: BoundaryEdge| mesh.triangle_edges()[edge.triangle][edge.local];
-        let mut smooth: Option<SmoothBoundary> = None;
-        let mut directions =
-            SupportDirections { known: Vec::new(), rounding: constraints.rounding() };
+        let directions = SupportDirections { known: Vec::new(), rounding: constraints.rounding() };
+        let mut supports = Conditions { mesh, smooth: None, directions };
         let mut boundary: BTreeMap<usize, Boundary> =
             mesh.outline().iter().map(|&edge| (number(edge), Boundary::Free)).collect();
         for (name, condition) in &problem.conditions {
             // The names were found when the problem was discretised.
             for &edge in mesh.edges_of(name).unwrap_or_default() {
-                let ends = mesh.ends(edge).map(|vertex| mesh.vertices()[vertex]);
-                let bulge =
-                    |f: &Option<SharedFunction>| f.as_ref().map_or(0.0, |f| bulge_of(f, ends));
-                let what = match condition {
-                    Condition::Displacement(functions) => {
-                        Boundary::Held(is_some(functions), functions.each_ref().map(bulge))
-                    }
-                    Condition::Mixed { displacement, traction } => {
-                        let bulges = displacement.each_ref().map(bulge);
-                        let beside = |c: usize| Some(Traction::Component(c, &traction[c]));
-                        match is_some(displacement) {
-                            [false, false] => Boundary::Loaded(Traction::Vector(traction)),
-                            [true, false] if !vanishes(&traction[1]) => {
-                                Boundary::Supported([1.0, 0.0], bulges[0], beside(1))
-                            }
-                            [false, true] if !vanishes(&traction[0]) => {
-                                Boundary::Supported([0.0, 1.0], bulges[1], beside(0))
-                            }
-                            held => Boundary::Held(held, bulges),
-                        }
-                    }
-                    Condition::Support { normal, tangential } => {
-                        let smooth = smooth.get_or_insert_with(|| SmoothBoundary::new(mesh));
-                        let given = [normal, tangential].into_iter().flatten();
-                        if smooth.at_ends(edge).is_some() && !given.clone().all(vanishes) {
-                            return unsupported(format!(
-                                "{} is curved, and what its support prescribes turns with it",
-                                quoted(name, '\'')
-                            ));
-                        }
-                        let n = <[f64; 2]>::from(mesh.length_and_normal(edge).1);
-                        let t = [-n[1], n[0]];
-                        match (normal, tangential) {
-                            (Some(_), Some(_)) => {
-                                let [along, across] = [normal, tangential].map(bulge);
-                                let both = [0, 1].map(|c| n[c] * along + t[c] * across);
-                                Boundary::Held([true; 2], both)
-                            }
-                            (None, None) => Boundary::Free,
-                            (Some(f), None) | (None, Some(f)) => {
-                                if smooth.at_ends(edge).is_some() {
-                                    return unsupported(format!(
-                                        "{} is curved, and the direction that its support holds turns",
-                                        quoted(name, '\'')
-                                    ));
-                                }
-                                let d = directions.one_like(if normal.is_some() { n } else { t });
-                                let bulge = bulge_of(f, ends);
-                                if is_oblique(d) {
-                                    Boundary::Supported(d, bulge, None)
-                                } else {
-                                    Boundary::Held(d.map(|d| d != 0.0), d.map(|d| d * bulge))
-                                }
-                            }
-                        }
-                    }
-                    Condition::Traction(traction) => Boundary::Loaded(Traction::Vector(traction)),
-                    Condition::Pressure(p) => Boundary::Loaded(Traction::Pressure(p)),
-                    Condition::Contact { .. } | Condition::Obstacle(..) => continue,
-                };
-                let what = match what {
-                    Boundary::Held([false, false], _) => Boundary::Free,
-                    what => what,
-                };
-                boundary.insert(number(edge), what);
+                if let Some(what) = supports.on_edge(name, condition, edge)? {
+                    boundary.insert(number(edge), what);
+                }
             }
         }
-        let mut lines: Vec<OnLine> = Vec::new();
-        for (k, edge) in contact.iter().enumerate() {
-            for (i, side) in edge.sides.iter().enumerate() {
-                let e = number(side.edge);
-                let line = match boundary.get(&e) {
-                    Some(&Boundary::Contact(line)) => line,
-                    _ => {
-                        lines.push(Vec::new());
-                        lines.len() - 1
-                    }
-                };
-                lines[line].push((k, i));
-                boundary.insert(e, Boundary::Contact(line));
-            }
-        }
+        let lines = lines(mesh, &contact, &mut boundary);
         let vertices = mesh.vertices().len();
         let mut prescribed = constraints.values()[..vertices].to_vec();
         let mut frames = BTreeMap::new();
         for (&vertex, &d) in constraints.frames().range(..vertices) {
-            let d = directions.one_like(d);
+            let d = supports.directions.one_like(d);
             if is_oblique(d) {
                 frames.insert(vertex, d);
             } else {
@@ -425,6 +332,141 @@ impl<'a> ProblemParts<'a> {
     /// The material of triangle `t`.
     pub(crate) fn material(&self, t: usize) -> &Material<f64> {
         self.problem.material.of(t)
+    }
+}
+
+/// Gamma_C, from the pieces of the discrete solution; what has no length on an edge is left to its neighbours.
+fn contacts(problem: &Problem, pieces: &[Piece], u: &[[f64; 2]], halved: bool) -> Vec<Contact> {
+    let mut contact: Vec<Contact> = Vec::with_capacity(pieces.len());
+    let mut left_out = None;
+    for piece in pieces {
+        let mut next = Contact::new(problem, piece, u, halved);
+        let last = contact.last_mut();
+        if !next.has_length() {
+            last.into_iter().for_each(|last| last.take_over(&mut next, 1));
+            left_out = Some(next);
+            continue;
+        }
+        left_out.take().iter_mut().for_each(|before| next.take_over(before, 0));
+        last.into_iter().for_each(|last| next.join(&problem.mesh, last));
+        contact.push(next);
+    }
+    even_out(&mut contact);
+    contact
+}
+
+/// The edges that contacts lie on, which become those of `boundary`.
+fn lines(
+    mesh: &Mesh,
+    contact: &[Contact],
+    boundary: &mut BTreeMap<usize, Boundary>,
+) -> Vec<OnLine> {
+    let mut lines: Vec<OnLine> = Vec::new();
+    for (k, edge) in contact.iter().enumerate() {
+        for (i, side) in edge.sides.iter().enumerate() {
+            let e = mesh.triangle_edges()[side.edge.triangle][side.edge.local];
+            let line = match boundary.get(&e) {
+                Some(&Boundary::Contact(line)) => line,
+                _ => {
+                    lines.push(Vec::new());
+                    lines.len() - 1
+                }
+            };
+            lines[line].push((k, i));
+            boundary.insert(e, Boundary::Contact(line));
+        }
+    }
+    lines
+}
+
+/// The conditions of a problem on its edges, with what is known of supports so far.
+struct Conditions<'a> {
+    mesh: &'a Mesh,
+    smooth: Option<SmoothBoundary>,
+    directions: SupportDirections,
+}
+
+impl<'a> Conditions<'a> {
+    /// The condition of the boundary `name` on an edge; none of contact.
+    fn on_edge(
+        &mut self,
+        name: &str,
+        condition: &'a Condition,
+        edge: BoundaryEdge,
+    ) -> Result<Option<Boundary<'a>>, CertifyError> {
+        let ends = self.mesh.ends(edge).map(|vertex| self.mesh.vertices()[vertex]);
+        let bulge = |f: &Option<SharedFunction>| f.as_ref().map_or(0.0, |f| bulge_of(f, ends));
+        let what = match condition {
+            Condition::Displacement(functions) => {
+                Boundary::Held(is_some(functions), functions.each_ref().map(bulge))
+            }
+            Condition::Mixed { displacement, traction } => {
+                let bulges = displacement.each_ref().map(bulge);
+                let beside = |c: usize| Some(Traction::Component(c, &traction[c]));
+                match is_some(displacement) {
+                    [false, false] => Boundary::Loaded(Traction::Vector(traction)),
+                    [true, false] if !vanishes(&traction[1]) => {
+                        Boundary::Supported([1.0, 0.0], bulges[0], beside(1))
+                    }
+                    [false, true] if !vanishes(&traction[0]) => {
+                        Boundary::Supported([0.0, 1.0], bulges[1], beside(0))
+                    }
+                    held => Boundary::Held(held, bulges),
+                }
+            }
+            Condition::Support { normal, tangential } => {
+                self.support(name, [normal.as_ref(), tangential.as_ref()], edge)?
+            }
+            Condition::Traction(traction) => Boundary::Loaded(Traction::Vector(traction)),
+            Condition::Pressure(p) => Boundary::Loaded(Traction::Pressure(p)),
+            Condition::Contact { .. } | Condition::Obstacle(..) => return Ok(None),
+        };
+        Ok(Some(match what {
+            Boundary::Held([false, false], _) => Boundary::Free,
+            what => what,
+        }))
+    }
+
+    /// The condition of a support on an edge, along its normal and along its tangent.
+    fn support(
+        &mut self,
+        name: &str,
+        [normal, tangential]: [Option<&SharedFunction>; 2],
+        edge: BoundaryEdge,
+    ) -> Result<Boundary<'a>, CertifyError> {
+        let mesh = self.mesh;
+        let ends = mesh.ends(edge).map(|vertex| mesh.vertices()[vertex]);
+        let smooth = self.smooth.get_or_insert_with(|| SmoothBoundary::new(mesh));
+        let is_curved = smooth.at_ends(edge).is_some();
+        let refused = |why: &str| {
+            let name = quoted(name, '\'');
+            Err(CertifyError::Unsupported(format!("{name} is curved, and {why}")))
+        };
+        if is_curved && ![normal, tangential].into_iter().flatten().all(vanishes) {
+            return refused("what its support prescribes turns with it");
+        }
+        let n = <[f64; 2]>::from(mesh.length_and_normal(edge).1);
+        let t = [-n[1], n[0]];
+        let (f, d) = match (normal, tangential) {
+            (Some(along), Some(across)) => {
+                let [along, across] = [along, across].map(|f| bulge_of(f, ends));
+                let both = [0, 1].map(|c| n[c] * along + t[c] * across);
+                return Ok(Boundary::Held([true; 2], both));
+            }
+            (None, None) => return Ok(Boundary::Free),
+            (Some(f), None) => (f, n),
+            (None, Some(f)) => (f, t),
+        };
+        if is_curved {
+            return refused("the direction that its support holds turns");
+        }
+        let d = self.directions.one_like(d);
+        let bulge = bulge_of(f, ends);
+        Ok(if is_oblique(d) {
+            Boundary::Supported(d, bulge, None)
+        } else {
+            Boundary::Held(d.map(|d| d != 0.0), d.map(|d| d * bulge))
+        })
     }
 }
 

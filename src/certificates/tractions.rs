@@ -62,62 +62,11 @@ pub(super) fn moments(
     let mut moments = vec![[Vector2::zeros(); 2]; mesh.edge_count()];
     let mut known = vec![Known::Nothing; mesh.edge_count()];
     for (e, owner) in owners.iter().enumerate() {
-        let [Some((t, local)), second] = *owner else { continue };
+        let Some((t, local)) = owner[0] else { continue };
         let normal = triangles[t].scaled_normal(local);
-        let here = stress[t].base.traction(normal);
-        let force = match second {
-            Some((other, _)) => (here + stress[other].base.traction(normal)) / 2.0,
-            None => here,
-        };
-        moments[e] = [force / 2.0; 2];
-        // What comes to the mean, p and q at the ends, has the moments (2 p + q) / 6 and (p + 2 q) / 6.
         let ends = [1, 2].map(|k| corners[t][(local + k) % 3]);
-        let sides = if second.is_some() { 2.0 } else { 1.0 };
-        for (other, _) in owner.iter().flatten() {
-            let Some(beyond) = &stress[*other].beyond else { continue };
-            for (corner, beyond) in corners[*other].iter().zip(beyond) {
-                let Some(k) = ends.iter().position(|end| end == corner) else { continue };
-                let sixth = beyond.traction(normal) / (6.0 * sides);
-                moments[e][k] += sixth * 2.0;
-                moments[e][1 - k] += sixth;
-            }
-        }
-        match parts.boundary.get(&e) {
-            None => {}
-            Some(Boundary::Held(held, _)) => {
-                for c in (0..2).filter(|&c| !held[c]) {
-                    let mut across = Vector2::zeros();
-                    across[c] = 1.0;
-                    known[e] = Known::Along(across);
-                    moments[e].iter_mut().for_each(|m| m[c] = 0.0);
-                }
-            }
-            Some(&Boundary::Supported(d, _, traction)) => {
-                let across = turned(Vector2::from(d));
-                known[e] = Known::Along(across);
-                let ends = [1, 2].map(|k| mesh.vertices()[corners[t][(local + k) % 3]]);
-                let given = traction.map(|traction| traction.moments(ends, normal));
-                let given = given.unwrap_or_default();
-                moments[e] = [0, 1].map(|k| with_along(across, given[k], moments[e][k]));
-            }
-            Some(Boundary::Free) => {
-                known[e] = Known::All;
-                moments[e] = [Vector2::zeros(); 2];
-            }
-            Some(Boundary::Loaded(traction)) => {
-                known[e] = Known::All;
-                let ends = [1, 2].map(|k| mesh.vertices()[corners[t][(local + k) % 3]]);
-                moments[e] = traction.moments(ends, normal);
-            }
-            Some(&Boundary::Contact(line)) => {
-                known[e] = Known::All;
-                moments[e] = [Vector2::zeros(); 2];
-                for &(k, i) in &parts.lines[line] {
-                    let [a, b, _] = parts.contact[k].on_edge(i);
-                    moments[e] = [moments[e][0] + a, moments[e][1] + b];
-                }
-            }
-        }
+        let mean = mean_moments(corners, stress, owner, (ends, normal));
+        (known[e], moments[e]) = prescribed(parts, e, (ends, normal), mean);
     }
     let averaged = moments.clone();
     let (owners, averaged, known) = (&owners, &averaged, &known);
@@ -126,6 +75,66 @@ pub(super) fn moments(
         go_round(a, fan, &around, &mut moments);
     }
     moments
+}
+
+/// The moments on an edge of the mean of the stresses on its one or two triangles.
+fn mean_moments(
+    corners: &[[usize; 3]],
+    stress: &[Affine<f64>],
+    owner: &[Option<(usize, usize)>; 2],
+    (ends, normal): ([usize; 2], Vector2<f64>),
+) -> [Vector2<f64>; 2] {
+    let sides = owner.iter().flatten().count() as f64;
+    let forces = owner.iter().flatten().map(|&(t, _)| stress[t].base.traction(normal));
+    let force = forces.fold(Vector2::zeros(), |sum, force| sum + force) / sides;
+    let mut moments = [force / 2.0; 2];
+    // What comes to the mean, p and q at the ends, has the moments (2 p + q) / 6 and (p + 2 q) / 6.
+    for &(t, _) in owner.iter().flatten() {
+        let Some(beyond) = &stress[t].beyond else { continue };
+        for (corner, beyond) in corners[t].iter().zip(beyond) {
+            let Some(k) = ends.iter().position(|end| end == corner) else { continue };
+            let sixth = beyond.traction(normal) / (6.0 * sides);
+            moments[k] += sixth * 2.0;
+            moments[1 - k] += sixth;
+        }
+    }
+    moments
+}
+
+/// The known ones of the moments on edge `e`, and all of them, with as much of `mean` as the known ones leave.
+fn prescribed(
+    parts: &ProblemParts,
+    e: usize,
+    (ends, normal): ([usize; 2], Vector2<f64>),
+    mean: [Vector2<f64>; 2],
+) -> (Known, [Vector2<f64>; 2]) {
+    let places = ends.map(|vertex| parts.mesh.vertices()[vertex]);
+    let zero = [Vector2::zeros(); 2];
+    match parts.boundary.get(&e) {
+        None => (Known::Nothing, mean),
+        Some(Boundary::Held(held, _)) => {
+            let (mut known, mut moments) = (Known::Nothing, mean);
+            for c in (0..2).filter(|&c| !held[c]) {
+                let mut across = Vector2::zeros();
+                across[c] = 1.0;
+                known = Known::Along(across);
+                moments.iter_mut().for_each(|m| m[c] = 0.0);
+            }
+            (known, moments)
+        }
+        Some(&Boundary::Supported(d, _, traction)) => {
+            let across = turned(Vector2::from(d));
+            let given = traction.map(|traction| traction.moments(places, normal));
+            let given = given.unwrap_or_default();
+            (Known::Along(across), [0, 1].map(|k| with_along(across, given[k], mean[k])))
+        }
+        Some(Boundary::Free) => (Known::All, zero),
+        Some(Boundary::Loaded(traction)) => (Known::All, traction.moments(places, normal)),
+        Some(&Boundary::Contact(line)) => {
+            let on_line = parts.lines[line].iter().map(|&(k, i)| parts.contact[k].on_edge(i));
+            (Known::All, on_line.fold(zero, |[p, q], [a, b, _]| [p + a, q + b]))
+        }
+    }
 }
 
 /// The known moments on an edge: all, or their components along a unit vector.

@@ -275,7 +275,7 @@ fn sum<S: Scalar>([a, b, c]: [S; 3]) -> S {
 /// The hoop strain in the functional of the stress s(v) = n~ . sigma(v) n on an edge of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct HoopStress<S, const N: usize> {
-    /// What each node's v_r adds to s at the two ends of a piece of the edge.
+    /// The part of each node's v_r in s at the two ends of a piece of the edge.
     pub at_ends: [[S; N]; 2],
     /// The sums of these: s of the displacement e_r, which is no rigid motion.
     pub ring: [S; 2],

@@ -109,7 +109,7 @@ fn rest_interval<S: Scalar>(p: [S; 2]) -> [S; 2] {
     [start, end]
 }
 
-/// What two intervals have in common; one without length if that is nothing.
+/// The intersection of two intervals; one without length where they have nothing in common.
 fn intersection<S: Scalar>([a, b]: [S; 2], [c, d]: [S; 2]) -> [S; 2] {
     let larger = |x: S, y: S| (y - x).split(|_| x, |_| y);
     let smaller = |x: S, y: S| (y - x).split(|_| y, |_| x);
@@ -313,7 +313,7 @@ mod tests {
         })
     }
 
-    /// What jumps at one of six cuts is off by a cell of the fine rule, times 1; what has a kink there by its square.
+    /// Errors of the rule: a jump at one of six cuts costs a cell of the fine rule, times 1, a kink there the square of one.
     const FINE: [f64; 2] = [1e-7, 4e-4];
 
     fn agrees_with_a_fine_rule<E: ExactFriction<f64, N, M>, const N: usize, const M: usize>(

@@ -12,7 +12,7 @@
 
 use super::{Scalar, positive_part};
 
-/// What an interface answers to one component of the jump.
+/// The answer of an interface to one component of the jump.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Response {
     /// Contact: pushes, and lets go.
