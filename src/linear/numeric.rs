@@ -59,7 +59,7 @@ struct Factorisation<'a, F> {
     structure: &'a Structure,
     matrix: &'a LowerTriangle,
     values: &'a mut [f64],
-    /// Whether a supernode is to be computed.
+    /// Tells whether a supernode is to be computed.
     stale: F,
 }
 

@@ -120,7 +120,7 @@ impl<'d, 'p> System<'d, 'p> {
         })
     }
 
-    /// The same matrices for a discretization that differs in the laws of its pieces alone.
+    /// Shares the matrices with a discretization that differs in the laws of its pieces alone.
     pub(crate) fn with_other_laws<'e>(
         &self,
         d: &'e Discretization<'p>,

@@ -15,7 +15,7 @@ pub(super) struct Scale {
     /// The box around all that is drawn of the bodies and their obstacles.
     pub(super) frame: Bounds,
     pub(super) colours: Colours,
-    /// Of the contact boundary of each name: the highest pressure that is drawn, and the peak.
+    /// The highest pressure that is drawn, and the peak, of the contact boundary of each name.
     pressures: Vec<(String, [f64; 2])>,
 }
 

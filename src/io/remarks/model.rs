@@ -1,4 +1,4 @@
-//! Whether the case is the one that is meant: bodies, materials and elements, overlaps, peaks that no mesh ends.
+//! Remarks on whether the case is the one that is meant: bodies, materials and elements, overlaps, peaks that no mesh ends.
 
 use std::collections::BTreeSet;
 

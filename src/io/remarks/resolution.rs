@@ -1,4 +1,4 @@
-//! Whether the mesh resolves the contact: each stretch of it beside the edges that it lies on, and the gap between the nodes.
+//! Remarks on whether the mesh resolves the contact: each stretch of it beside the edges that it lies on, and the gap between the nodes.
 
 use std::ops::Range;
 
@@ -45,7 +45,7 @@ struct Stretch {
     length: f64,
     /// How many edges that is.
     edges: f64,
-    /// Whether contact stops before the boundary does, at the start and at the end.
+    /// Tells whether contact stops before the boundary does, at the start and at the end.
     free: [bool; 2],
     force: f64,
 }
