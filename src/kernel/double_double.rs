@@ -18,6 +18,7 @@ pub struct DoubleDouble {
 
 impl DoubleDouble {
     /// The sum of two doubles, exactly.
+    #[inline]
     pub fn sum(a: f64, b: f64) -> Self {
         let head = a + b;
         let of_b = head - a;
@@ -25,6 +26,7 @@ impl DoubleDouble {
     }
 
     /// The product of two doubles, exactly unless it over- or underflows.
+    #[inline]
     pub fn product(a: f64, b: f64) -> Self {
         let head = a * b;
         let ([a1, a2], [b1, b2]) = (halves(a), halves(b));
@@ -32,23 +34,27 @@ impl DoubleDouble {
     }
 
     /// Splits a sum of two parts that may overlap, the larger one first, into head and tail.
+    #[inline]
     fn normal(head: f64, tail: f64) -> Self {
         let sum = head + tail;
         DoubleDouble { head: sum, tail: tail - (sum - head) }
     }
 
     /// The nearest double.
+    #[inline]
     pub fn head(self) -> f64 {
         self.head
     }
 
     /// The difference from the nearest double.
+    #[inline]
     pub fn tail(self) -> f64 {
         self.tail
     }
 }
 
 /// Splits a into a sum of two doubles of 26 bits each (Veltkamp).
+#[inline]
 fn halves(a: f64) -> [f64; 2] {
     let c = 134_217_729.0 * a;
     let high = c - (c - a);
@@ -56,12 +62,14 @@ fn halves(a: f64) -> [f64; 2] {
 }
 
 impl From<f64> for DoubleDouble {
+    #[inline]
     fn from(a: f64) -> Self {
         DoubleDouble { head: a, tail: 0.0 }
     }
 }
 
 impl From<i32> for DoubleDouble {
+    #[inline]
     fn from(a: i32) -> Self {
         DoubleDouble::from(f64::from(a))
     }
@@ -69,6 +77,7 @@ impl From<i32> for DoubleDouble {
 
 impl Add for DoubleDouble {
     type Output = Self;
+    #[inline]
     fn add(self, b: Self) -> Self {
         let (heads, tails) =
             (DoubleDouble::sum(self.head, b.head), DoubleDouble::sum(self.tail, b.tail));
@@ -79,6 +88,7 @@ impl Add for DoubleDouble {
 
 impl Neg for DoubleDouble {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
         DoubleDouble { head: -self.head, tail: -self.tail }
     }
@@ -86,6 +96,7 @@ impl Neg for DoubleDouble {
 
 impl Sub for DoubleDouble {
     type Output = Self;
+    #[inline]
     fn sub(self, b: Self) -> Self {
         self + -b
     }
@@ -93,6 +104,7 @@ impl Sub for DoubleDouble {
 
 impl Mul for DoubleDouble {
     type Output = Self;
+    #[inline]
     fn mul(self, b: Self) -> Self {
         let heads = DoubleDouble::product(self.head, b.head);
         DoubleDouble::normal(heads.head, heads.tail + (self.head * b.tail + self.tail * b.head))
