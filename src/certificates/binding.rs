@@ -226,7 +226,7 @@ fn bodies(
         return Ok((parts, vec![0; triangles.len()]));
     }
     let (vertices, fine) = (certificate.vertices.clone(), triangles.to_vec());
-    let fine = Mesh::of_edges(vertices, fine, [], |_, _| true)?;
+    let fine = Mesh::of_edges(vertices, fine, vec![], &|_, _| true)?;
     let of_fine = Parts::new(&fine);
     let mut areas = vec![vec![0.0; parts.count()]; of_fine.count()];
     for (t, &part) in of_fine.of_triangle().iter().enumerate() {

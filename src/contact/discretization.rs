@@ -93,6 +93,16 @@ impl<'a> Discretization<'a> {
         gamma: impl FnOnce(&Coercivity) -> G,
         rule: EdgeRule,
     ) -> Result<Self, DataError> {
+        Self::of(problem, degree, Box::new(|coercivity| gamma(coercivity).into()), rule)
+    }
+
+    /// As [`Discretization::new`], which every caller would compile anew.
+    fn of(
+        problem: &'a Problem,
+        degree: Degree,
+        gamma: Box<dyn FnOnce(&Coercivity) -> Gamma + '_>,
+        rule: EdgeRule,
+    ) -> Result<Self, DataError> {
         for &material in problem.material.distinct() {
             material::stable(material)?;
         }
@@ -101,7 +111,7 @@ impl<'a> Discretization<'a> {
         let space = Space::new(&problem.mesh, degree);
         let line = ContactLine::new(problem, &space)?;
         let coercivity = line.coercivity(problem)?;
-        let gamma = gamma(&coercivity).into();
+        let gamma = gamma(&coercivity);
         let gamma0 = coercivity.gamma0(gamma);
         if !(gamma0 > 0.0 && gamma0.is_finite()) {
             let (what, expected) = ("gamma0", "a positive number");

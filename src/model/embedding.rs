@@ -64,14 +64,14 @@ impl Mesh {
         named: impl IntoIterator<Item = (String, Vec<[usize; 2]>)>,
         pairs: &[Pair],
     ) -> Result<Mesh, MeshError> {
+        let named: Vec<_> = named.into_iter().collect();
         if pairs.is_empty() {
-            let mesh = Mesh::of_edges(vertices, triangles, named, |_, _| false)?;
+            let mesh = Mesh::of_edges(vertices, triangles, named, &|_, _| false)?;
             check(&mesh)?;
             return Ok(mesh);
         }
-        let named: Vec<(String, Vec<[usize; 2]>)> = named.into_iter().collect();
         let linked = Linked::new(vertices.len(), &triangles, &named, pairs);
-        let mesh = Mesh::of_edges(vertices, triangles, named, |a, b| linked.may_meet(a, b))?;
+        let mesh = Mesh::of_edges(vertices, triangles, named, &|a, b| linked.may_meet(a, b))?;
         bodies::check_pairs(&mesh, pairs)?;
         Ok(mesh)
     }

@@ -80,8 +80,8 @@ impl Mesh {
     pub(crate) fn of_edges(
         vertices: Vec<[f64; 2]>,
         triangles: Vec<[usize; 3]>,
-        named: impl IntoIterator<Item = (String, Vec<[usize; 2]>)>,
-        may_meet: impl Fn(usize, usize) -> bool,
+        named: Vec<(String, Vec<[usize; 2]>)>,
+        may_meet: &dyn Fn(usize, usize) -> bool,
     ) -> Result<Mesh, MeshError> {
         if triangles.is_empty() {
             return Err(MeshError::Empty);
@@ -407,7 +407,7 @@ pub(super) fn bytes_to_make(vertices: usize, triangles: usize) -> u64 {
 fn check_vertices(
     vertices: &[[f64; 2]],
     triangles: &[[usize; 3]],
-    may_meet: impl Fn(usize, usize) -> bool,
+    may_meet: &dyn Fn(usize, usize) -> bool,
 ) -> Result<(), MeshError> {
     for (vertex, &[x, y]) in vertices.iter().enumerate() {
         if !(x.is_finite() && y.is_finite()) {

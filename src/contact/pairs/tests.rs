@@ -47,7 +47,7 @@ fn mesh(bodies: &[Body]) -> Mesh {
             named.push(side("right", (0..ny).map(|j| [at(nx, j), at(nx, j + 1)]).collect()));
         }
     }
-    Mesh::of_edges(vertices, triangles, named, |_, _| true).unwrap()
+    Mesh::of_edges(vertices, triangles, named, &|_, _| true).unwrap()
 }
 
 fn block(low: [f64; 2], high: [f64; 2]) -> impl Fn([f64; 2]) -> [f64; 2] {

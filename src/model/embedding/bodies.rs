@@ -142,7 +142,7 @@ fn check_part(
     });
     let triangles: Vec<[usize; 3]> = triangles.collect();
     let vertices = old_vertex.iter().map(|&v| mesh.vertices()[v]).collect();
-    let alone = Mesh::of_edges(vertices, triangles, [], |_, _| false);
+    let alone = Mesh::of_edges(vertices, triangles, vec![], &|_, _| false);
     let checked = alone.and_then(|alone| check(&alone));
     checked.map_err(|error| error.renumbered(|v| old_vertex[v], |t| own[t]))
 }

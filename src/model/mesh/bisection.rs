@@ -211,7 +211,7 @@ impl Mesh {
             (name.clone(), halved.collect())
         });
         // Parts cover what their triangles did, so that no check for overlaps is needed.
-        let mut mesh = Mesh::of_edges(vertices, triangles, named, |_, _| true)?;
+        let mut mesh = Mesh::of_edges(vertices, triangles, named.collect(), &|_, _| true)?;
         Arc::make_mut(&mut mesh.topology).faults.clone_from(&self.topology.faults);
         let mesh = mesh.with_names(surfaces, self.topology.points.clone())?;
         Ok(Refinement { mesh, parents, origin })

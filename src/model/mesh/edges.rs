@@ -89,7 +89,7 @@ pub(super) type Named = (BTreeMap<String, Vec<BoundaryEdge>>, BTreeMap<String, M
 pub(super) fn name_boundaries(
     edges: &MeshEdges,
     places: &[[f64; 2]],
-    named: impl IntoIterator<Item = (String, Vec<[usize; 2]>)>,
+    named: Vec<(String, Vec<[usize; 2]>)>,
 ) -> Result<Named, MeshError> {
     let mut boundaries: BTreeMap<String, Vec<BoundaryEdge>> = BTreeMap::new();
     let mut faults = BTreeMap::new();

@@ -68,7 +68,7 @@ impl Mesh {
         named.push((first, cuts.iter().map(|[a, _]| ends(a)).collect()));
         named.push((second, cuts.iter().map(|[_, b]| ends(b)).collect()));
         // The two sides of the cut lie on each other; all else lies where it did.
-        let mut mesh = Mesh::of_edges(vertices, split, named, |_, _| true)?;
+        let mut mesh = Mesh::of_edges(vertices, split, named, &|_, _| true)?;
         let made = Arc::make_mut(&mut mesh.topology);
         made.curves.clone_from(&topology.curves);
         made.faults.clone_from(&topology.faults);
