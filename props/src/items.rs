@@ -125,14 +125,6 @@ impl Item {
     }
 }
 
-impl Claim {
-    /// The items that its checks are about.
-    pub fn items(&self) -> impl Iterator<Item = &'static Item> {
-        let found = |item: &&Item| !item.found(std::slice::from_ref(self)).is_empty();
-        ITEMS.iter().filter(found)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

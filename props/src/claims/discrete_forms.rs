@@ -213,13 +213,9 @@ mod row {
                 },
                 vec![
                     exact!("the_loops_of_the_solver_over_rationals_are_the_definitions" => assembled::loops_over_rationals()).about(&["P_gamma, A_gamma", "(8)"]),
-                    doubles!("diameters_lengths_and_normals_of_the_solver_are_those_of_the_edges" => assembled::square_roots()).about(&["(7)"]),
                     doubles!("gamma_of_the_solver_is_gamma0_times_the_diameter" => assembled::gamma_by_the_diameter()).about(&["(7)"]),
                     doubles!("control_gamma_by_the_length_of_the_edge" => assembled::gamma_by_the_edge()),
                     exact!("control_the_loops_of_the_solver_beside_other_definitions" => assembled::loops_beside_other_definitions()),
-                    doubles!("control_an_edge_of_the_solver_for_the_longest" => assembled::first_edge_for_the_longest()),
-                    doubles!("control_the_diameter_of_the_solver_taken_wrong" => assembled::diameter_taken_wrong()),
-                    doubles!("control_gamma_edges_or_material_of_the_solver_taken_wrong" => assembled::form_taken_wrong()),
                 ],
                 model_checked(HARNESSES, &[]),
             ]

@@ -145,7 +145,7 @@ const WIDE: Gap = 256..=256;
 /// Contact all along.
 pub const NARROW: Gap = -64..=-64;
 /// Either.
-const BETWEEN: Gap = -4..=8;
+pub const BETWEEN: Gap = -4..=8;
 
 /// Problems on up to `most` cells along each side; data in sixty-fourths.
 pub fn problems(most: [usize; 2], gap: Gap) -> impl Strategy<Value = Draw> {
@@ -169,14 +169,6 @@ pub fn problems(most: [usize; 2], gap: Gap) -> impl Strategy<Value = Draw> {
             by_contact: false,
         },
     )
-}
-
-/// Such problems of bodies that contact alone holds, on floors that are so many times as steep.
-pub fn problems_by_contact(most: [usize; 2], steeper: f64) -> impl Strategy<Value = Draw> {
-    problems(most, BETWEEN).prop_map(move |draw| {
-        let gap = [draw.gap[0], steeper * draw.gap[1]];
-        Draw { gap, by_contact: true, ..draw }
-    })
 }
 
 impl Draw {

@@ -3,7 +3,6 @@
 use signorini::kernel::{positive_part, positive_part_slope};
 
 use crate::harness::{any, assume, byte, finite, number};
-use crate::numbers::Whole;
 use crate::verdict::{Ordered, Verdict};
 use crate::{ensure, given, harnesses};
 
@@ -109,16 +108,6 @@ harnesses! {
         let part = if a < 0.0 { 0.0 } else { a };
         assert!(part.is_sign_positive());
     }
-    /// \[a\]+ is the point of \[0, oo) nearest to a, where the products are exact.
-    holds positive_part_is_the_projection_on_the_half_line_for_all_i8() {
-        assert!(!positive_part_is_the_projection_on_the_half_line([byte(), byte()]).fails());
-    }
-    /// The false twin: the nearest point of the whole line.
-    fails control_positive_part_is_the_nearest_of_all_numbers_for_all_i8([-1.0, -1.0]) {
-        let (a, m) = (byte(), byte());
-        let p = positive_part(a);
-        assert!((m - p) * (a - p) <= Whole(0));
-    }
     /// A NaN must not become "no contact".
     holds nan_stays_nan_for_all_nan() {
         let a: f64 = any();
@@ -131,17 +120,6 @@ harnesses! {
         assume(a.is_nan());
         let lost = if a > 0.0 { a } else { 0.0 };
         assert!(lost.is_nan());
-    }
-    /// \[a\]+ - \[-a\]+ = a without rounding.
-    holds positive_and_negative_part_add_up_for_all_finite_doubles() {
-        let a = finite();
-        assert!(positive_part(a) - positive_part(-a) == a);
-        assert!(positive_part(a) == 0.0 || positive_part(-a) == 0.0);
-    }
-    /// The false twin: they are added.
-    fails control_positive_plus_negative_part_is_the_number_for_all_finite_doubles([-1.0]) {
-        let a = finite();
-        assert!(positive_part(a) + positive_part(-a) == a);
     }
     /// The slope that Newton uses: 1 exactly where a > 0.
     holds slope_is_one_exactly_for_positive_doubles() {

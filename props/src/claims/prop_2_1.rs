@@ -186,18 +186,6 @@ pub(super) fn touching(within: fn() -> Whole) -> ContactPoint<Whole> {
 }
 
 harnesses! {
-    /// No tension.
-    holds scaled_equation_implies_no_tension_for_all_finite_doubles() {
-        let (u, s) = (finite(), finite());
-        assume(s == -positive_part(u - s));
-        assert!(s <= 0.0);
-    }
-    /// The false twin: always compression.
-    fails control_scaled_equation_implies_compression_for_all_finite_doubles([0.0, 0.0]) {
-        let (u, s) = (finite(), finite());
-        assume(s == -positive_part(u - s));
-        assert!(s < 0.0);
-    }
     /// s = 0 and u <= 0, or s < 0 and u vanishes beside s.
     holds scaled_equation_is_gap_or_contact_for_all_finite_doubles() {
         let (u, s) = (finite(), finite());

@@ -6,8 +6,8 @@ use signorini::results::Solution;
 use signorini::solve::iterate::Evaluated;
 use signorini::solve::{Method, discretize_any};
 
+use super::assembled::unsolved;
 use props::claim::{Outcome, text};
-use props::claims::assembled::solver::unsolved;
 use props::proof::sampler::Random;
 use props::{draws, sharpness};
 

@@ -22,6 +22,7 @@ macro_rules! checks {
 }
 
 mod a_priori;
+mod assembled;
 mod at_points;
 mod attained;
 mod balls;

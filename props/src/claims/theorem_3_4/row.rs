@@ -53,10 +53,8 @@ pub fn claim() -> Claim {
                     about "Theorem 3.4";
                 proved + tested z_times_the_difference_of_p_is_at_most_minus_gamma_z_squared[gamma, g, u, su, uh, sh]
                     : "pressed", "open" about "Theorem 3.4";
-                proved + tested p0_of_w_splits[gamma, g, u, su, uh, sh, v, sv] about "Theorem 3.4";
                 proved + tested raw_facts_give_the_inequality_between_norms[e, h, w, c, s, r, t, k]
                     about "Theorem 3.4" prepared(onto_raw_facts);
-                proved young_steps_hold[e, h, z, s, r, k];
                 proved + tested theorem_3_4_holds_with_its_constant[e, h, z, s, r, k] about "Theorem 3.4", "(13)";
                 proved corollary_3_6_holds_with_its_constant[x, s, r, w, e, h, k] about "Corollary 3.6";
                 proved + tested step_14_holds[gamma, uh, sh, v, sv]: "pressed", "open" about "(14)";
