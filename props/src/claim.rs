@@ -7,7 +7,7 @@ use std::panic::{self, AssertUnwindSafe};
 use crate::draws;
 use crate::harness::Harness;
 use crate::proof;
-use crate::receipt::{self, Answer, Standing};
+use crate::receipt;
 use crate::statement::Statement;
 
 /// What a check answers: a line of evidence, or what went wrong.
@@ -75,11 +75,7 @@ impl Check {
     /// all of them are run; else random draws.
     pub fn engine_name(&self) -> &'static str {
         match self.subject {
-            Subject::Harness(h)
-                if receipt::standing(&h) == Standing::Answered(Answer::Verified) =>
-            {
-                "Kani"
-            }
+            Subject::Harness(harness) if receipt::is_verified(&harness) => "Kani",
             Subject::Harness(harness) if receipt::is_decided(&harness) => "all cases",
             _ => self.engine.name(),
         }

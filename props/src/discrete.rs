@@ -221,11 +221,6 @@ impl<'a> Discrete<'a> {
         matrix
     }
 
-    /// The contact terms are integrated without quadrature error, cut at the roots of P.
-    pub fn by_pieces(&self) -> bool {
-        self.rule.is_none()
-    }
-
     /// How the contact looks at u.
     pub fn class(&self, u: &[[Exact; 2]]) -> &'static str {
         let zero = Exact::from(0);

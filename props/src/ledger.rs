@@ -134,15 +134,7 @@ impl Places {
             Subject::Harness(_) => {
                 self.find(&["holds ", "fails "].map(|kind| format!(" {kind}{name}(")))
             }
-            Subject::Function(_) => self.find(&[format!("\"{name}\"")]).or_else(|why| {
-                // The same name in two rows.
-                let files = self.files.iter();
-                let first = files.flat_map(|(file, text)| {
-                    text.lines().enumerate().map(move |(number, line)| (file, number, line))
-                });
-                let mut named = first.filter(|(_, _, line)| line.contains(&format!("\"{name}\"")));
-                named.next().map(|(file, n, _)| format!("{file}#L{}", n + 1)).ok_or(why)
-            }),
+            Subject::Function(_) => self.find(&[format!("\"{name}\"")]),
         }
     }
 
@@ -295,9 +287,9 @@ fn state(claims: &[Claim]) -> String {
         holds.len(),
         checks().filter(|check| check.control).count(),
         theorems.len(),
-        rocq.solvers.join(", "),
+        rocq.head.join(", "),
         rocq.date,
-        doubles.solvers.join(", "),
+        doubles.head.join(", "),
         doubles.count("unsat", "unsat"),
         doubles.date,
         doubles.count("unknown", "sat"),

@@ -232,10 +232,10 @@ pub fn estimate_14_holds<S: Ordered>(
     Verdict::Holds("always")
 }
 
-/// (15): the terms with u_n, of which the last is dropped because u_n <= 0.
-pub fn step_15_holds<S: Ordered>([gamma, u, su, uh, sh, v]: [S; 6]) -> Verdict {
+/// (15): the terms with u_n, of which the last is dropped; `most` is what u_n may be.
+fn step_15<S: Ordered>([gamma, u, su, uh, sh, v]: [S; 6], most: S) -> Verdict {
     let zero = S::from(0);
-    given!(gamma > zero && u <= zero);
+    given!(gamma > zero && u <= most);
     let point = point([gamma, zero, u, su, uh, sh, v, zero]);
     let over_gamma = positive_part(point.discrete.p()) / gamma;
     let before = su * (v - uh) + over_gamma * v;
@@ -243,6 +243,11 @@ pub fn step_15_holds<S: Ordered>([gamma, u, su, uh, sh, v]: [S; 6]) -> Verdict {
     ensure!(before == kept + over_gamma * u);
     ensure!(before <= kept);
     Verdict::Holds(class(&point))
+}
+
+/// (15), because u_n <= 0.
+pub fn step_15_holds<S: Ordered>(v: [S; 6]) -> Verdict {
+    step_15(v, S::from(0))
 }
 
 /// (16): Young's inequality with weights gamma and beta.
@@ -380,14 +385,9 @@ pub fn control_half_the_constant_of_theorem_3_4<S: Ordered>([e, h, z, s, r, k]: 
     bound([e, h, z, s, r, k], S::from(1) / S::from(2))
 }
 
-/// (15) without u_n <= 0.
-pub fn control_step_15_with_penetration<S: Ordered>([gamma, u, su, uh, sh, v]: [S; 6]) -> Verdict {
-    let zero = S::from(0);
-    given!(gamma > zero);
-    let point = point([gamma, zero, u, su, uh, sh, v, zero]);
-    let over_gamma = positive_part(point.discrete.p()) / gamma;
-    ensure!(su * (v - uh) + over_gamma * v <= (su + over_gamma) * (v - u) + su * (u - uh));
-    Verdict::Holds(class(&point))
+/// (15) with u_n <= 1.
+pub fn control_step_15_with_penetration<S: Ordered>(v: [S; 6]) -> Verdict {
+    step_15(v, S::from(1))
 }
 
 #[cfg(not(kani))]

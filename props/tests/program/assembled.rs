@@ -94,6 +94,13 @@ fn inner<S: Ordered>(functional: &[S], v: &[[S; 2]]) -> S {
     sum(functional.iter().zip(v.as_flattened()), |(&f, &v)| f * v)
 }
 
+/// The largest value on \[0, 1\] of a polynomial of degree <= 2.
+fn maximum<S: Ordered>(line: &Line<S>) -> S {
+    let ends = [S::from(0), S::from(1)].into_iter();
+    let values = ends.chain(line.turn()).map(|s| line.at(s));
+    values.reduce(|a, b| if b > a { b } else { a }).unwrap_or(line.0[0])
+}
+
 /// J_h(u), given L(u)
 fn energy<S: Given, const N: usize>(setting: &Setting<S>, u: &[[S; 2]], work: S) -> S {
     let definition = Definition::<N, S>(&setting.body);
@@ -138,7 +145,7 @@ fn defined<S: Given, const N: usize>(
         .collect();
     let along_normals =
         [0, 1].map(|c| -sum(forces.iter().zip(&body.contact), |(&force, side)| force * side.n[c]));
-    let peaks = traces.iter().enumerate().map(|(e, traces)| pressure(e, traces.p.maximum()));
+    let peaks = traces.iter().enumerate().map(|(e, traces)| pressure(e, maximum(&traces.p)));
     let peak = peaks.fold(zero, |most, p| if p > most { p } else { most });
     let mut reactions: BTreeMap<&str, [S; 2]> = BTreeMap::new();
     for (&(node, c), (_, name)) in &setting.prescribed {
@@ -432,7 +439,7 @@ fn contact_length_is_the_measure_of_the_pressed_part<const N: usize>(
     let measure = |sign: f64| {
         sum(0..exact.body.contact.len(), |e| {
             let side = &exact.body.contact[e];
-            let size = sizes.traces(&magnitude.body.contact[e], &read(u)).p.maximum().sum();
+            let size = maximum(&sizes.traces(&magnitude.body.contact[e], &read(u)).p).sum();
             let delta = Exact::of_double(sign * roundings("P(u)") * UNIT * size);
             let p = definition.traces(side, &read(u)).p.plus(&Line(vec![delta]));
             let zero = Exact::from(0);

@@ -58,7 +58,7 @@ const ANOTHER_FACTOR: Asked = Asked { matrix: 1e3, share: -400, ..MOVED };
 
 /// The field moved at random.
 fn moved(u: &[[f64; 2]], by: f64) -> Vec<[f64; 2]> {
-    let steps = Random::new(1).field(u.len());
+    let steps = super::random_field(&mut Random::new(1), u.len());
     u.iter().zip(steps).map(|(u, d)| [0, 1].map(|c| u[c] + by * d[c] / 2.0)).collect()
 }
 

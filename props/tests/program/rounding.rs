@@ -46,7 +46,7 @@ fn rounding_of_stresses(degree: Degree, problem: &Problem, by: f64) -> Result<f6
     let system = System::new(&d).map_err(text)?;
     let mut random = Random::new(draws::seed());
     let nodes = d.space.nodes().len();
-    let [heads, tails] = [0, 1].map(|_| random.field(nodes));
+    let [heads, tails] = [0, 1].map(|_| super::random_field(&mut random, nodes));
     let small = 2.0_f64.powi(-54);
     let u: Vec<[PreciseBall; 2]> = (0..nodes)
         .map(|i| {

@@ -85,7 +85,7 @@ pub fn claim() -> Claim {
                     fails "z * (point.exact.p() - point.discrete.p()) <= -gamma * z * z";
                 refuted control_half_the_constant_of_theorem_3_4[e, h, z, s, r, k] fails "left <= factor * bracket";
                 refuted control_step_15_with_penetration[gamma, u, su, uh, sh, v]
-                    fails "su * (v - uh) + over_gamma * v <= (su + over_gamma) * (v - u) + su * (u - uh)";
+                    fails "before <= kept";
             },
             vec![
                 exact!("control_17_and_18_as_printed_at_exact_points" => errata_points()),
