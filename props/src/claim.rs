@@ -240,10 +240,8 @@ pub struct Claim {
     pub title: &'static str,
     /// The paper's words.
     pub paper: &'static str,
-    /// What this does not establish.
+    /// What this does not establish; and why evidence of fewer than two engines is all there is, where that is so.
     pub limits: &'static str,
-    /// Why evidence of fewer than two engines is all there is, where that is so.
-    pub single: Option<&'static str>,
     /// The evidence.
     pub checks: Vec<Check>,
 }

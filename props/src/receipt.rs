@@ -10,16 +10,16 @@
 //! hash of each file of the kernel, of each file that a harness stands in and of what all harnesses share, as they are in that
 //! commit. It stands behind a harness as long as these files are what they were.
 
-use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 
 use sha2::{Digest, Sha256};
 
 use crate::harness::Harness;
+use crate::proof::{Known, once};
 
 /// What each harness may reach, beside the file that it stands in.
 const SHARED: [&str; 4] =
@@ -305,15 +305,8 @@ pub fn said(harnesses: &[Harness]) -> String {
 
 /// Whether a harness is decided by running it on all its values, which are few: asked once.
 pub fn is_decided(harness: &Harness) -> bool {
-    thread_local! {
-        static DECIDED: RefCell<BTreeMap<String, bool>> = const { RefCell::new(BTreeMap::new()) };
-    }
-    let known = DECIDED.with_borrow(|decided| decided.get(&harness.path()).copied());
-    known.unwrap_or_else(|| {
-        let decided = harness.is_decided();
-        DECIDED.with_borrow_mut(|all| all.insert(harness.path(), decided));
-        decided
-    })
+    static DECIDED: Known<String, bool> = Mutex::new(BTreeMap::new());
+    *once(&DECIDED, harness.path(), || harness.is_decided())
 }
 
 /// Writes the receipt of a run and answers where. `log` is what `cargo kani` printed, of the commit that is checked out.

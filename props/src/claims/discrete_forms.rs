@@ -197,7 +197,6 @@ mod row {
             title: "gamma, P_gamma and A_gamma",
             paper: "gamma(x) = gamma0 h_T for x in T; P_gamma(v^h) = v_n - gamma sigma_n(v^h); A_gamma(u^h, v^h) = a(u^h, v^h) - int gamma sigma_n(u^h) sigma_n(v^h).",
             limits: "The solver's own loops are compared on meshes of two to eight triangles; its numbers in doubles, there: `props/tests/program/assembled.rs`.",
-            single: None,
             checks: [
                 statements! {
                     proved + tested triangle_geometry_is_its_definition[ax, ay, bx, by, cx, cy];

@@ -2,14 +2,15 @@
 //! existence, uniqueness and error bounds with friction rest. v is the slip, sigma the shear stress, s the slip bound, mu Coulomb's
 //! coefficient; the laws are written out here, clip and gap are the kernel's.
 
-use signorini::kernel::friction::{clip, clip_bregman, clip_energy, clip_slopes, fenchel_gap};
+use signorini::kernel::friction::{clip, fenchel_gap};
 use signorini::kernel::positive_part;
 
 use crate::harness::{any, assume, byte, finite};
 use crate::verdict::{Ordered, Verdict};
 use crate::{ensure, given, harnesses};
 
-fn abs<S: Ordered>(a: S) -> S {
+/// |a|
+pub fn abs<S: Ordered>(a: S) -> S {
     if a < S::from(0) { -a } else { a }
 }
 
@@ -75,15 +76,6 @@ pub fn control_friction_along_the_slip<S: Ordered>([v, sigma, s, gamma]: [S; 4])
     Verdict::Holds("always")
 }
 
-/// What a glued interface says, v = 0, is gamma sigma = -(v - gamma sigma).
-pub fn glue_is_one_equation<S: Ordered>([v, sigma, gamma]: [S; 3]) -> Verdict {
-    given!(gamma > S::from(0));
-    let law = v == S::from(0);
-    let equation = gamma * sigma == -(v - gamma * sigma);
-    ensure!(law == equation);
-    Verdict::Holds(if law { "glued" } else { "neither holds" })
-}
-
 /// Coulomb's law with contact, for the bound mu q of friction: n is the normal displacement beyond the gap, p the normal stress.
 fn coulomb<S: Ordered>([n, p, v, sigma, mu, gamma]: [S; 6], bound_of: impl Fn(S) -> S) -> Verdict {
     let zero = S::from(0);
@@ -144,31 +136,6 @@ pub fn clip_is_lipschitz_in_its_bound<S: Ordered>([x, m, n]: [S; 3]) -> Verdict 
     let d = clip(x, m) - clip(x, n);
     ensure!(abs(d) <= abs(m - n));
     Verdict::Holds(if d == S::from(0) { "the same" } else { "differ" })
-}
-
-/// The slopes that Newton's method uses: one of them at most is not zero, and with them clip(x; \[m\]+) is homogeneous.
-pub fn slopes_of_the_clip_add_up_to_it<S: Ordered>([x, m]: [S; 2]) -> Verdict {
-    let (zero, one) = (S::from(0), S::from(1));
-    let [by_x, by_m] = clip_slopes(x, m);
-    ensure!(by_x + abs(by_m) <= one && by_x >= zero);
-    ensure!(clip(x, positive_part(m)) == by_x * x + by_m * m);
-    Verdict::Holds(if by_x == one {
-        "sticks"
-    } else if by_m == zero {
-        "open"
-    } else {
-        "slides"
-    })
-}
-
-/// The energy is convex with the clip for its derivative: its Bregman distance is not negative, and is what the kernel computes.
-pub fn bregman_distance_of_friction_is_its_definition<S: Ordered>([a, b, m]: [S; 3]) -> Verdict {
-    let zero = S::from(0);
-    given!(m >= zero);
-    let distance = clip_bregman(a, b, m);
-    ensure!(distance == clip_energy(b, m) - clip_energy(a, m) - clip(a, m) * (b - a));
-    ensure!(distance >= zero);
-    Verdict::Holds(if distance == zero { "none" } else { "some" })
 }
 
 /// s |v| + tau v >= 0, and 0 exactly where v and tau satisfy Tresca's law.
@@ -316,18 +283,14 @@ mod row {
             title: "Friction",
             paper: "(not in the paper, which has sigma_t = 0 on Gamma_C.)",
             limits: "One point of Gamma_C; integrals over P1 edges are in `props/tests/program/edges.rs`, P2 edges are compared with a fine rule in the tests of the kernel. From the inequalities to existence and uniqueness it is Brouwer's and Banach's theorem (docs/theory.md, 13), which nothing here runs.",
-            single: None,
             checks: [
                 statements! {
                     proved + tested tresca_is_one_equation[v, sigma, s, gamma]: "sticks", "slides", "neither holds";
-                    proved + tested glue_is_one_equation[v, sigma, gamma]: "glued", "neither holds";
                     proved + tested coulomb_is_two_equations[n, p, v, sigma, mu, gamma]
                         : "open", "sticks", "slides", "neither holds" prepared(on_coulombs_law);
                     proved + tested clip_is_the_projection_on_the_bounds[x, w, m]: "within", "beyond";
                     proved + tested clip_is_firmly_nonexpansive[a, b, m]: "the same", "differ";
                     proved + tested clip_is_lipschitz_in_its_bound[x, m, n]: "the same", "differ";
-                    proved + tested slopes_of_the_clip_add_up_to_it[x, m]: "sticks", "slides", "open";
-                    proved + tested bregman_distance_of_friction_is_its_definition[a, b, m]: "none", "some";
                     proved + tested gap_of_friction_is_zero_exactly_where_tresca_holds[v, tau, s]
                         : "sticks", "slides", "neither holds";
                     proved + tested pressure_pays_for_friction[d, p, mu]

@@ -260,7 +260,6 @@ mod row {
             title: "From Green's formula to Nitsche's",
             paper: "a(u, v) - int gamma sigma_n(u) sigma_n(v) + int (1/gamma)[u_n - gamma sigma_n(u)]+ (v_n - gamma sigma_n(v)) = L(v) (6), from a(u, v) - int sigma_n(u) v_n = L(v) and (5).",
             limits: "Green's formula for other fields is taken from analysis.",
-            single: None,
             checks: [
                 statements! {
                     proved + tested green_terms_rearrange_to_6[u_n, g, sigma_n, gamma, v_n, tau_n]
@@ -288,7 +287,6 @@ mod row {
             title: "Consistency",
             paper: "Suppose that the solution u of (1)-(2) is in H^(3/2 + nu), nu > 0; then u is also solution of A_gamma(u, v^h) + int (1/gamma)[P_gamma(u)]+ P_gamma(v^h) = L(v^h) for all v^h in V^h.",
             limits: "Solutions with a gap function that is not affine are not covered. The residuals at solutions that are no polynomials are sums of doubles by quadrature, which are not enclosed.",
-            single: None,
             checks: [vec![
                 exact!("residual_vanishes_at_affine_solutions_for_p2" => patch_p2()).about(&["Lemma 3.1"]),
                 exact!("residual_vanishes_at_a_curved_solution_for_p1" => curved::residual_vanishes::<3>(8)).about(&["Lemma 3.1"]),

@@ -186,7 +186,6 @@ mod row {
             title: "The method, and the functional whose gradient it is",
             paper: "Find u^h in V^h such that A_gamma(u^h, v^h) + int (1/gamma)[P_gamma(u^h)]+ P_gamma(v^h) = L(v^h) for all v^h in V^h.",
             limits: "Meshes of two to eight triangles, loads and gaps of degree <= 2. The root of a quadratic P is irrational, so P2 without quadrature error is compared in doubles, edge by edge (`props/tests/program/edges.rs`).",
-            single: None,
             checks: [
                 statements! {
                     proved + tested positive_interval_is_where_p_is_positive[p0, p1, s]: "pressed", "open", "cut";

@@ -247,7 +247,6 @@ mod row {
             title: "The contact pressure as a projection, and the mixed form",
             paper: "lambda^h := -(1/gamma)[P_gamma(u^h)]+ can be interpreted as the L^2-projection of -(1/gamma)P_gamma(u^h) on the cone of the nonpositive mu: (9); (9) is equivalent to (10); the method is equivalent to a mixed method with stabilisation.",
             limits: "That the lambda^h which the solver reports is this one is tested (`props/tests/program/assembled.rs`).",
-            single: None,
             checks: [
                 statements! {
                     proved + tested contact_pressure_is_the_projection[u_n, g, sigma_n, gamma, mu]: "pressed", "open"

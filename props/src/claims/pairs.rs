@@ -347,7 +347,6 @@ pub fn claim() -> Claim {
         title: "Two deformable bodies",
         paper: "\"The extension to two elastic bodies in contact can be easily made, at least for small strain models\": (8) with the jump of the displacements and one weighted stress of both sides (theory.md, 12).",
         limits: "On curved interfaces pieces, directions and gaps are taken as found; the search for partners is tested in the program.",
-        single: None,
         checks: [
             statements! {
                 proved + tested a_law_is_one_equation[y, sigma, gamma];

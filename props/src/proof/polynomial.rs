@@ -9,6 +9,8 @@ use std::ops::{Add, Mul, Neg, Sub};
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 
+use crate::numbers::rational;
+
 /// An exponent. The sum of two is checked: one that wrapped around would make x^257 = x, in builds without overflow checks.
 pub type Exponent = u16;
 
@@ -49,7 +51,7 @@ impl Polynomial {
                 entry.insert(coefficient);
             }
             std::collections::btree_map::Entry::Occupied(mut entry) => {
-                *entry.get_mut() += coefficient;
+                *entry.get_mut() = rational::sum(entry.get(), &coefficient);
                 if entry.get().is_zero() {
                     entry.remove();
                 }
@@ -93,7 +95,7 @@ impl Polynomial {
         if factor.is_zero() {
             return Polynomial::default();
         }
-        Polynomial(self.0.iter().map(|(m, c)| (m.clone(), c * factor)).collect())
+        Polynomial(self.0.iter().map(|(m, c)| (m.clone(), rational::product(c, factor))).collect())
     }
 
     /// The product; `None` where an exponent would be beyond the largest [`Exponent`].
@@ -101,7 +103,7 @@ impl Polynomial {
         let mut sum = Polynomial::default();
         for (m, c) in &self.0 {
             for (n, d) in &other.0 {
-                sum.add_term(product(m, n)?, c * d);
+                sum.add_term(product(m, n)?, rational::product(c, d));
             }
         }
         Some(sum)

@@ -1,17 +1,20 @@
 //! Integrals over contact edges, P1 and P2: in doubles beside exact integrals between the roots of P, and by points beside the sums
-//! over them; the largest P on an edge, and where its sign changes; those of friction by those of contact.
+//! over them; the largest P on an edge, and where its sign changes; those of friction by those of contact, its slopes and its
+//! energy.
 
 use proptest::prelude::*;
 use signorini::contact::EdgeRule;
 use signorini::kernel::edge_integral::{ExactEdge, gauss, maximum, roots, value_at};
-use signorini::kernel::friction::ExactFriction;
+use signorini::kernel::friction::{ExactFriction, clip, clip_bregman, clip_energy, clip_slopes};
 use signorini::kernel::{P1, P2, positive_part};
 use signorini::model::Degree;
 
 use props::bodies::sum;
 use props::claim::Outcome;
+use props::claims::friction::abs;
 use props::naive::Line;
 use props::numbers::Exact;
+use props::proof::prove;
 use props::verdict::{Ordered, Verdict};
 use props::{draws, ensure, given, statement};
 
@@ -305,7 +308,34 @@ fn bound_of_one_end() -> Outcome {
     })
 }
 
+/// The slopes that Newton's method uses: one of them at most is not zero, and with them clip(x; \[m\]+) is homogeneous.
+fn slopes_of_the_clip_add_up_to_it<S: Ordered>([x, m]: [S; 2]) -> Verdict {
+    let (zero, one) = (S::from(0), S::from(1));
+    let [by_x, by_m] = clip_slopes(x, m);
+    ensure!(by_x + abs(by_m) <= one && by_x >= zero);
+    ensure!(clip(x, positive_part(m)) == by_x * x + by_m * m);
+    Verdict::Holds(if by_x == one {
+        "sticks"
+    } else if by_m == zero {
+        "open"
+    } else {
+        "slides"
+    })
+}
+
+/// The energy is convex with the clip for its derivative: its Bregman distance is not negative, and is what the kernel computes.
+fn bregman_distance_of_friction_is_its_definition<S: Ordered>([a, b, m]: [S; 3]) -> Verdict {
+    let zero = S::from(0);
+    given!(m >= zero);
+    let distance = clip_bregman(a, b, m);
+    ensure!(distance == clip_energy(b, m) - clip_energy(a, m) - clip(a, m) * (b - a));
+    ensure!(distance >= zero);
+    Verdict::Holds(if distance == zero { "none" } else { "some" })
+}
+
 checks! {
+    slopes_of_the_clip_add_up_to_it => prove(&statement!(slopes_of_the_clip_add_up_to_it, [x, m], ["sticks", "slides", "open"]));
+    bregman_distance_of_friction_is_its_definition => prove(&statement!(bregman_distance_of_friction_is_its_definition, [a, b, m], ["none", "some"]));
     sections_of_friction_are_their_definition => draws::hold_exactly(&statement!(sections_of_friction_are_their_definition, [p0, p1, m], ["sticks", "slides", "cut"]));
     sections_with_an_affine_bound_are_their_definition => draws::hold_exactly(&statement!(sections_with_an_affine_bound_are_their_definition, [p0, p1, m0, m1], ["sticks", "slides", "cut"]));
     control_sections_with_the_bound_of_one_end => bound_of_one_end();

@@ -1,7 +1,7 @@
 //! Formulas for bodies of revolution (docs/theory.md, 11) that are the program's own: integrals over a cut edge, the hoop strain of P2,
-//! and the constants of [7.2'] (docs/a-posteriori.md) on a piece that touches the axis.
+//! directions that turn, and the constants of [7.2'] (docs/a-posteriori.md) on a piece that touches the axis.
 
-use signorini::kernel::axial::{hoop_strain, mass};
+use signorini::kernel::axial::{edge_mass, hoop_strain, mass, turning_factor};
 use signorini::kernel::edge_integral::{ExactEdge, weighted_product};
 use signorini::kernel::{P1, P2};
 
@@ -106,7 +106,34 @@ fn control_the_square_by_the_constant_of_the_plane<S: Ordered>([a, b]: [S; 2]) -
     Verdict::Holds("always")
 }
 
+/// Lemma 11.4, for directions (1, 0) and (1 - t^2, 2 t) / (1 + t^2) and radii with 3 a + b = u^2, a + 3 b = v^2.
+fn a_turning_direction_counts_by_the_factor_with_the_weight<S: Ordered>(
+    [ax, ay, bx, by, t, u, v]: [S; 7],
+) -> Verdict {
+    let (zero, one, two, three) = (S::from(0), S::from(1), S::from(2), S::from(3));
+    given!(u > zero && v > zero && three * u * u >= v * v && three * v * v >= u * u);
+    let eight = S::from(8);
+    let radii = [(three * u * u - v * v) / eight, (three * v * v - u * u) / eight];
+    let (cosine, sine) = ((one - t * t) / (one + t * t), two * t / (one + t * t));
+    let n = edge_mass(radii);
+    let square = |p: S, q: S| p * p * n[0][0] + q * q * n[1][1] + two * p * q * n[0][1];
+    let factor = turning_factor::<P2, S, 6, 3>(radii, cosine, |_| u * v);
+    ensure!(square(ax, cosine * bx + sine * by) <= factor * (square(ax, bx) + square(ay, by)));
+    Verdict::Holds("always")
+}
+
+/// 2 - cosine, the factor of the plane, on an edge with an end on the axis and opposite directions.
+fn control_the_turning_factor_of_the_plane<S: Ordered>([a, b]: [S; 2]) -> Verdict {
+    let (two, three) = (S::from(2), S::from(3));
+    let n = edge_mass([S::from(0), S::from(1)]);
+    let square = |p: S, q: S| p * p * n[0][0] + q * q * n[1][1] + two * p * q * n[0][1];
+    ensure!(square(a, -b) <= three * square(a, b));
+    Verdict::Holds("always")
+}
+
 checks! {
+    a_turning_direction_counts_by_the_factor_with_the_weight => hold_exactly(&statement!(a_turning_direction_counts_by_the_factor_with_the_weight, [ax, ay, bx, by, t, u, v], ["always"]));
+    control_the_turning_factor_of_the_plane => refute(&statement!(control_the_turning_factor_of_the_plane, [a, b], fails "square(a, -b) <= three * square(a, b)"));
     the_hoop_strain_is_the_projection_and_a_stretch_has_its_own => hold_exactly(&statement!(the_hoop_strain_is_the_projection_and_a_stretch_has_its_own, [k, a, b, c, u, v], ["always"]));
     weighted_integrals_of_a_cut_edge_are_those_of_the_positive_part => prove(&statement!(weighted_integrals_of_a_cut_edge_are_those_of_the_positive_part, [p, q, r, s], ["always"]));
     the_square_of_an_affine_function_is_at_most_18_times_its_weighted_integral => prove(&statement!(the_square_of_an_affine_function_is_at_most_18_times_its_weighted_integral, [a, b], ["always"]));

@@ -100,7 +100,6 @@ pub fn claim() -> Claim {
         title: "Coercivity with an explicit constant",
         paper: "Let gamma0 be sufficiently small. Then A_gamma is elliptic on V^h. In the proof: |gamma^1/2 sigma_n(v^h)|^2 <= C gamma0 |v^h|_1^2 (11).",
         limits: "How sharp the constant is on larger meshes: docs/parameters.md, in doubles (`props/tests/program/sharpness.rs`).",
-        single: None,
         checks: [
             statements! {
                 proved + tested stress_is_hookes_law[xx, xy, yx, yy, nx, ny, lambda, mu] about "(1)";

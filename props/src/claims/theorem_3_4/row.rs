@@ -46,7 +46,6 @@ pub fn claim() -> Claim {
         title: "The abstract error estimate, with its constant",
         paper: "The solution u^h satisfies |u - u^h|_1 + |gamma^1/2 (sigma_n(u) + [P(u^h)]+/gamma)| <= C inf over v^h of (|u - v^h|_1 + |gamma^-1/2 (u_n - v_n^h)| + |gamma^1/2 sigma_n(u - v^h)|), gamma0 sufficiently small.",
         limits: "That computed errors obey the bound is a test (`tests/suite/convergence.rs`). Korn's constant is not computed (in row 15 it is the unknown alpha).",
-        single: None,
         checks: [
             statements! {
                 proved + tested error_identity_holds_at_a_point[gamma, g, u, su, uh, sh, v, sv]: "pressed", "open"
