@@ -166,9 +166,11 @@ pub fn refute(statement: &Statement) -> Result<String, String> {
     };
     let mut random = Random::new(1);
     let paths = paths(statement);
-    let mut named = paths.iter().filter(|path| path.verdict == Verdict::Fails(conclusion));
-    let point = named.find_map(|path| refutation(statement, path, &mut random, SLOW_DRAWS));
-    match point {
+    let mut found = |tries| {
+        let mut named = paths.iter().filter(|path| path.verdict == Verdict::Fails(conclusion));
+        named.find_map(|path| refutation(statement, path, &mut random, tries))
+    };
+    match found(QUICK_DRAWS).or_else(|| found(SLOW_DRAWS)) {
         Some(point) => Ok(format!("rejected at {}: {conclusion}", place(statement, &point))),
         None => Err(format!("'{conclusion}' does not fail")),
     }
