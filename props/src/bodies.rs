@@ -220,34 +220,6 @@ pub fn rotated([x, y]: [Exact; 2], [c, s]: [Exact; 2]) -> [Exact; 2] {
 }
 
 impl Body {
-    /// A given body with contact where y = 0, no gap, lambda = mu = 1, plane strain.
-    pub fn explicit(
-        vertices: &[[Exact; 2]],
-        triangles: &[[usize; 3]],
-        top: &[usize],
-        diameter: Exact,
-        gamma0: Exact,
-    ) -> Body {
-        let one = Exact::from(1);
-        let mut body = Body {
-            vertices: vertices.to_vec(),
-            unturned: vertices.to_vec(),
-            triangles: triangles.to_vec(),
-            contact: Vec::new(),
-            free: Vec::new(),
-            top: top.to_vec(),
-            diameters: vec![diameter; triangles.len()],
-            material: Material::lame(one, one, Plane::Strain),
-            hooke: Hooke::Isotropic { lambda: one, mu: one },
-            gamma0,
-            turn: [one, Exact::from(0)],
-            middles: BTreeMap::new(),
-            values: Vec::new(),
-        };
-        body.sort_edges(false, &[[(0, 1); 3]]);
-        body
-    }
-
     /// Finds contact edges and free edges, and numbers the middles.
     fn sort_edges(&mut self, left_too: bool, gaps: &[[(i64, i64); 3]]) {
         let mut owners: BTreeMap<[usize; 2], Vec<(usize, usize)>> = BTreeMap::new();

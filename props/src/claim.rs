@@ -7,7 +7,7 @@ use std::panic::{self, AssertUnwindSafe};
 use crate::draws;
 use crate::harness::Harness;
 use crate::proof;
-use crate::receipt::{self, Answer, Standing};
+use crate::receipt;
 use crate::statement::Statement;
 
 /// What a check answers: a line of evidence, or what went wrong.
@@ -75,11 +75,7 @@ impl Check {
     /// all of them are run; else random draws.
     pub fn engine_name(&self) -> &'static str {
         match self.subject {
-            Subject::Harness(h)
-                if receipt::standing(&h) == Standing::Answered(Answer::Verified) =>
-            {
-                "Kani"
-            }
+            Subject::Harness(harness) if receipt::is_verified(&harness) => "Kani",
             Subject::Harness(harness) if receipt::is_decided(&harness) => "all cases",
             _ => self.engine.name(),
         }
@@ -244,10 +240,8 @@ pub struct Claim {
     pub title: &'static str,
     /// The paper's words.
     pub paper: &'static str,
-    /// What this does not establish.
+    /// What this does not establish; and why evidence of fewer than two engines is all there is, where that is so.
     pub limits: &'static str,
-    /// Why evidence of fewer than two engines is all there is, where that is so.
-    pub single: Option<&'static str>,
     /// The evidence.
     pub checks: Vec<Check>,
 }

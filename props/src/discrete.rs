@@ -4,11 +4,10 @@
 
 use signorini::contact::{Discretization, EdgeRule, Piece, residual};
 use signorini::kernel::edge_integral::{self, ExactEdge};
-use signorini::kernel::{EdgeIntegrals, Material, P1, P2, Plane};
+use signorini::kernel::{EdgeIntegrals, P1, P2};
 use signorini::model::Degree;
-use signorini::nalgebra::{Matrix2, Vector2};
+use signorini::nalgebra::Matrix2;
 
-use crate::bodies::sum;
 use crate::elimination::{Matrix, combined, dot};
 use crate::numbers::Exact;
 
@@ -25,13 +24,15 @@ pub fn exactly(field: &[[f64; 2]]) -> Nodal {
 
 /// The discrete problem.
 pub struct Discrete<'a> {
-    d: &'a Discretization<'a>,
+    /// Of the solver.
+    pub d: &'a Discretization<'a>,
     /// The number of each free component.
     numbers: Vec<[Option<usize>; 2]>,
     count: usize,
-    edges: Vec<Piece<Exact>>,
+    /// Its contact edges.
+    pub edges: Vec<Piece<Exact>>,
     /// Points and weights; none for exact integration.
-    rule: Option<Vec<[Exact; 2]>>,
+    pub rule: Option<Vec<[Exact; 2]>>,
 }
 
 impl<'a> Discrete<'a> {
@@ -141,7 +142,7 @@ impl<'a> Discrete<'a> {
     }
 
     /// a(u, v) for every basis function v.
-    fn internal_forces(&self, u: &[[Exact; 2]]) -> Nodal {
+    pub fn internal_forces(&self, u: &[[Exact; 2]]) -> Nodal {
         let mut forces = self.nowhere();
         residual::add_internal_forces(&self.d.space, &self.d.problem.material, u, &mut forces);
         forces
@@ -172,7 +173,7 @@ impl<'a> Discrete<'a> {
     }
 
     /// int \[P\]+ N_a and int_{P > 0} N_a N_b. Where there is no rule and P is quadratic they are no rational numbers.
-    fn integrals(&self, p: &[Exact]) -> (Vec<Exact>, Matrix) {
+    pub fn integrals(&self, p: &[Exact]) -> (Vec<Exact>, Matrix) {
         let points = self.rule.iter().flatten().map(|&[s, weight]| (s, weight));
         match self.d.space.degree() {
             Degree::One if self.rule.is_none() => lists(P1::exact([p[0], p[1]])),
@@ -187,17 +188,6 @@ impl<'a> Discrete<'a> {
     /// The residual of (8) at u over the free components.
     pub fn residual(&self, u: &[[Exact; 2]]) -> Vec<Exact> {
         self.free(&self.reactions(u))
-    }
-
-    /// a(u, u)
-    pub fn energy(&self, u: &[[Exact; 2]]) -> Exact {
-        let forces = self.internal_forces(u);
-        sum(u.iter().zip(&forces), |(u, f)| dot(u, f))
-    }
-
-    /// int \[P(u)\]+/gamma: the force of contact.
-    pub fn contact_force(&self, u: &[[Exact; 2]]) -> Exact {
-        sum(0..self.edges.len(), |e| self.weight(e) * sum(self.integrals(&self.p(e, u)).0, |g| g))
     }
 
     /// The residual of (8) at u for every basis function: at the prescribed components the reactions.
@@ -231,35 +221,6 @@ impl<'a> Discrete<'a> {
         matrix
     }
 
-    /// int (1/gamma) (\[P(u)\]+ - \[P(v)\]+)^2, where that needs no root: by points, or with no edge cut at u and v.
-    pub fn pressures_apart(&self, u: &[[Exact; 2]], v: &[[Exact; 2]]) -> Option<Exact> {
-        let zero = Exact::from(0);
-        let mut sum = zero;
-        for e in 0..self.edges.len() {
-            let (p, q) = (self.p(e, u), self.p(e, v));
-            let part = |value: Exact| if value > zero { value } else { zero };
-            let square = match &self.rule {
-                Some(points) => points.iter().fold(zero, |sum, &[s, weight]| {
-                    let [p, q] = [&p, &q].map(|p| self.d.space.degree().value_at(p, s));
-                    let d = part(p) - part(q);
-                    sum + weight * d * d
-                }),
-                None if p.len() == 2 && !cut(&p) && !cut(&q) => {
-                    let [start, end] = [0, 1].map(|a| part(p[a]) - part(q[a]));
-                    (start * start + start * end + end * end) / Exact::from(3)
-                }
-                None => return None,
-            };
-            sum += self.weight(e) * square;
-        }
-        Some(sum)
-    }
-
-    /// The contact terms are integrated without quadrature error, cut at the roots of P.
-    pub fn by_pieces(&self) -> bool {
-        self.rule.is_none()
-    }
-
     /// How the contact looks at u.
     pub fn class(&self, u: &[[Exact; 2]]) -> &'static str {
         let zero = Exact::from(0);
@@ -272,27 +233,6 @@ impl<'a> Discrete<'a> {
             _ => "open and pressed edges",
         }
     }
-
-    /// kappa, for unit normals.
-    pub fn kappa(&self) -> Exact {
-        // The bodies of the claims have one material. lambda is the coefficient that acts in the plane, also in plane stress.
-        let of = self.d.problem.material.of(0);
-        let [lambda, mu] = [of.lambda(), of.mu()].map(Exact::of_double);
-        let material = Material::lame(lambda, mu, Plane::Strain);
-        let stiffness = material.normal_stiffness(Vector2::y());
-        let mesh = self.d.space.mesh();
-        let owner = |e: usize| self.d.contact[e].edge().triangle;
-        (0..self.edges.len()).fold(Exact::from(0), |kappa, e| {
-            let t = owner(e);
-            let area = residual::exactly::<Exact>(mesh.triangle(t)).double_area() / Exact::from(2);
-            let owned = (0..self.edges.len()).filter(|&other| owner(other) == t);
-            let length = sum(owned, |other| self.edges[other].length);
-            let gamma = self.edges[e].gamma;
-            let degree = self.d.space.degree();
-            let of_t = degree.coercivity_constant(stiffness, gamma, length, area);
-            if of_t > kappa { of_t } else { kappa }
-        })
-    }
 }
 
 fn lists<const M: usize>(of: EdgeIntegrals<Exact, M>) -> (Vec<Exact>, Matrix) {
@@ -300,7 +240,7 @@ fn lists<const M: usize>(of: EdgeIntegrals<Exact, M>) -> (Vec<Exact>, Matrix) {
 }
 
 /// P has both signs among these values.
-fn cut(p: &[Exact]) -> bool {
+pub fn cut(p: &[Exact]) -> bool {
     let zero = Exact::from(0);
     p.iter().any(|&p| p > zero) && p.iter().any(|&p| p < zero)
 }

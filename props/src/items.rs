@@ -68,7 +68,7 @@ pub const ITEMS: &[Item] = &[
         "meshes of more than eight triangles"),
     item("Remark 2.3", "(8) holds formally for the exact solution", &[], "the regularity that the formula asks for"),
     item("(8)", "the method", &[RESIDUAL, INTEGRALS],
-        "loads and gaps of degree above 2; P2 with exact contact integrals, but in doubles; meshes of more than eight triangles, but by comparison with other programs"),
+        "loads and gaps of degree above 2; P2 with exact contact integrals, but in doubles (`props/tests/program/assembled.rs`); meshes of more than eight triangles, but by comparison with other programs"),
     item("P_gamma, A_gamma", "v_n - gamma sigma_n(v); a(u, v) - int gamma sigma_n(u) sigma_n(v)", &[P, EDGE, STRESSES],
         "the solver's own, on meshes of more than eight triangles"),
     item("(9)", "lambda^h is a projection", &[PRESSURE],
@@ -122,14 +122,6 @@ impl Item {
     pub fn found<'a>(&self, claims: &'a [Claim]) -> Vec<(&'a Claim, &'a Check)> {
         let checks = claims.iter().flat_map(|c| c.checks.iter().map(move |check| (c, check)));
         checks.filter(|(_, check)| !check.control && check.items.contains(&self.name)).collect()
-    }
-}
-
-impl Claim {
-    /// The items that its checks are about.
-    pub fn items(&self) -> impl Iterator<Item = &'static Item> {
-        let found = |item: &&Item| !item.found(std::slice::from_ref(self)).is_empty();
-        ITEMS.iter().filter(found)
     }
 }
 

@@ -299,7 +299,7 @@ impl<S: Ordered> Line<S> {
     }
 
     /// Where the derivative of this polynomial of degree <= 2 is zero, if that is inside (0, 1).
-    fn turn(&self) -> Option<S> {
+    pub fn turn(&self) -> Option<S> {
         let (zero, one) = (S::from(0), S::from(1));
         let c = self.0.get(2).copied().filter(|&c| c != zero)?;
         let turn = -self.0[1] / (S::from(2) * c);
@@ -327,13 +327,6 @@ impl<S: Ordered> Line<S> {
             ([ends[0], ends[1]], self.at(half) > zero || self.at(quarter) > zero)
         };
         cuts.windows(2).map(piece).collect()
-    }
-
-    /// The largest value on \[0, 1\] of this polynomial of degree <= 2.
-    pub fn maximum(&self) -> S {
-        let ends = [S::from(0), S::from(1)].into_iter();
-        let values = ends.chain(self.turn()).map(|s| self.at(s));
-        values.reduce(|a, b| if b > a { b } else { a }).unwrap_or(self.0[0])
     }
 
     /// int_0^1 \[self\]+ other
@@ -388,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn a_parabola_is_cut_at_its_roots_and_largest_at_its_vertex() {
+    fn a_parabola_is_cut_at_its_roots() {
         // 2 - (3s - 1)^2 is positive up to s = (1 + sqrt 2)/3, where it changes its sign.
         let line = Line(vec![q(1, 1), q(6, 1), q(-9, 1)]);
         let pieces = line.pieces();
@@ -396,7 +389,6 @@ mod tests {
         assert!(pieces.len() == 2 && positive && !pieces[1].1);
         let off = (q(3, 1) * end - q(1, 1)) * (q(3, 1) * end - q(1, 1)) - q(2, 1);
         assert!(start == q(0, 1) && off.abs() < q(1, 1 << 58));
-        assert_eq!(line.maximum(), q(2, 1));
         // A double root changes no sign: (2s - 1)^2.
         let line = Line(vec![q(1, 1), q(-4, 1), q(4, 1)]);
         assert!(line.pieces().len() == 1 && line.pieces()[0].1);

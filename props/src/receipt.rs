@@ -10,16 +10,16 @@
 //! hash of each file of the kernel, of each file that a harness stands in and of what all harnesses share, as they are in that
 //! commit. It stands behind a harness as long as these files are what they were.
 
-use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 
 use sha2::{Digest, Sha256};
 
 use crate::harness::Harness;
+use crate::proof::{Known, once};
 
 /// What each harness may reach, beside the file that it stands in.
 const SHARED: [&str; 4] =
@@ -111,19 +111,14 @@ fn dated<'a>(name: &'a str, prefix: &str) -> Option<&'a str> {
     name.strip_prefix(prefix)?.strip_suffix(".tsv")
 }
 
-/// What the model checker said of a harness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Answer {
-    /// It holds; or, of a false twin, it fails as it must.
-    Verified,
-    /// The contrary.
-    Failed,
-    /// It ran out of time or of memory, or the solver refused the problem.
-    NoAnswer,
-}
+/// As it must be: a harness holds, a false twin fails.
+const VERIFIED: &str = "verified";
 
-const ANSWERS: [(&str, Answer); 3] =
-    [("verified", Answer::Verified), ("failed", Answer::Failed), ("no answer", Answer::NoAnswer)];
+/// The contrary.
+const FAILED: &str = "failed";
+
+/// It ran out of time or of memory, or the solver refused the problem.
+const NO_ANSWER: &str = "no answer";
 
 /// The columns of a receipt of the model checker. Seconds and conditions are empty where they are not known.
 const COLUMNS: [&str; 5] = ["harness", "expected", "verdict", "seconds", "conditions"];
@@ -153,8 +148,8 @@ pub struct Receipt {
     commit: String,
     /// The files that the answers hang on, each with its hash.
     files: BTreeMap<String, String>,
-    /// The harnesses by their paths.
-    answers: BTreeMap<String, Answer>,
+    /// What the model checker said of the harnesses, by their paths.
+    answers: BTreeMap<String, String>,
 }
 
 impl Receipt {
@@ -169,12 +164,11 @@ impl Receipt {
         }
         let mut answers = BTreeMap::new();
         for row in &table.rows {
-            match ANSWERS.into_iter().find(|(name, _)| *name == row[2]) {
-                Some((_, answer)) if row[1] == expected(&row[0]) => {
-                    answers.insert(row[0].clone(), answer);
-                }
-                _ => return Err(wrong(row.join(" "))),
+            let is_known = [VERIFIED, FAILED, NO_ANSWER].contains(&row[2].as_str());
+            if !is_known || row[1] != expected(&row[0]) {
+                return Err(wrong(row.join(" ")));
             }
+            answers.insert(row[0].clone(), row[2].clone());
         }
         let (mut commit, mut files) = (String::new(), BTreeMap::new());
         for line in &table.head {
@@ -240,19 +234,13 @@ impl Receipt {
         self.files.iter().filter(differs).map(|(file, _)| file.clone()).collect()
     }
 
-    /// What it says of a harness, with the files that have changed since.
-    fn standing(&self, path: &str, changed: &[String]) -> Standing {
-        let name = own_name(path);
-        let Some((_, answer)) = self.answers.iter().find(|(known, _)| own_name(known) == name)
-        else {
-            return Standing::Never;
-        };
-        let file = file_of(path);
-        let moved = !self.files.contains_key(&file);
-        if moved || changed.iter().any(|changed| is_shared(changed) || *changed == file) {
-            return Standing::Changed;
-        }
-        Standing::Answered(*answer)
+    /// Whether it stands behind a harness, with the files that have changed since.
+    fn stands_behind(&self, path: &str, changed: &[String]) -> bool {
+        let (name, file) = (own_name(path), file_of(path));
+        let verified =
+            self.answers.iter().any(|(of, said)| own_name(of) == name && said == VERIFIED);
+        let differs = changed.iter().any(|changed| is_shared(changed) || *changed == file);
+        verified && self.files.contains_key(&file) && !differs
     }
 }
 
@@ -265,10 +253,10 @@ fn row(block: &str) -> Vec<String> {
     let after = |start: &str| block.lines().find_map(|line| line.trim().strip_prefix(start));
     let none = ["timed out", "CBMC failed", "Status: ERROR", "out of memory"];
     let verdict = match after("VERIFICATION:- ") {
-        _ if none.iter().any(|sign| block.contains(sign)) => "no answer",
-        Some(verdict) if verdict.starts_with("SUCCESSFUL") => "verified",
-        Some(_) => "failed",
-        None => "no answer",
+        _ if none.iter().any(|sign| block.contains(sign)) => NO_ANSWER,
+        Some(verdict) if verdict.starts_with("SUCCESSFUL") => VERIFIED,
+        Some(_) => FAILED,
+        None => NO_ANSWER,
     };
     let seconds = after("Verification Time: ").and_then(|t| t.trim_end_matches('s').parse().ok());
     let seconds = seconds.map_or(String::new(), |s: f64| format!("{s:.2}"));
@@ -276,17 +264,6 @@ fn row(block: &str) -> Vec<String> {
         after("** ").and_then(|rest| rest.split(" of ").nth(1)?.split(' ').next()).unwrap_or("");
     let harness = block.lines().next().unwrap_or_default().trim_end_matches('.');
     [harness, expected(harness), verdict, &seconds, conditions].map(str::to_owned).into()
-}
-
-/// What the newest receipt says of a harness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Standing {
-    /// The model checker has this answer for these sources.
-    Answered(Answer),
-    /// It was run before a file changed that the answer may hang on.
-    Changed,
-    /// It was not run.
-    Never,
 }
 
 /// The newest receipt of the model checker, with the files that have changed since: read once.
@@ -300,29 +277,27 @@ fn newest() -> &'static (Receipt, Vec<String>) {
     })
 }
 
-/// What stands behind a harness.
-pub fn standing(harness: &Harness) -> Standing {
+/// Whether the model checker has verified a harness, for these sources.
+pub fn is_verified(harness: &Harness) -> bool {
     let (receipt, changed) = newest();
-    receipt.standing(&harness.path(), changed)
+    receipt.stands_behind(&harness.path(), changed)
 }
 
 /// What the newest receipt says of these harnesses, as a sentence of `VERIFY.md`.
 pub fn said(harnesses: &[Harness]) -> String {
     let (receipt, changed) = newest();
     let Receipt { table: Table { date, .. }, commit, answers, .. } = receipt;
-    let known = |answer| answers.values().filter(|known| **known == answer).count();
-    let standing = harnesses
-        .iter()
-        .filter(|harness| standing(harness) == Standing::Answered(Answer::Verified));
+    let known = |answer| answers.values().filter(|known| *known == answer).count();
+    let standing = harnesses.iter().filter(|harness| is_verified(harness));
     let since = if changed.is_empty() { "nothing".to_owned() } else { changed.join(", ") };
     format!(
         "{} harnesses were run at `{}` on {date}: {} as expected, {} not, {} without an answer; changed since: {since}. That \
          stands behind {} of the {} harnesses of today; the others count as draws.",
         answers.len(),
         &commit[..commit.len().min(7)],
-        known(Answer::Verified),
-        known(Answer::Failed),
-        known(Answer::NoAnswer),
+        known(VERIFIED),
+        known(FAILED),
+        known(NO_ANSWER),
         standing.count(),
         harnesses.len(),
     )
@@ -330,15 +305,8 @@ pub fn said(harnesses: &[Harness]) -> String {
 
 /// Whether a harness is decided by running it on all its values, which are few: asked once.
 pub fn is_decided(harness: &Harness) -> bool {
-    thread_local! {
-        static DECIDED: RefCell<BTreeMap<String, bool>> = const { RefCell::new(BTreeMap::new()) };
-    }
-    let known = DECIDED.with_borrow(|decided| decided.get(&harness.path()).copied());
-    known.unwrap_or_else(|| {
-        let decided = harness.is_decided();
-        DECIDED.with_borrow_mut(|all| all.insert(harness.path(), decided));
-        decided
-    })
+    static DECIDED: Known<String, bool> = Mutex::new(BTreeMap::new());
+    *once(&DECIDED, harness.path(), || harness.is_decided())
 }
 
 /// Writes the receipt of a run and answers where. `log` is what `cargo kani` printed, of the commit that is checked out.
@@ -447,16 +415,18 @@ claims::a::ended\tsuccess\tno answer\t\t
     fn a_receipt_stands_behind_files_that_have_not_changed_and_no_others() {
         let receipt = receipt();
         let of = |path: &str, changed: &[&str]| {
-            receipt.standing(path, &changed.iter().map(|&file| file.to_owned()).collect::<Vec<_>>())
+            receipt.stands_behind(
+                path,
+                &changed.iter().map(|&file| file.to_owned()).collect::<Vec<_>>(),
+            )
         };
-        let verified = Standing::Answered(Answer::Verified);
-        assert_eq!(of("claims::a::holds", &[]), verified);
-        assert_eq!(of("claims::a::holds", &["props/src/claims/b.rs"]), verified);
-        assert_eq!(of("claims::a::holds", &["props/src/claims/a.rs"]), Standing::Changed);
-        assert_eq!(of("claims::a::holds", &["src/kernel/ball.rs"]), Standing::Changed);
-        assert_eq!(of("claims::b::holds", &[]), Standing::Changed);
-        assert_eq!(of("claims::a::wrong", &[]), Standing::Answered(Answer::Failed));
-        assert_eq!(of("claims::a::new", &[]), Standing::Never);
+        assert!(of("claims::a::holds", &[]));
+        assert!(of("claims::a::holds", &["props/src/claims/b.rs"]));
+        assert!(!of("claims::a::holds", &["props/src/claims/a.rs"]));
+        assert!(!of("claims::a::holds", &["src/kernel/ball.rs"]));
+        for other in ["claims::b::holds", "claims::a::wrong", "claims::a::new"] {
+            assert!(!of(other, &[]), "{other}");
+        }
         assert_eq!(receipt.changed(), ["props/src/claims/a.rs"]);
     }
 
@@ -466,7 +436,7 @@ claims::a::ended\tsuccess\tno answer\t\t
         let mut seen = BTreeSet::new();
         for (path, answer) in &receipt.answers {
             assert!(seen.insert(own_name(path)), "{path} is there twice");
-            assert!(*answer != Answer::Failed, "{path} is refuted");
+            assert!(answer != FAILED, "{path} is refuted");
         }
         assert!(receipt.files.keys().any(|file| file == "src/kernel/positive_part.rs"));
         // A shallow clone and an unpacked archive do not have the commit.

@@ -1,11 +1,9 @@
 //! Small bodies whose coercivity is looked at, and gamma0 by kappa. How sharp the limit 1/C_h of gamma0 is:
 //! `props/tests/program/sharpness.rs`.
 
-use std::f64::consts::PI;
-
 use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
-use signorini::model::{Diagonal, Mesh, Problem, Rectangle, Trapezoid};
+use signorini::model::{Diagonal, Mesh, Problem};
 use signorini::solve::{Gamma0, Method};
 
 use crate::claim::text;
@@ -13,14 +11,6 @@ use crate::problems::{self, cells, floor, held, mapped, unloaded};
 
 /// What went wrong, in words.
 type Result<T> = std::result::Result<T, String>;
-
-/// A body with its name.
-pub struct Specimen {
-    /// What it is.
-    pub name: String,
-    /// Its mesh, material and conditions.
-    pub problem: Problem,
-}
 
 /// The body clamped on the named sides, in contact at the bottom.
 pub fn clamped(mesh: Mesh, material: Material<f64>, sides: &[&str]) -> Problem {
@@ -40,34 +30,6 @@ pub fn trapezoid(e: f64) -> Result<Problem> {
     let sides = [("bottom", [0, 1]), ("top", [2, 3])];
     let mesh = problems::mesh(vertices, vec![[0, 1, 2], [1, 3, 2]], sides)?;
     Ok(clamped(mesh, material(1.0, Plane::Strain), &["top"]))
-}
-
-/// Small bodies for exact arithmetic; the third one's vertices are moved to multiples of 1/32.
-///
-/// # Errors
-/// A mesh that is none.
-pub fn small_bodies() -> Result<Vec<Specimen>> {
-    let strain = || material(1.0, Plane::Strain);
-    let grid = |width, nx, diagonal| {
-        let cells = Rectangle { width, height: 1.0, nx, ny: 1, diagonal };
-        cells.mesh().map_err(text)
-    };
-    let wedge = Trapezoid { omega: 0.75 * PI, n: 1 }.mesh().map_err(text)?;
-    let all = [
-        ("square", clamped(grid(1.0, 1, Diagonal::Right)?, strain(), &["top"])),
-        ("two cells", clamped(grid(2.0, 2, Diagonal::Right)?, strain(), &["top"])),
-        ("two cells, moved", clamped(moved([2, 1], 1)?, strain(), &["top"])),
-        ("crossed cell", clamped(grid(1.0, 1, Diagonal::Crossed)?, strain(), &["top"])),
-        ("cell 4:1", clamped(grid(4.0, 1, Diagonal::Right)?, strain(), &["top"])),
-        (
-            "plane stress, lambda = 3",
-            clamped(grid(1.0, 1, Diagonal::Left)?, material(3.0, Plane::Stress), &["top"]),
-        ),
-        ("wedge", clamped(wedge, strain(), &["right", "top"])),
-        ("two triangles, e = 0.1", trapezoid(0.1)?),
-        ("two triangles, e = 0.01", trapezoid(0.01)?),
-    ];
-    Ok(all.map(|(name, problem)| Specimen { name: name.to_owned(), problem }).into())
 }
 
 /// Unit cells whose vertices are moved at random by up to 0.2, to multiples of 1/32: areas stay short fractions.

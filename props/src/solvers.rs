@@ -9,49 +9,39 @@
 //! A problem depends on the statement and on what it calls of the kernel. Where one is not that of the newest receipt, the
 //! receipt is stale, and a test fails.
 
-use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 use crate::proof::float::in_doubles;
 use crate::receipt::{Table, hash};
 use crate::statement::Statement;
 
-/// What programs were asked, and what they answered.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Receipt {
-    /// When.
-    pub date: String,
-    /// Names and versions.
-    pub solvers: Vec<String>,
-    /// By the problem: the hash of its text, what was expected, and the answer of each program.
-    pub answers: BTreeMap<String, (String, String, Vec<String>)>,
-}
+/// The programs that were asked, and in a row of each problem its name, the hash of its text, what was expected, and the answer of
+/// each program.
+pub type Receipt = Table;
 
 impl Receipt {
     /// The newest one of those whose names begin with `prefix`; an empty one where there is none that can be read.
-    pub fn newest(prefix: &str) -> Receipt {
-        Table::newest(prefix).and_then(|table| Receipt::of(&table)).unwrap_or_default()
+    pub fn of_solvers(prefix: &str) -> Receipt {
+        Table::newest(prefix).and_then(Receipt::complete).unwrap_or_default()
     }
 
-    /// In the head NAME VERSION of each program; in a row problem, hash, what was expected, an answer of each program.
-    fn of(table: &Table) -> Result<Receipt, String> {
-        let Table { date, head, columns, rows } = table;
+    fn complete(self) -> Result<Receipt, String> {
+        let Table { date, head, columns, .. } = &self;
         if head.is_empty() || columns.len() != 3 + head.len() {
             return Err(format!("{date}: expected {} columns: {columns:?}", 3 + head.len()));
         }
-        let answer = |row: &Vec<String>| {
-            (row[0].clone(), (row[1].clone(), row[2].clone(), row[3..].to_vec()))
-        };
-        let answers = rows.iter().map(answer).collect();
-        Ok(Receipt { date: date.clone(), solvers: head.clone(), answers })
+        Ok(self)
+    }
+
+    /// The row of a problem: hash, what was expected, answers.
+    pub fn answers(&self, name: &str) -> Option<&[String]> {
+        self.rows.iter().find(|row| row[0] == name).map(|row| &row[1..])
     }
 
     /// How many problems of which this was expected have this answer.
     pub fn count(&self, expected: &str, answer: &str) -> usize {
-        let is = |(_, of, answers): &&(String, String, Vec<String>)| {
-            of == expected && answers.iter().all(|given| given == answer)
-        };
-        self.answers.values().filter(is).count()
+        let is = |row: &&Vec<String>| row[2] == expected && row[3..].iter().all(|a| a == answer);
+        self.rows.iter().filter(is).count()
     }
 
     /// Whether each of these problems is impossible.
@@ -60,13 +50,12 @@ impl Receipt {
     /// The first one that was not asked, is another one now, or has another answer.
     fn excludes(&self, problems: &[(String, String)]) -> Result<(), String> {
         for (name, problem) in problems {
-            let (known, _, answers) =
-                self.answers.get(name).ok_or(format!("{name} was not asked"))?;
-            if *known != hash(problem) {
+            let known = self.answers(name).ok_or(format!("{name} was not asked"))?;
+            if known[0] != hash(problem) {
                 return Err(format!("{name} has changed since"));
             }
-            if answers.iter().any(|answer| answer != "unsat") {
-                return Err(format!("{name}: {}", answers.join(", ")));
+            if known[2..].iter().any(|answer| answer != "unsat") {
+                return Err(format!("{name}: {}", known[2..].join(", ")));
             }
         }
         Ok(())
@@ -76,7 +65,7 @@ impl Receipt {
 /// The newest receipt of bitwuzla.
 pub fn in_all_doubles() -> &'static Receipt {
     static RECEIPT: OnceLock<Receipt> = OnceLock::new();
-    RECEIPT.get_or_init(|| Receipt::newest("bitwuzla-"))
+    RECEIPT.get_or_init(|| Receipt::of_solvers("bitwuzla-"))
 }
 
 /// Whether bitwuzla has decided a statement for all finite doubles, by the newest receipt.
@@ -104,7 +93,7 @@ mod tests {
 
     #[test]
     fn a_receipt_is_about_the_problems_that_were_asked_and_holds_where_all_are_impossible() {
-        let parsed = |text: &str| Receipt::of(&Table::parse("2026-11-21", text)?);
+        let parsed = |text: &str| Table::parse("2026-11-21", text)?.complete();
         let found = |answer: &str, text: &str| {
             let row = format!("a\t{}\tunsat\t{answer}\n", hash(text));
             let text = format!("# bitwuzla 0.9\nproblem\thash\texpected\tbitwuzla\n{row}");
@@ -137,8 +126,8 @@ mod tests {
                 known.extend(in_doubles(&statement, false).into_iter().map(|(name, _)| name));
             }
         }
-        for name in in_all_doubles().answers.keys() {
-            assert!(known.contains(name), "{name} is no more; {AGAIN}");
+        for row in &in_all_doubles().rows {
+            assert!(known.contains(&row[0]), "{} is no more; {AGAIN}", row[0]);
         }
     }
 }

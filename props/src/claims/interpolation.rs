@@ -145,7 +145,7 @@ pub fn control_half_the_multiple_of_the_gradient<S: Ordered>(v: [S; 6]) -> Verdi
 pub fn checks() -> Vec<Check> {
     [
         statements! {
-            proved + tested energy_is_at_most_a_multiple_of_the_gradient[a, b, c, d, lambda, mu] about "(22)-(24)";
+            proved + tested energy_is_at_most_a_multiple_of_the_gradient[a, b, c, d, lambda, mu] about "(22)-(24)", "a(., .)";
             refuted control_half_the_multiple_of_the_gradient[a, b, c, d, lambda, mu]
                 fails "energy <= factor * (two * mu + two * part) * gradient";
         },

@@ -101,20 +101,6 @@ pub fn normal_stress_is_bounded_by_the_energy<S: Ordered>(v: [S; 8]) -> Verdict 
     bounded(v, |material| material.normal_stiffness(n))
 }
 
-/// With n = e_y, as in the paper's proof.
-pub fn normal_stress_on_a_horizontal_edge_is_bounded_by_the_energy<S: Ordered>(
-    [xx, xy, yx, yy, lambda, mu]: [S; 6],
-) -> Verdict {
-    let zero = S::from(0);
-    given!(mu > zero && lambda + mu > zero);
-    let material = Material::lame(lambda, mu, Plane::Strain);
-    let g = gradient([xx, xy, yx, yy]);
-    let stress = material.stress(g);
-    let [_, yy, _] = stress.components();
-    ensure!(yy * yy <= material.normal_stiffness(Vector2::<S>::y()) * energy_density(stress, g));
-    Verdict::Holds("always")
-}
-
 /// A strain along the normal attains it: the constant can't be smaller.
 pub fn the_constant_is_attained_by_a_strain_along_the_normal<S: Ordered>(
     [c, nx, ny, lambda, mu]: [S; 5],
@@ -183,38 +169,6 @@ pub fn the_trace_bound_gives_coercivity<S: Ordered>([a, s, kappa]: [S; 3]) -> Ve
     given!(s <= kappa * a);
     ensure!(a - s >= (S::from(1) - kappa) * a);
     Verdict::Holds("always")
-}
-
-/// Continuity of a(., .): sigma:eps against a constant times |grad v|^2.
-fn energy_below<S: Ordered>([xx, xy, yx, yy, lambda, mu]: [S; 6], constant: S) -> Verdict {
-    let (zero, two) = (S::from(0), S::from(2));
-    given!(mu > zero && lambda + mu > zero);
-    let g = gradient([xx, xy, yx, yy]);
-    let energy = energy_density(Material::lame(lambda, mu, Plane::Strain).stress(g), g);
-    let squares = xx * xx + xy * xy + yx * yx + yy * yy;
-    let (difference, trace) = (xx - yy, xx + yy);
-    ensure!(
-        (xy - yx) * (xy - yx) >= zero && difference * difference >= zero && trace * trace >= zero
-    );
-    if lambda >= zero {
-        ensure!(lambda * (difference * difference) >= zero && mu * ((xy - yx) * (xy - yx)) >= zero);
-        ensure!(lambda * (xy * xy + yx * yx) >= zero && two * lambda >= zero);
-    } else {
-        ensure!(lambda * (trace * trace) <= zero && mu * ((xy - yx) * (xy - yx)) >= zero);
-    }
-    ensure!(energy <= constant * squares);
-    Verdict::Holds(if lambda >= zero { "lambda >= 0" } else { "lambda < 0" })
-}
-
-/// sigma:eps <= (2 mu + 2 \[lambda\]+) |grad v|^2 at every point, so a(v, v) <= (2 mu + 2 \[lambda\]+) |v|_1^2.
-pub fn the_energy_is_bounded_by_the_gradient<S: Ordered>(v: [S; 6]) -> Verdict {
-    let [.., lambda, mu] = v;
-    energy_below(v, S::from(2) * (mu + signorini::kernel::positive_part(lambda)))
-}
-
-/// 2 \[lambda\]+ alone.
-pub fn control_the_energy_is_bounded_without_mu<S: Ordered>(v: [S; 6]) -> Verdict {
-    energy_below(v, S::from(2) * signorini::kernel::positive_part(v[4]))
 }
 
 /// lambda + mu in place of lambda + 2 mu.

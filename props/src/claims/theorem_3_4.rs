@@ -59,7 +59,7 @@ fn class<S: Ordered>(point: &Point<S>) -> &'static str {
 }
 
 /// (i): what Green and (8) leave at a point, z w_n - \[P(u^h)\]+ sigma_n(w) - gamma sigma_n(u^h) sigma_n(w), is
-/// z P0(w) + gamma sigma_n(w) sigma_n(e). No hypothesis but gamma > 0.
+/// z P0(w) + gamma sigma_n(w) sigma_n(e), and P0(w) = P(u) - P(u^h) - P0(eta). No hypothesis but gamma > 0.
 ///
 /// Sign: (8) contributes -(A part) = + int gamma sigma_n(u^h) sigma_n(w) with a(u^h, w) on the left.
 pub fn error_identity_holds_at_a_point<S: Ordered>(v: [S; 8]) -> Verdict {
@@ -73,6 +73,8 @@ pub fn error_identity_holds_at_a_point<S: Ordered>(v: [S; 8]) -> Verdict {
         - part / point.gamma * (w.u_n - point.gamma * w.sigma_n);
     let sigma_e = point.exact.sigma_n - point.discrete.sigma_n;
     ensure!(green - method == z * w.p0() + point.gamma * w.sigma_n * sigma_e);
+    let eta = difference(&point.exact, &point.test);
+    ensure!(w.p0() == point.exact.p() - point.discrete.p() - eta.p0());
     Verdict::Holds(class(&point))
 }
 
@@ -91,14 +93,6 @@ pub fn z_times_the_difference_of_p_is_at_most_minus_gamma_z_squared<S: Ordered>(
     ensure!(gamma * (z * (p - ph)) <= gamma * (-gamma * z * z));
     ensure!(z * (p - ph) <= -gamma * z * z);
     Verdict::Holds(class(&point))
-}
-
-/// P0(w) = P(u) - P(u^h) - P0(eta).
-pub fn p0_of_w_splits<S: Ordered>(v: [S; 8]) -> Verdict {
-    let point = point(v);
-    let eta = difference(&point.exact, &point.test);
-    ensure!(point.w().p0() == point.exact.p() - point.discrete.p() - eta.p0());
-    Verdict::Holds("always")
 }
 
 /// The hypothesis of the combination from the raw facts. With c = a(e, eta), W = |w|_a, r = |s_w|_g,
@@ -157,20 +151,6 @@ pub fn three_facts_give_the_hypothesis_of_theorem_3_4<S: Ordered>(v: [S; 11]) ->
 /// (ii) without its square.
 pub fn control_three_facts_without_the_square_of_z<S: Ordered>(v: [S; 11]) -> Verdict {
     hypothesis(v, S::from(0))
-}
-
-/// The four uses of Young's inequality.
-pub fn young_steps_hold<S: Ordered>([e, h, z, s, r, k]: [S; 6]) -> Verdict {
-    let (zero, one) = (S::from(0), S::from(1));
-    given!(k >= zero && k < one);
-    let (kappa, two) = (k * k, S::from(2));
-    let delta = one - kappa;
-    let quarter = delta / S::from(4);
-    ensure!(e * h <= quarter * e * e + h * h / delta);
-    ensure!(k * e * s <= quarter * e * e + kappa * s * s / delta);
-    ensure!(k * h * s <= h * h / two + kappa * s * s / two);
-    ensure!(z * r <= z * z / two + r * r / two);
-    Verdict::Holds("always")
 }
 
 /// Theorem 3.4 from the inequality between norms, E = |e|_a, H = |eta|_a, Z = |z|_g, S = |sigma_n(eta)|_g,
@@ -252,10 +232,10 @@ pub fn estimate_14_holds<S: Ordered>(
     Verdict::Holds("always")
 }
 
-/// (15): the terms with u_n, of which the last is dropped because u_n <= 0.
-pub fn step_15_holds<S: Ordered>([gamma, u, su, uh, sh, v]: [S; 6]) -> Verdict {
+/// (15): the terms with u_n, of which the last is dropped; `most` is what u_n may be.
+fn step_15<S: Ordered>([gamma, u, su, uh, sh, v]: [S; 6], most: S) -> Verdict {
     let zero = S::from(0);
-    given!(gamma > zero && u <= zero);
+    given!(gamma > zero && u <= most);
     let point = point([gamma, zero, u, su, uh, sh, v, zero]);
     let over_gamma = positive_part(point.discrete.p()) / gamma;
     let before = su * (v - uh) + over_gamma * v;
@@ -263,6 +243,11 @@ pub fn step_15_holds<S: Ordered>([gamma, u, su, uh, sh, v]: [S; 6]) -> Verdict {
     ensure!(before == kept + over_gamma * u);
     ensure!(before <= kept);
     Verdict::Holds(class(&point))
+}
+
+/// (15), because u_n <= 0.
+pub fn step_15_holds<S: Ordered>(v: [S; 6]) -> Verdict {
+    step_15(v, S::from(0))
 }
 
 /// (16): Young's inequality with weights gamma and beta.
@@ -400,14 +385,9 @@ pub fn control_half_the_constant_of_theorem_3_4<S: Ordered>([e, h, z, s, r, k]: 
     bound([e, h, z, s, r, k], S::from(1) / S::from(2))
 }
 
-/// (15) without u_n <= 0.
-pub fn control_step_15_with_penetration<S: Ordered>([gamma, u, su, uh, sh, v]: [S; 6]) -> Verdict {
-    let zero = S::from(0);
-    given!(gamma > zero);
-    let point = point([gamma, zero, u, su, uh, sh, v, zero]);
-    let over_gamma = positive_part(point.discrete.p()) / gamma;
-    ensure!(su * (v - uh) + over_gamma * v <= (su + over_gamma) * (v - u) + su * (u - uh));
-    Verdict::Holds(class(&point))
+/// (15) with u_n <= 1.
+pub fn control_step_15_with_penetration<S: Ordered>(v: [S; 6]) -> Verdict {
+    step_15(v, S::from(1))
 }
 
 #[cfg(not(kani))]

@@ -57,7 +57,6 @@ mod row {
             title: "The variational inequality",
             paper: "Find u in K such that a(u, v - u) >= L(v - u) for all v in K, K = {v in V: v_n <= 0 on Gamma_C}.",
             limits: "Green's formula, by which (3) for all v in K is the inequality at each point, is taken from analysis.",
-            single: None,
             checks: [
                 statements! {
                     proved + tested conditions_2_give_the_sign_of_3[u_n, g, sigma_n, v_n]: "contact", "no force"

@@ -11,6 +11,8 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::Signed;
 
+use super::rational;
+
 struct Arena {
     scope: u32,
     numbers: Vec<BigRational>,
@@ -117,10 +119,10 @@ impl PartialOrd for Exact {
 }
 
 super::number! { Exact:
-    + |a, b| Exact::new(a.with_both(b, |a, b| a + b));
-    - |a, b| Exact::new(a.with_both(b, |a, b| a - b));
-    * |a, b| Exact::new(a.with_both(b, |a, b| a * b));
-    / |a, b| Exact::new(a.with_both(b, |a, b| a / b));
+    + |a, b| Exact::new(a.with_both(b, rational::sum));
+    - |a, b| Exact::new(a.with_both(b, |a, b| rational::sum(a, &-b)));
+    * |a, b| Exact::new(a.with_both(b, rational::product));
+    / |a, b| Exact::new(a.with_both(b, rational::quotient));
     neg |a| Exact::new(a.with(|a| -a));
     nonpositive |a| a.with(|a| !a.is_positive());
 }

@@ -183,62 +183,32 @@ mod tests {
     }
 
     #[test]
-    fn a_sum_that_does_not_cancel_is_refused() {
-        let c = Certificate::default().with(2, &[0], &[]).with(1, &[1], &[]);
-        assert_eq!(verdict(&c), Err(Refusal::DoesNotCancel));
-    }
-
-    #[test]
-    fn a_certificate_without_a_strict_product_is_refused() {
-        let c = Certificate::default().with(1, &[], &[x()]).with(1, &[4], &[]);
-        assert_eq!(verdict(&c), Err(Refusal::NothingStrict));
-        assert_eq!(verdict(&Certificate::default()), Err(Refusal::NothingStrict));
-    }
-
-    #[test]
-    fn a_square_is_not_strict_even_beside_a_strict_fact() {
-        // x [x]^2 - x [x]^2 written with 0: x > 0 and 1: -x >= 0.
-        let c = Certificate::default().with(1, &[0], &[x()]).with(1, &[1], &[x()]);
-        assert_eq!(verdict(&c), Err(Refusal::NothingStrict));
-    }
-
-    #[test]
-    fn a_product_with_one_weak_fact_is_not_strict() {
-        let c = Certificate::default().with(1, &[0, 1], &[]).with(1, &[], &[x()]);
-        assert_eq!(verdict(&c), Err(Refusal::NothingStrict));
-    }
-
-    #[test]
-    fn a_strict_product_of_weight_zero_is_refused() {
-        let c = Certificate::default().with(0, &[0], &[]);
-        assert_eq!(verdict(&c), Err(Refusal::NothingStrict));
-    }
-
-    #[test]
-    fn a_negative_weight_is_refused() {
-        let c = Certificate::default().with(1, &[0], &[]).with(-1, &[0], &[]);
-        assert_eq!(verdict(&c), Err(Refusal::NegativeWeight));
-    }
-
-    #[test]
-    fn a_multiple_of_an_inequality_is_refused() {
-        let mut c = Certificate::default().with(1, &[0], &[]);
-        c.multiples.push((Polynomial::constant(integer(-1)), 0));
-        assert_eq!(verdict(&c), Err(Refusal::NotAnEquation));
-    }
-
-    #[test]
-    fn an_equation_as_a_factor_is_refused() {
-        let c = Certificate::default().with(1, &[0, 0], &[]).with(1, &[3], &[]);
-        assert_eq!(verdict(&c), Err(Refusal::NotAnInequality));
-    }
-
-    #[test]
-    fn an_unknown_fact_is_refused() {
-        let c = Certificate::default().with(1, &[9], &[]);
-        assert_eq!(verdict(&c), Err(Refusal::NoSuchFact));
-        let mut c = Certificate::default().with(1, &[], &[]);
-        c.multiples.push((x(), 9));
-        assert_eq!(verdict(&c), Err(Refusal::NoSuchFact));
+    fn what_proves_nothing_is_refused_for_its_reason() {
+        let of = |weight, facts: &[usize], squares: &[Polynomial]| {
+            Certificate::default().with(weight, facts, squares)
+        };
+        let multiple = |mut certificate: Certificate, by: Polynomial, fact| {
+            certificate.multiples.push((by, fact));
+            certificate
+        };
+        let minus_one = || Polynomial::constant(integer(-1));
+        let square = &[x()];
+        for (certificate, reason) in [
+            (of(2, &[0], &[]).with(1, &[1], &[]), Refusal::DoesNotCancel),
+            (of(1, &[], square).with(1, &[4], &[]), Refusal::NothingStrict),
+            (Certificate::default(), Refusal::NothingStrict),
+            // A square is not strict even beside a strict fact: x [x]^2 - x [x]^2 with 0: x > 0 and 1: -x >= 0.
+            (of(1, &[0], square).with(1, &[1], square), Refusal::NothingStrict),
+            // One weak fact in a product.
+            (of(1, &[0, 1], &[]).with(1, &[], square), Refusal::NothingStrict),
+            (of(0, &[0], &[]), Refusal::NothingStrict),
+            (of(1, &[0], &[]).with(-1, &[0], &[]), Refusal::NegativeWeight),
+            (multiple(of(1, &[0], &[]), minus_one(), 0), Refusal::NotAnEquation),
+            (of(1, &[0, 0], &[]).with(1, &[3], &[]), Refusal::NotAnInequality),
+            (of(1, &[9], &[]), Refusal::NoSuchFact),
+            (multiple(of(1, &[], square), x(), 9), Refusal::NoSuchFact),
+        ] {
+            assert_eq!(verdict(&certificate), Err(reason), "{certificate:?}");
+        }
     }
 }

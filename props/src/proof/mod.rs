@@ -19,7 +19,9 @@ pub use float::Float;
 pub use symbol::Sym;
 pub use transcript::{transcript, tree};
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use num_rational::BigRational;
 
@@ -48,19 +50,44 @@ pub enum Fate {
 #[derive(Clone, Debug)]
 pub struct Analysis {
     /// All paths.
-    pub paths: Vec<Path>,
+    pub paths: Arc<Vec<Path>>,
     /// By number of the path, for those that end in `Fails`.
     pub fates: Vec<(usize, Fate)>,
 }
 
-/// Explores a statement and decides each path that fails.
-pub fn analyse(statement: &Statement) -> Analysis {
+/// What was made once for a key, for all who ask.
+pub(crate) type Known<K, T> = Mutex<BTreeMap<K, Arc<T>>>;
+
+pub(crate) fn once<K: Ord, T>(known: &Known<K, T>, key: K, make: impl FnOnce() -> T) -> Arc<T> {
+    let kept = || known.lock().unwrap_or_else(PoisonError::into_inner);
+    let found = kept().get(&key).cloned();
+    found.unwrap_or_else(|| {
+        let made = Arc::new(make());
+        kept().insert(key, made.clone());
+        made
+    })
+}
+
+/// All paths of a statement: its predicate is a function of its arguments alone, so two of one address have the same.
+pub fn paths(statement: &Statement) -> Arc<Vec<Path>> {
+    static KNOWN: Known<(usize, usize), Vec<Path>> = Mutex::new(BTreeMap::new());
     let unknowns = statement.variables.len();
-    let paths = explore(unknowns, statement.symbolic);
-    let hints = polynomials_of(unknowns, statement.hints);
-    let failing = paths.iter().enumerate().filter(|(_, path)| path.verdict.fails());
-    let fates = failing.map(|(i, path)| (i, fate(statement, path, &hints))).collect();
-    Analysis { paths, fates }
+    let key = (statement.symbolic as usize, unknowns);
+    once(&KNOWN, key, || explore(unknowns, statement.symbolic))
+}
+
+/// Explores a statement and decides each path that fails.
+pub fn analyse(statement: &Statement) -> Arc<Analysis> {
+    static KNOWN: Known<[usize; 3], Analysis> = Mutex::new(BTreeMap::new());
+    let unknowns = statement.variables.len();
+    let key = [statement.symbolic as usize, statement.hints as usize, unknowns];
+    once(&KNOWN, key, || {
+        let paths = paths(statement);
+        let hints = polynomials_of(unknowns, statement.hints);
+        let failing = paths.iter().enumerate().filter(|(_, path)| path.verdict.fails());
+        let fates = failing.map(|(i, path)| (i, fate(statement, path, &hints))).collect();
+        Analysis { paths, fates }
+    })
 }
 
 fn fate(statement: &Statement, path: &Path, hints: &[polynomial::Polynomial]) -> Fate {
@@ -138,11 +165,12 @@ pub fn refute(statement: &Statement) -> Result<String, String> {
         return Err("a control names the conclusion that must fail".to_owned());
     };
     let mut random = Random::new(1);
-    let named = |path: &Path| path.verdict == Verdict::Fails(conclusion);
-    let mut paths = explore(statement.variables.len(), statement.symbolic);
-    paths.retain(named);
-    let point = paths.iter().find_map(|path| refutation(statement, path, &mut random, SLOW_DRAWS));
-    match point {
+    let paths = paths(statement);
+    let mut found = |tries| {
+        let mut named = paths.iter().filter(|path| path.verdict == Verdict::Fails(conclusion));
+        named.find_map(|path| refutation(statement, path, &mut random, tries))
+    };
+    match found(QUICK_DRAWS).or_else(|| found(SLOW_DRAWS)) {
         Some(point) => Ok(format!("rejected at {}: {conclusion}", place(statement, &point))),
         None => Err(format!("'{conclusion}' does not fail")),
     }
@@ -187,8 +215,6 @@ fn reach_classes(statement: &Statement, paths: &[Path]) -> Result<(), String> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::OnceLock;
-
     use super::*;
     use crate::claim::{Engine, Subject};
     use crate::numbers::Exact;
@@ -208,15 +234,6 @@ mod tests {
         all.sort_by_key(|s| s.name);
         all.dedup_by_key(|s| s.name);
         all
-    }
-
-    /// They with their paths, found once for all tests.
-    fn explored() -> &'static [(Statement, Vec<Path>)] {
-        static EXPLORED: OnceLock<Vec<(Statement, Vec<Path>)>> = OnceLock::new();
-        EXPLORED.get_or_init(|| {
-            let paths = |s: &Statement| explore(s.variables.len(), s.symbolic);
-            statements().into_iter().map(|s| (s, paths(&s))).collect()
-        })
     }
 
     /// The point with the values of the inverse variables, or nothing where a divisor is zero.
@@ -249,7 +266,8 @@ mod tests {
     #[test]
     fn every_random_point_lies_on_exactly_one_path_and_has_its_verdict() {
         let mut random = Random::new(7);
-        for (statement, paths) in explored() {
+        for statement in &statements() {
+            let paths = paths(statement);
             let unknowns = statement.variables.len();
             // Each point is compared with all paths, of which some statements have hundreds.
             for _ in 0..(400 / paths.len()).clamp(5, 40) {
@@ -268,7 +286,8 @@ mod tests {
     #[test]
     fn points_drawn_on_a_path_have_its_verdict() {
         let mut random = Random::new(8);
-        for (statement, paths) in explored() {
+        for statement in &statements() {
+            let paths = paths(statement);
             for path in paths.iter().step_by(paths.len() / 12 + 1) {
                 if let Some(mut point) = sample(path, &mut random, 20) {
                     point.truncate(statement.variables.len());

@@ -7,7 +7,9 @@ use std::fmt::Write;
 use std::ops::{Add, Mul, Neg, Sub};
 
 use num_rational::BigRational;
-use num_traits::{One, Signed, Zero};
+use num_traits::{One, Zero};
+
+use crate::numbers::rational;
 
 /// An exponent. The sum of two is checked: one that wrapped around would make x^257 = x, in builds without overflow checks.
 pub type Exponent = u16;
@@ -49,7 +51,7 @@ impl Polynomial {
                 entry.insert(coefficient);
             }
             std::collections::btree_map::Entry::Occupied(mut entry) => {
-                *entry.get_mut() += coefficient;
+                *entry.get_mut() = rational::sum(entry.get(), &coefficient);
                 if entry.get().is_zero() {
                     entry.remove();
                 }
@@ -93,7 +95,7 @@ impl Polynomial {
         if factor.is_zero() {
             return Polynomial::default();
         }
-        Polynomial(self.0.iter().map(|(m, c)| (m.clone(), c * factor)).collect())
+        Polynomial(self.0.iter().map(|(m, c)| (m.clone(), rational::product(c, factor))).collect())
     }
 
     /// The product; `None` where an exponent would be beyond the largest [`Exponent`].
@@ -101,7 +103,7 @@ impl Polynomial {
         let mut sum = Polynomial::default();
         for (m, c) in &self.0 {
             for (n, d) in &other.0 {
-                sum.add_term(product(m, n)?, c * d);
+                sum.add_term(product(m, n)?, rational::product(c, d));
             }
         }
         Some(sum)
@@ -161,27 +163,6 @@ impl Polynomial {
         let terms: Vec<String> = self.0.iter().map(term).collect();
         if terms.is_empty() { "0".to_owned() } else { terms.join(" + ") }
     }
-
-    /// In the notation of SMT-LIB 2.
-    pub fn smt(&self, names: &[String]) -> String {
-        let factor = |monomial: &Monomial, coefficient: &BigRational| {
-            let mut text = format!("(* {}", smt_number(coefficient));
-            for (i, &exponent) in monomial.iter().enumerate() {
-                for _ in 0..exponent {
-                    let _ = write!(text, " {}", names[i]);
-                }
-            }
-            if monomial.is_empty() { smt_number(coefficient) } else { text + ")" }
-        };
-        match self.0.len() {
-            0 => "0.0".to_owned(),
-            1 => self.0.iter().map(|(m, c)| factor(m, c)).collect(),
-            _ => {
-                let terms: Vec<String> = self.0.iter().map(|(m, c)| factor(m, c)).collect();
-                format!("(+ {})", terms.join(" "))
-            }
-        }
-    }
 }
 
 /// An integer as a rational number.
@@ -217,16 +198,6 @@ pub fn quotient(a: &Monomial, b: &Monomial) -> Option<Monomial> {
     }
     trim(&mut result);
     Some(result)
-}
-
-fn smt_number(value: &BigRational) -> String {
-    let size = value.abs();
-    let text = if size.is_integer() {
-        format!("{}.0", size.numer())
-    } else {
-        format!("(/ {}.0 {}.0)", size.numer(), size.denom())
-    };
-    if value.is_negative() { format!("(- {text})") } else { text }
 }
 
 impl Add for &Polynomial {
@@ -369,14 +340,5 @@ mod tests {
         let names = ["a".to_owned(), "b".to_owned()];
         assert_eq!((&p + &Polynomial::constant(integer(3))).text(&names), "3 + -1/2 a + 1 a b^2");
         assert_eq!(Polynomial::default().text(&names), "0");
-    }
-
-    #[test]
-    fn smt_writes_negative_and_fractional_coefficients() {
-        let p = &x().scaled(&(integer(-1) / integer(2))) + &(&y() * &y());
-        let names = ["x".to_owned(), "y".to_owned()];
-        assert_eq!(p.smt(&names), "(+ (* 1.0 y y) (* (- (/ 1.0 2.0)) x))");
-        assert_eq!(Polynomial::constant(integer(-3)).smt(&names), "(- 3.0)");
-        assert_eq!(Polynomial::default().smt(&names), "0.0");
     }
 }

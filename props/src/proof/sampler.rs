@@ -32,16 +32,6 @@ impl Random {
         (self.bits() % bound as u64) as usize
     }
 
-    /// A number between 0 and 1.
-    pub fn share(&mut self) -> f64 {
-        self.below(1001) as f64 / 1000.0
-    }
-
-    /// A vector for each of so many nodes, with components between -1 and 1.
-    pub fn field(&mut self, nodes: usize) -> Vec<[f64; 2]> {
-        (0..nodes).map(|_| [0, 1].map(|_| self.below(2001) as f64 / 1000.0 - 1.0)).collect()
-    }
-
     /// 0, 1, -1 and the sides of the right triangles 3, 4, 5 with hypotenuse 1: rational points of the unit circle.
     fn on_circle(&mut self) -> BigRational {
         const FIFTHS: [i64; 7] = [0, 5, -5, 3, -3, 4, -4];

@@ -7,6 +7,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
+use crate::numbers::rational;
+
 /// A sparse row: column -> entry, none of them zero.
 pub(super) type Row = BTreeMap<usize, BigRational>;
 
@@ -18,7 +20,7 @@ const GIVE_UP_AFTER: usize = 3000;
 pub(super) fn add_multiple(row: &mut Row, factor: &BigRational, other: &Row) {
     for (&column, entry) in other {
         let sum = row.entry(column).or_insert_with(BigRational::zero);
-        *sum += factor * entry;
+        *sum = rational::sum(sum, &rational::product(factor, entry));
         if sum.is_zero() {
             row.remove(&column);
         }

@@ -21,9 +21,9 @@
 use std::fmt::Write;
 
 use super::certificate::Certificate;
-use super::explorer::{Path, explore};
+use super::explorer::Path;
 use super::symbol::Step;
-use super::{Fate, analyse};
+use super::{Fate, analyse, paths};
 use crate::Verdict;
 use crate::statement::Statement;
 
@@ -46,7 +46,7 @@ pub fn transcript(statement: &Statement) -> Result<String, String> {
 /// The paths of a proof and those that fail; and its tree, the same text without facts and certificates: what is proved, whoever
 /// wrote the certificates.
 pub fn tree(statement: &Statement) -> ([usize; 2], String) {
-    let paths = explore(statement.variables.len(), statement.symbolic);
+    let paths = paths(statement);
     let failing = paths.iter().filter(|path| path.verdict.fails()).count();
     let text = written(statement, &paths, |_, _| Ok(())).unwrap_or_default();
     ([paths.len(), failing], text)

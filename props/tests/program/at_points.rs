@@ -6,15 +6,15 @@ use signorini::results::Solution;
 use signorini::solve::iterate::Evaluated;
 use signorini::solve::{Method, discretize_any};
 
+use super::assembled::unsolved;
 use props::claim::{Outcome, text};
-use props::claims::assembled::solver::unsolved;
 use props::proof::sampler::Random;
 use props::{draws, sharpness};
 
 /// A random displacement of a block of unequal triangles as a solution.
 fn anything(degree: Degree, problem: &Problem) -> Result<Solution, String> {
     let d = discretize_any(problem, &Method { degree, ..Method::default() }).map_err(text)?;
-    let drawn = Random::new(draws::seed()).field(d.space.nodes().len());
+    let drawn = super::random_field(&mut Random::new(draws::seed()), d.space.nodes().len());
     Ok(Solution::new(&d, Evaluated::new(&d, drawn), unsolved()))
 }
 

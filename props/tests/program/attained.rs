@@ -302,7 +302,7 @@ fn factors(draw: &Held, degree: Degree, by: f64) -> Verdict {
         .into_iter()
         .map(|(triangle, at, d)| Hold {
             terms: vec![Term { triangle, at: at.map(Ball::point), along: d.map(Ball::point) }],
-            most: random.share(),
+            most: super::share(&mut random),
         })
         .collect();
     let Some(korn) = Korn::new(&space, &problem.material, &constraints, &holds) else {
@@ -406,7 +406,7 @@ fn with_another_v(certificate: &Certificate, random: &mut Random, size: f64) -> 
     }
     let mut other = certificate.clone();
     let mut step = |d: Option<&[f64; 2]>| {
-        let [s, t] = [0, 1].map(|_| size * random.share());
+        let [s, t] = [0, 1].map(|_| size * super::share(random));
         d.map_or([2.0 * s - size, 2.0 * t - size], |d| d.map(|c| -s * c))
     };
     let free = |held: &[Option<f64>; 2]| held.iter().all(Option::is_none);
@@ -471,7 +471,7 @@ fn raised_by_the_gap(draw: &Pushed, degree: Degree, share_of: f64) -> Verdict {
     for (e, edge) in other.edges.iter_mut().enumerate() {
         let Role::Contact { pressure: [p, q], gap, .. } = &mut edge.role else { continue };
         let [a, b] = edge.ends.map(|k| place(&certificate, k));
-        let [first, last, between] = [0, 1, 2].map(|_| random.share());
+        let [first, last, between] = [0, 1, 2].map(|_| super::share(&mut random));
         *gap = [gap[0] + first, gap[1] + last];
         let mut integral = (2.0 * *p * first + *p * last + *q * first + 2.0 * *q * last) / 6.0;
         if let Some(curved) = &mut other.curved {

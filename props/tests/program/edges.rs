@@ -1,17 +1,22 @@
 //! Integrals over contact edges, P1 and P2: in doubles beside exact integrals between the roots of P, and by points beside the sums
-//! over them; the largest P on an edge, and where its sign changes.
+//! over them; the largest P on an edge, and where its sign changes; those of friction by those of contact, its slopes and its
+//! energy.
 
 use proptest::prelude::*;
 use signorini::contact::EdgeRule;
 use signorini::kernel::edge_integral::{ExactEdge, gauss, maximum, roots, value_at};
+use signorini::kernel::friction::{ExactFriction, clip, clip_bregman, clip_energy, clip_slopes};
 use signorini::kernel::{P1, P2, positive_part};
 use signorini::model::Degree;
 
 use props::bodies::sum;
+use props::claim::Outcome;
+use props::claims::friction::abs;
 use props::naive::Line;
 use props::numbers::Exact;
-use props::verdict::Verdict;
-use props::{draws, ensure};
+use props::proof::prove;
+use props::verdict::{Ordered, Verdict};
+use props::{draws, ensure, given, statement};
 
 /// The planted mistake: the first value on an edge, times a number.
 fn moved<const N: usize>(mut p: [f64; N], off: f64) -> [f64; N] {
@@ -234,7 +239,106 @@ fn sums_over_points(values: &[(i64, i64); 3], off: Exact) -> Verdict {
 
 const ENDS: [&str; 3] = ["cut", "open", "pressed"];
 
+/// The integrals of friction over an edge, by those of contact: F = \[P + m\]+ - \[P - m\]+ - m.
+fn sections<S: Ordered>(p: [S; 2], m: [S; 2], shift: [S; 2]) -> Verdict {
+    let (zero, two, six) = (S::from(0), S::from(2), S::from(6));
+    given!(m[0] >= zero && m[1] >= zero);
+    let e = P1::exact_friction(p, m);
+    let upper = P1::exact([p[0] + shift[0], p[1] + shift[1]]);
+    let lower = P1::exact([p[0] - shift[0], p[1] - shift[1]]);
+    let mass = |v: [S; 2], i: usize| (two * v[i] + v[1 - i]) / six;
+    for i in 0..2 {
+        ensure!(e.gradient[i] == upper.gradient[i] - lower.gradient[i] - mass(m, i));
+    }
+    let (between, half) =
+        (mass(m, 0) * p[0] + mass(m, 1) * p[1], mass(m, 0) * m[0] + mass(m, 1) * m[1]);
+    ensure!(e.energy == upper.energy - lower.energy - between - half / two);
+    // Where P is the bound all along, which of the two derivatives is taken is a choice: the edge slides.
+    let is_bound = p[0] == m[0] && p[1] == m[1];
+    for i in 0..2 {
+        for j in 0..2 {
+            ensure!(is_bound || e.by_p[i][j] == upper.hessian[i][j] - lower.hessian[i][j]);
+        }
+    }
+    // The gradient is homogeneous in the data: what both derivatives say of it.
+    for (i, gradient) in e.gradient.into_iter().enumerate() {
+        let tangent =
+            (0..2).fold(zero, |sum, j| sum + e.by_p[i][j] * p[j] + e.by_bound[i][j] * m[j]);
+        ensure!(tangent == gradient);
+    }
+    ensure!(if is_bound { e.sticks == zero } else { e.sticks == upper.active - lower.active });
+    ensure!(e.sticks + e.slides <= S::from(1));
+    Verdict::Holds(if e.slides == zero {
+        "sticks"
+    } else if e.sticks == zero {
+        "slides"
+    } else {
+        "cut"
+    })
+}
+
+/// By sections they are what the definition says, for a bound that is constant along the edge.
+fn sections_of_friction_are_their_definition<S: Ordered>([p0, p1, m]: [S; 3]) -> Verdict {
+    given!(m > S::from(0));
+    sections([p0, p1], [m, m], [m, m])
+}
+
+/// For a bound that is affine along the edge.
+fn sections_with_an_affine_bound_are_their_definition<S: Ordered>(
+    [p0, p1, m0, m1]: [S; 4],
+) -> Verdict {
+    given!(m0 > S::from(0) && m1 > S::from(0));
+    sections([p0, p1], [m0, m1], [m0, m1])
+}
+
+/// For a bound that is taken for its value at the start.
+fn control_sections_with_the_bound_of_one_end<S: Ordered>([p0, p1, m0, m1]: [S; 4]) -> Verdict {
+    given!(m0 > S::from(0) && m1 > S::from(0));
+    sections([p0, p1], [m0, m1], [m0, m0])
+}
+
+/// An edge that sticks at its start and slides at its end, with a bound that grows.
+fn bound_of_one_end() -> Outcome {
+    Exact::scope(|| {
+        let data = [1, 5, 2, 3].map(Exact::from);
+        match control_sections_with_the_bound_of_one_end(data) {
+            Verdict::Fails(what) => Ok(format!("rejected: {what}")),
+            other => Err(format!("not noticed: {other:?}")),
+        }
+    })
+}
+
+/// The slopes that Newton's method uses: one of them at most is not zero, and with them clip(x; \[m\]+) is homogeneous.
+fn slopes_of_the_clip_add_up_to_it<S: Ordered>([x, m]: [S; 2]) -> Verdict {
+    let (zero, one) = (S::from(0), S::from(1));
+    let [by_x, by_m] = clip_slopes(x, m);
+    ensure!(by_x + abs(by_m) <= one && by_x >= zero);
+    ensure!(clip(x, positive_part(m)) == by_x * x + by_m * m);
+    Verdict::Holds(if by_x == one {
+        "sticks"
+    } else if by_m == zero {
+        "open"
+    } else {
+        "slides"
+    })
+}
+
+/// The energy is convex with the clip for its derivative: its Bregman distance is not negative, and is what the kernel computes.
+fn bregman_distance_of_friction_is_its_definition<S: Ordered>([a, b, m]: [S; 3]) -> Verdict {
+    let zero = S::from(0);
+    given!(m >= zero);
+    let distance = clip_bregman(a, b, m);
+    ensure!(distance == clip_energy(b, m) - clip_energy(a, m) - clip(a, m) * (b - a));
+    ensure!(distance >= zero);
+    Verdict::Holds(if distance == zero { "none" } else { "some" })
+}
+
 checks! {
+    slopes_of_the_clip_add_up_to_it => prove(&statement!(slopes_of_the_clip_add_up_to_it, [x, m], ["sticks", "slides", "open"]));
+    bregman_distance_of_friction_is_its_definition => prove(&statement!(bregman_distance_of_friction_is_its_definition, [a, b, m], ["none", "some"]));
+    sections_of_friction_are_their_definition => draws::hold_exactly(&statement!(sections_of_friction_are_their_definition, [p0, p1, m], ["sticks", "slides", "cut"]));
+    sections_with_an_affine_bound_are_their_definition => draws::hold_exactly(&statement!(sections_with_an_affine_bound_are_their_definition, [p0, p1, m0, m1], ["sticks", "slides", "cut"]));
+    control_sections_with_the_bound_of_one_end => bound_of_one_end();
     sums_over_points_are_their_definitions => draws::hold(500, values(), &["always"], |v| sums_over_points(v, Exact::from(1)));
     control_weights_of_points_that_are_off => draws::reject(values(), |v| sums_over_points(v, Exact::of_double(OFF)));
     cut_p1_edges_in_doubles_are_near_the_exact_integrals => draws::hold(4000, ends(), &ENDS, |&p| p1_in_doubles(p, 1.0));

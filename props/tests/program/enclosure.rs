@@ -20,8 +20,8 @@ use signorini::solve::{Gamma0, Method, Settings, SolveError, discretize_any, sol
 use super::{at_points, certified, pressed, rounding};
 use props::claim::{Outcome, noticed, text};
 use props::claims::one_solution::{
-    Certifier, Draw, IRRATIONAL, NARROW, P1, P1_BY_POINTS, P2_BY_POINTS, Rule, of_solved,
-    on_small_meshes, power, problems, problems_by_contact, triangle,
+    BETWEEN, Certifier, Draw, IRRATIONAL, NARROW, P1, P1_BY_POINTS, P2_BY_POINTS, Rule, of_solved,
+    on_small_meshes, power, problems, triangle,
 };
 use props::discrete::{CUT, Nodal, exactly};
 use props::elimination::square;
@@ -30,6 +30,7 @@ use props::problems::{cells, floor, held, unloaded};
 use props::proof::sampler::Random;
 use props::verdict::Verdict;
 use props::{draws, ensure};
+use proptest::prelude::Strategy;
 
 /// What is asked of the enclosures around a point, and planted mistakes.
 #[derive(Clone, Copy)]
@@ -57,7 +58,7 @@ const ANOTHER_FACTOR: Asked = Asked { matrix: 1e3, share: -400, ..MOVED };
 
 /// The field moved at random.
 fn moved(u: &[[f64; 2]], by: f64) -> Vec<[f64; 2]> {
-    let steps = Random::new(1).field(u.len());
+    let steps = super::random_field(&mut Random::new(1), u.len());
     u.iter().zip(steps).map(|(u, d)| [0, 1].map(|c| u[c] + by * d[c] / 2.0)).collect()
 }
 
@@ -151,7 +152,10 @@ fn within(
 ) -> Verdict {
     let most = |radius: f64| factor * Exact::of_double(radius) + slack;
     let error: Nodal = found.iter().zip(exact).map(|(u, v)| [u[0] - v[0], u[1] - v[1]]).collect();
-    ensure!(certifier.problem.energy(&error) <= most(enclosure.radius) * most(enclosure.radius));
+    ensure!(
+        certified::energy(&certifier.problem, &error)
+            <= most(enclosure.radius) * most(enclosure.radius)
+    );
     // At the nodes from where the prescribed components should be.
     let mut found = found.to_vec();
     certifier.problem.prescribe(&mut found);
@@ -161,7 +165,7 @@ fn within(
         ensure!(off[0] * off[0] + off[1] * off[1] <= most(node) * most(node));
     }
     if slack == Exact::from(0)
-        && let Some(apart) = certifier.problem.pressures_apart(found, exact)
+        && let Some(apart) = certified::pressures_apart(&certifier.problem, found, exact)
     {
         ensure!(apart <= most(enclosure.pressure) * most(enclosure.pressure));
     }
@@ -188,13 +192,13 @@ fn quantities(
         middle - half <= x && x <= middle + half
     };
     let intervals = &enclosure.intervals;
-    ensure!(inside(intervals.energy, certifier.problem.energy(u)));
+    ensure!(inside(intervals.energy, certified::energy(&certifier.problem, u)));
     let largest = u.iter().map(|u| u[0] * u[0] + u[1] * u[1]);
     let largest = largest.fold(zero, |most, x| if x > most { x } else { most });
     let [low, high] = intervals.max_displacement.map(Exact::of_double);
     ensure!(low * low <= largest && largest <= high * high);
     // One boundary, the lower side, with the normal -`up`; and one that holds.
-    let force = certifier.problem.contact_force(u);
+    let force = certified::contact_force(&certifier.problem, u);
     let [contact] = &intervals.contact[..] else { return Verdict::Fails("one boundary") };
     ensure!(inside(contact.force, force));
     ensure!((0..2).all(|c| inside(contact.resultant[c], force * up[c])));
@@ -211,6 +215,14 @@ fn quantities(
 
 fn hold(asked: Asked) -> Outcome {
     on_small_meshes(|draw, rule| enclosed(draw, rule, asked))
+}
+
+/// Such problems of bodies that contact alone holds, on floors that are so many times as steep.
+fn problems_by_contact(most: [usize; 2], steeper: f64) -> impl Strategy<Value = Draw> {
+    problems(most, BETWEEN).prop_map(move |draw| {
+        let gap = [draw.gap[0], steeper * draw.gap[1]];
+        Draw { gap, by_contact: true, ..draw }
+    })
 }
 
 /// Draws of bodies that contact alone holds, around the result and around any point near it. Where an edge is open in part,

@@ -235,7 +235,7 @@ fn korn_on(degree: Degree, problem: &Problem, by: f64) -> Result<f64, String> {
 pub fn korn(by: f64) -> Outcome {
     let strain = || Material::lame(1.0, 1.0, Plane::Strain);
     let mut bodies: Vec<Problem> =
-        sharpness::small_bodies()?.into_iter().map(|body| body.problem).collect();
+        super::sharpness::small_bodies()?.into_iter().map(|body| body.problem).collect();
     let beam = Rectangle { width: 24.0, height: 1.0, nx: 24, ny: 1, diagonal: Diagonal::Right };
     bodies.push(sharpness::clamped(beam.mesh().map_err(text)?, strain(), &["left"]));
     let sides = [("top", [1, 2]), ("bottom", [0, 1])];

@@ -21,7 +21,20 @@ macro_rules! checks {
     )+};
 }
 
+use props::proof::sampler::Random;
+
+/// A number between 0 and 1.
+fn share(random: &mut Random) -> f64 {
+    random.below(1001) as f64 / 1000.0
+}
+
+/// A vector for each of so many nodes, with components between -1 and 1.
+fn random_field(random: &mut Random, nodes: usize) -> Vec<[f64; 2]> {
+    (0..nodes).map(|_| [0, 1].map(|_| random.below(2001) as f64 / 1000.0 - 1.0)).collect()
+}
+
 mod a_priori;
+mod assembled;
 mod at_points;
 mod attained;
 mod balls;
@@ -38,6 +51,7 @@ mod pressed;
 mod quantities;
 mod rationals;
 mod refusals;
+mod revolution;
 mod rounding;
 mod sharpness;
 mod solved;

@@ -133,7 +133,7 @@ fn stays_on(degree: Degree, rule: EdgeRule, times: f64) -> Result<[usize; 2], St
     for draw in 0..400 {
         let mut value = || match draw {
             0 => 1.0,
-            _ => (4.0 * random.share() - 1.0).powi(3),
+            _ => (4.0 * super::share(&mut random) - 1.0).powi(3),
         };
         let u = at.field((0..nodes).map(|_| value()).collect());
         let p = at.p(&u);
@@ -255,7 +255,7 @@ fn springs_on(degree: Degree, scale: f64) -> Result<(), String> {
             return Err(format!("{points:?} points, P{p}: not pressed"));
         }
         let mut random = Random::new(draws::seed());
-        let v = random.field(d.space.nodes().len());
+        let v = super::random_field(&mut random, d.space.nodes().len());
         let mut forces = vec![[PreciseBall::from(0); 2]; v.len()];
         pressed.add_springs(&at.lines, &balls(&v), &mut forces);
         let pairs = forces.iter().flatten().zip(v.as_flattened());

@@ -14,14 +14,14 @@ use signorini::proof::rounded_stress;
 use signorini::solve::{Method, discretize_any};
 
 use props::claim::{Outcome, text};
+use props::draws;
 use props::problems::{constant, held};
 use props::proof::sampler::Random;
-use props::{draws, sharpness};
 
 /// The small bodies of row 9 under a load and a displacement of their upper side, half of them pressed on their obstacle.
 fn loaded_bodies() -> Result<Vec<(String, Problem)>, String> {
     let mut bodies = Vec::new();
-    for (i, body) in sharpness::small_bodies()?.into_iter().enumerate() {
+    for (i, body) in super::sharpness::small_bodies()?.into_iter().enumerate() {
         let mut problem = body.problem;
         let down = if i % 2 == 0 { -1.0 } else { 1.0 };
         problem.body_force = [constant(0.3), constant(down)];
@@ -46,7 +46,7 @@ fn rounding_of_stresses(degree: Degree, problem: &Problem, by: f64) -> Result<f6
     let system = System::new(&d).map_err(text)?;
     let mut random = Random::new(draws::seed());
     let nodes = d.space.nodes().len();
-    let [heads, tails] = [0, 1].map(|_| random.field(nodes));
+    let [heads, tails] = [0, 1].map(|_| super::random_field(&mut random, nodes));
     let small = 2.0_f64.powi(-54);
     let u: Vec<[PreciseBall; 2]> = (0..nodes)
         .map(|i| {

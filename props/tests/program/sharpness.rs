@@ -26,7 +26,43 @@ use props::claim::{Outcome, noticed, text};
 use props::discrete::Discrete;
 use props::elimination::{Inertia, combined, inertia};
 use props::numbers::Exact;
-use props::sharpness::{Specimen, at_kappa, clamped, small_bodies, trapezoid};
+use props::sharpness::{at_kappa, clamped, moved, trapezoid};
+
+/// A body with its name.
+pub struct Specimen {
+    /// What it is.
+    pub name: String,
+    /// Its mesh, material and conditions.
+    pub problem: Problem,
+}
+
+/// Small bodies for exact arithmetic; the third one's vertices are moved to multiples of 1/32.
+///
+/// # Errors
+/// A mesh that is none.
+pub fn small_bodies() -> Result<Vec<Specimen>, String> {
+    let strain = || material(1.0, Plane::Strain);
+    let grid = |width, nx, diagonal| {
+        let cells = Rectangle { width, height: 1.0, nx, ny: 1, diagonal };
+        cells.mesh().map_err(text)
+    };
+    let wedge = Trapezoid { omega: 0.75 * PI, n: 1 }.mesh().map_err(text)?;
+    let all = [
+        ("square", clamped(grid(1.0, 1, Diagonal::Right)?, strain(), &["top"])),
+        ("two cells", clamped(grid(2.0, 2, Diagonal::Right)?, strain(), &["top"])),
+        ("two cells, moved", clamped(moved([2, 1], 1)?, strain(), &["top"])),
+        ("crossed cell", clamped(grid(1.0, 1, Diagonal::Crossed)?, strain(), &["top"])),
+        ("cell 4:1", clamped(grid(4.0, 1, Diagonal::Right)?, strain(), &["top"])),
+        (
+            "plane stress, lambda = 3",
+            clamped(grid(1.0, 1, Diagonal::Left)?, material(3.0, Plane::Stress), &["top"]),
+        ),
+        ("wedge", clamped(wedge, strain(), &["right", "top"])),
+        ("two triangles, e = 0.1", trapezoid(0.1)?),
+        ("two triangles, e = 0.01", trapezoid(0.01)?),
+    ];
+    Ok(all.map(|(name, problem)| Specimen { name: name.to_owned(), problem }).into())
+}
 
 /// How well an eigenvalue is known in doubles.
 const TOLERANCE: f64 = 1e-11;
@@ -144,7 +180,7 @@ fn is_smallest(
         let one = Exact::from(1);
         let below = |l: Exact| inertia(&combined(one - l, &k, -one, &s));
         let [low, high] = [-TOLERANCE, TOLERANCE].map(|e| Exact::of_double(smallest + e));
-        let bound = one - Exact::ratio(share.0, share.1) * discrete.kappa();
+        let bound = one - Exact::ratio(share.0, share.1) * super::certified::kappa(&discrete);
         if below(bound).negative > 0 {
             return Err(format!("an eigenvalue lies below 1 - {share:?} kappa"));
         }

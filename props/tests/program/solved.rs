@@ -271,7 +271,8 @@ pub fn raised_by_a_perturbation(draw: &Draw, size: f64, factor: f64) -> Verdict 
         let problem = draw.problem()?;
         let solved = solve(&problem, &Method::default(), &Settings::default());
         let (solution, _) = solved.map_err(text)?;
-        let steps = Random::new(7).field(solution.displacement.len()).into_iter();
+        let steps =
+            super::random_field(&mut Random::new(7), solution.displacement.len()).into_iter();
         let field: Vec<[f64; 2]> = (solution.displacement.iter().zip(steps))
             .map(|(u, d)| [0, 1].map(|c| u[c] + size * d[c] / 2.0))
             .collect();

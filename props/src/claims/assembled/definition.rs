@@ -1,5 +1,4 @@
-//! The numbers of a problem by their definitions, over any ordered field: [`defined`], and the mistakes that are planted in
-//! it.
+//! A problem as the definitions need it, over any ordered field, and the mistakes that are planted in it.
 
 use std::collections::BTreeMap;
 
@@ -15,46 +14,39 @@ use crate::verdict::Ordered;
 
 /// A planted mistake, in the definitions.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Mistake {
+pub(crate) enum Mistake {
     None,
     EdgeLengthForDiameter,
-    ShortestEdgeForDiameter,
-    DiameterOfAnotherTriangle,
     GapWithTheWrongSign,
     GammaInverted,
     LameExchanged,
-    ContactEdgeForgotten,
     Theta(i32),
     TractionOnAnotherSide,
-    PlaneStrainForStress,
     LoadWithTheWrongSign,
-    ReactionWithTheWrongSign,
 }
 
 /// A problem as the definitions need it.
-pub(super) struct Setting<S> {
-    pub(super) body: Body<S>,
+pub(crate) struct Setting<S> {
+    pub(crate) body: Body<S>,
     /// Component c of the body force is this polynomial.
-    pub(super) force: [Polynomial; 2],
-    pub(super) traction: [Traction; 2],
+    pub(crate) force: [Polynomial; 2],
+    pub(crate) traction: [Traction; 2],
     /// The sides on which it acts.
-    pub(super) pulled: Vec<Side<S>>,
+    pub(crate) pulled: Vec<Side<S>>,
     /// 1: the factor of sigma_n in P0(v).
-    pub(super) theta: S,
+    pub(crate) theta: S,
     /// 1: the sign of L.
-    pub(super) load_sign: S,
-    /// 1: the sign of the reactions.
-    pub(super) reaction_sign: S,
+    pub(crate) load_sign: S,
     /// What is prescribed: by node and component, value and name of the side.
-    pub(super) prescribed: BTreeMap<(usize, usize), (S, &'static str)>,
+    pub(crate) prescribed: BTreeMap<(usize, usize), (S, &'static str)>,
     /// The rule's points, if it has any.
-    pub(super) points: Option<Vec<[S; 2]>>,
+    pub(crate) points: Option<Vec<[S; 2]>>,
 }
 
 impl<S: Given> Setting<S> {
     /// The data of the draw, with the solver's h_T, |E|, n and gamma0; `None` if the solver has not the nodes or not the
     /// contact edges that the problem has.
-    pub(super) fn new<const N: usize>(draw: &Draw, d: &Discretization<'_>) -> Option<Self> {
+    pub(crate) fn new<const N: usize>(draw: &Draw, d: &Discretization<'_>) -> Option<Self> {
         let (vertices, triangles, sides) = draw.parts();
         let mesh = &d.problem.mesh;
         let middles = if N == 3 { BTreeMap::new() } else { middles(draw, d.space.nodes())? };
@@ -114,7 +106,6 @@ impl<S: Given> Setting<S> {
             pulled,
             theta: S::from(1),
             load_sign: S::from(1),
-            reaction_sign: S::from(1),
             prescribed: BTreeMap::new(),
             points: match &d.rule {
                 EdgeRule::Exact => None,
@@ -132,7 +123,7 @@ impl<S: Given> Setting<S> {
     }
 
     /// The nodes of a side: its data there, unless another side was first.
-    pub(super) fn prescribe<const N: usize>(
+    pub(crate) fn prescribe<const N: usize>(
         &mut self,
         draw: &Draw,
         name: &'static str,
@@ -151,17 +142,12 @@ impl<S: Given> Setting<S> {
         }
     }
 
-    pub(super) fn rule(&self) -> Rule<'_, S> {
+    pub(crate) fn rule(&self) -> Rule<'_, S> {
         self.points.as_deref().map_or(Rule::Exact, Rule::Points)
     }
 
-    pub(super) fn plant(&mut self, mistake: Mistake, draw: &Draw) {
+    pub(crate) fn plant(&mut self, mistake: Mistake) {
         let body = &mut self.body;
-        let length = |body: &Body<S>, t: usize, i: usize| {
-            let corners = body.triangles[t];
-            let [a, b] = [1, 2].map(|k| draw.parts().0[corners[(i + k) % 3]]);
-            (a[0] - b[0]).hypot(a[1] - b[1])
-        };
         match mistake {
             Mistake::None => {}
             Mistake::EdgeLengthForDiameter => {
@@ -169,13 +155,6 @@ impl<S: Given> Setting<S> {
                     body.diameters[side.triangle] = side.length;
                 }
             }
-            Mistake::ShortestEdgeForDiameter => {
-                for t in 0..body.triangles.len() {
-                    let lengths = [0, 1, 2].map(|i| length(body, t, i));
-                    body.diameters[t] = S::given(lengths.into_iter().fold(f64::MAX, f64::min));
-                }
-            }
-            Mistake::DiameterOfAnotherTriangle => body.diameters.rotate_left(1),
             Mistake::GapWithTheWrongSign => {
                 for side in &mut body.contact {
                     side.gap = side.gap.map(|g| -g);
@@ -187,27 +166,14 @@ impl<S: Given> Setting<S> {
                     std::mem::swap(lambda, mu);
                 }
             }
-            Mistake::ContactEdgeForgotten => {
-                let owners: Vec<usize> = body.contact.iter().map(|side| side.triangle).collect();
-                let twice = |t: usize| owners.iter().filter(|&&o| o == t).count() == 2;
-                if let Some(at) = owners.iter().position(|&t| twice(t)) {
-                    body.contact[at].length = S::from(0);
-                }
-            }
             Mistake::Theta(theta) => self.theta = S::from(theta),
             Mistake::TractionOnAnotherSide => self.pulled = body.contact[..1].to_vec(),
-            Mistake::PlaneStrainForStress if draw.tensor.is_some() => {}
-            Mistake::PlaneStrainForStress => {
-                let (lambda, mu) = (S::given(draw.lambda), S::given(draw.mu));
-                body.hooke = Hooke::Isotropic { lambda, mu };
-            }
             Mistake::LoadWithTheWrongSign => self.load_sign = S::from(-1),
-            Mistake::ReactionWithTheWrongSign => self.reaction_sign = S::from(-1),
         }
     }
 
     /// L(v) of the basis function at `node`, component c.
-    pub(super) fn load<const N: usize>(&self, node: usize, c: usize) -> S {
+    pub(crate) fn load<const N: usize>(&self, node: usize, c: usize) -> S {
         let body = &self.body;
         let v = body.bump(node, unit(c));
         let own = |t: usize| body.nodes::<N>(t).contains(&node);
@@ -229,7 +195,7 @@ impl<S: Given> Setting<S> {
     }
 
     /// int (1/gamma) \[P(u)\]+ P0(v), with theta in P0(v)
-    pub(super) fn contact<const N: usize>(&self, u: &[[S; 2]], v: &[[S; 2]]) -> S {
+    pub(crate) fn contact<const N: usize>(&self, u: &[[S; 2]], v: &[[S; 2]]) -> S {
         let definition = Definition::<N, S>(&self.body);
         let own = |side: &&Side<S>| {
             let zero = S::from(0);
@@ -241,32 +207,20 @@ impl<S: Given> Setting<S> {
             definition.contact_on(self.rule(), side, u, &p0)
         })
     }
-
-    /// J_h(u), given L(u)
-    pub(super) fn energy<const N: usize>(&self, u: &[[S; 2]], work: S) -> S {
-        let definition = Definition::<N, S>(&self.body);
-        let positive = definition.contact(self.rule(), u, |side| definition.traces(side, u).p);
-        (definition.big_a(u, u) + positive) / S::from(2) - work
-    }
 }
 
-/// A functional, given at the basis functions, at v.
-pub(super) fn inner<S: Ordered>(functional: &[S], v: &[[S; 2]]) -> S {
-    sum(functional.iter().zip(v.as_flattened()), |(&f, &v)| f * v)
-}
-
-pub(super) fn unit<S: Ordered>(c: usize) -> [S; 2] {
+pub(crate) fn unit<S: Ordered>(c: usize) -> [S; 2] {
     [0, 1].map(|i| S::from(i32::from(i == c)))
 }
 
 /// The vertices and the middles of the edges of triangle t.
-pub(super) fn places<S: Given>(body: &Body<S>, t: usize) -> [[S; 2]; 6] {
+pub(crate) fn places<S: Given>(body: &Body<S>, t: usize) -> [[S; 2]; 6] {
     let vertices = body.triangles[t].map(|v| body.vertices[v]);
     Field { vertices, nodal: Vec::new() }.places()
 }
 
 /// The node in the middle of each edge, by its place; `None` if there is not exactly one.
-pub(super) fn middles(draw: &Draw, nodes: &[[f64; 2]]) -> Option<BTreeMap<[usize; 2], usize>> {
+pub(crate) fn middles(draw: &Draw, nodes: &[[f64; 2]]) -> Option<BTreeMap<[usize; 2], usize>> {
     let (vertices, triangles, _) = draw.parts();
     let mut middles = BTreeMap::new();
     for corners in triangles {
@@ -280,112 +234,4 @@ pub(super) fn middles(draw: &Draw, nodes: &[[f64; 2]]) -> Option<BTreeMap<[usize
         }
     }
     (vertices.len() + middles.len() == nodes.len()).then_some(middles)
-}
-
-/// A list of numbers under one name.
-pub(super) type Named<S> = (&'static str, Vec<S>);
-
-/// Every number by its definition, at u; with the matrices if asked for (in the given order of the free degrees of freedom).
-pub(super) fn defined<S: Given, const N: usize>(
-    setting: &Setting<S>,
-    nodes: usize,
-    u: &[[S; 2]],
-    order: &[(usize, usize)],
-) -> Vec<Named<S>> {
-    let body = &setting.body;
-    let definition = Definition::<N, S>(body);
-    let dofs: Vec<(usize, usize)> = (0..nodes).flat_map(|node| [(node, 0), (node, 1)]).collect();
-    let each = |f: &dyn Fn(usize, usize) -> S| dofs.iter().map(|&(k, c)| f(k, c)).collect();
-    let load: Vec<S> = each(&|k, c| setting.load::<N>(k, c));
-    let bump = |(k, c): (usize, usize)| body.bump(k, unit(c));
-    let internal: Vec<S> = each(&|k, c| definition.a(u, &bump((k, c))));
-    let stress: Vec<S> = each(&|k, c| definition.stress_product(u, &bump((k, c))));
-    let big: Vec<S> = internal.iter().zip(&stress).map(|(&a, &s)| a - s).collect();
-    let contact: Vec<S> = each(&|k, c| setting.contact::<N>(u, &bump((k, c))));
-    let linear: Vec<S> = big.iter().zip(&load).map(|(&a, &l)| a - l).collect();
-    let residual: Vec<S> = linear.iter().zip(&contact).map(|(&a, &p)| a + p).collect();
-    let work = inner(&load, u);
-    let half = S::from(1) / S::from(2);
-    let traces: Vec<_> = body.contact.iter().map(|side| definition.traces(side, u)).collect();
-    let (zero, one) = (S::from(0), S::from(1));
-    let along = if N == 3 { vec![zero, one] } else { vec![zero, half, one] };
-    let on_edges = |f: &dyn Fn(usize, S) -> S| -> Vec<S> {
-        (0..traces.len()).flat_map(|e| along.iter().map(move |&s| f(e, s))).collect()
-    };
-    let positive_part = |p: S| if p > zero { p } else { zero };
-    let pressure = |e: usize, p: S| positive_part(p) / body.gamma(&body.contact[e]);
-    let forces: Vec<S> = body
-        .contact
-        .iter()
-        .map(|side| definition.contact_on(setting.rule(), side, u, &Line(vec![one])))
-        .collect();
-    let along_normals =
-        [0, 1].map(|c| -sum(forces.iter().zip(&body.contact), |(&force, side)| force * side.n[c]));
-    let peaks = traces.iter().enumerate().map(|(e, traces)| pressure(e, traces.p.maximum()));
-    let peak = peaks.fold(zero, |most, p| if p > most { p } else { most });
-    let mut reactions: BTreeMap<&str, [S; 2]> = BTreeMap::new();
-    for (&(node, c), (_, name)) in &setting.prescribed {
-        let reaction = reactions.entry(name).or_insert([zero; 2]);
-        reaction[c] += setting.reaction_sign * residual[2 * node + c];
-    }
-    let mean = |t: usize| {
-        let field = body.field::<N>(t, u);
-        let at = [0, 1, 2].map(|k| body.hooke.stress(field.strain(k)));
-        [0, 1, 2].map(|c| (at[0][c] + at[1][c] + at[2][c]) / S::from(3))
-    };
-    let prescribed = |k, c| setting.prescribed.get(&(k, c)).map_or(zero, |&(value, _)| value);
-    let constant = definition.coercivity();
-    let mut all = vec![
-        ("prescribed data", each(&prescribed)),
-        ("C_h", vec![constant]),
-        ("kappa", vec![body.gamma0 * constant]),
-        ("limit", vec![one / constant]),
-        (
-            "sigma_n(u)",
-            traces.iter().flat_map(|t| [t.sigma_n.at(zero), t.sigma_n.at(one)]).collect(),
-        ),
-        ("P(u)", on_edges(&|e, s| traces[e].p.at(s))),
-        ("u_n", on_edges(&|e, s| traces[e].v_n.at(s))),
-        ("gap", on_edges(&|e, s| traces[e].p0.minus(&traces[e].p).at(s))),
-        ("sigma_n(u^h)", on_edges(&|e, s| traces[e].sigma_n.at(s))),
-        (
-            "arc",
-            on_edges(&|e, s| {
-                // From zero on each boundary: where a side does not start where the one before it ends.
-                let corner =
-                    |side: &Side<S>, k| body.triangles[side.triangle][(side.local + k) % 3];
-                let joined =
-                    |i: usize| corner(&body.contact[i], 2) == corner(&body.contact[i + 1], 1);
-                let first = (0..e).rev().find(|&i| !joined(i));
-                let before = &body.contact[first.map_or(0, |i| i + 1)..e];
-                sum(before, |side| side.length) + s * body.contact[e].length
-            }),
-        ),
-        ("lambda^h", on_edges(&|e, s| -pressure(e, traces[e].p.at(s)))),
-        ("peak pressure", vec![peak]),
-        ("contact force", vec![sum(&forces, |&force| force)]),
-        ("contact resultant", along_normals.to_vec()),
-        ("mean stress", (0..body.triangles.len()).flat_map(mean).collect()),
-        ("a(u, v)", internal),
-        ("a(u, u)", vec![definition.a(u, u)]),
-        ("L(v)", load),
-        ("L(u)", vec![work]),
-        ("A(u, v) - L(v)", linear),
-        ("residual", residual),
-        ("J_h", vec![setting.energy::<N>(u, work)]),
-        ("reactions", reactions.into_values().flatten().collect()),
-    ];
-    // The entries of a symmetric matrix, now in this order, now in that.
-    let bumps: Vec<_> = order.iter().map(|&dof| bump(dof)).collect();
-    let pairs = (0..bumps.len()).flat_map(|j| (j..bumps.len()).map(move |i| (i, j)));
-    let ordered = pairs.map(|(i, j)| if (i + j) % 2 == 0 { (i, j) } else { (j, i) });
-    let entries: Vec<[S; 2]> = ordered
-        .map(|(i, j)| {
-            let a = definition.a(&bumps[i], &bumps[j]);
-            [a, a - definition.stress_product(&bumps[i], &bumps[j])]
-        })
-        .collect();
-    all.push(("a(., .)", entries.iter().map(|entry| entry[0]).collect()));
-    all.push(("A(., .)", entries.iter().map(|entry| entry[1]).collect()));
-    all
 }

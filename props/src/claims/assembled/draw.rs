@@ -15,14 +15,14 @@ use crate::draws;
 
 /// A polynomial of degree <= 2 in x and y: coefficients of 1, x, y, x^2, xy, y^2.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Polynomial {
-    pub(super) coefficients: [f64; 6],
+pub(crate) struct Polynomial {
+    pub(crate) coefficients: [f64; 6],
     /// What it says of its degree; `None` if it keeps it to itself.
-    pub(super) degree: Option<u32>,
+    pub(crate) degree: Option<u32>,
 }
 
 impl Polynomial {
-    pub(super) fn value<S: Given>(&self, [x, y]: [S; 2]) -> S {
+    pub(crate) fn value<S: Given>(&self, [x, y]: [S; 2]) -> S {
         let c = self.coefficients.map(S::given);
         c[0] + c[1] * x + c[2] * y + c[3] * x * x + c[4] * x * y + c[5] * y * y
     }
@@ -41,10 +41,10 @@ impl Function for Polynomial {
 
 /// A component of a traction: a polynomial and a share of the normal, as a pressure has it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Traction {
-    pub(super) polynomial: Polynomial,
-    pub(super) along_normal: f64,
-    pub(super) component: usize,
+pub(crate) struct Traction {
+    pub(crate) polynomial: Polynomial,
+    pub(crate) along_normal: f64,
+    pub(crate) component: usize,
 }
 
 impl Function for Traction {
@@ -63,7 +63,7 @@ impl Function for Traction {
 
 /// How the body meets the obstacle: the gap is moved.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Contact {
+pub(crate) enum Contact {
     Open,
     Pressed,
     /// The gap rises steeply along the lower side.
@@ -74,37 +74,37 @@ pub(super) enum Contact {
 
 /// The plain data of a problem.
 #[derive(Clone, Debug)]
-pub(super) struct Draw {
-    pub(super) cells: [usize; 2],
-    pub(super) diagonal: Diagonal,
-    pub(super) moves: Vec<[f64; 2]>,
+pub(crate) struct Draw {
+    pub(crate) cells: [usize; 2],
+    pub(crate) diagonal: Diagonal,
+    pub(crate) moves: Vec<[f64; 2]>,
     /// Angle, stretch, shear.
-    pub(super) map: [f64; 3],
+    pub(crate) map: [f64; 3],
     /// Coordinates are multiples of 2^-7, loads and fields of 2^-10, as in most draws: rationals with few digits.
-    pub(super) coarse: bool,
+    pub(crate) coarse: bool,
     /// The vertices are numbered, and the nodes are eliminated, in the order of these.
-    pub(super) keys: Vec<u32>,
+    pub(crate) keys: Vec<u32>,
     /// The corner that each triangle lists first.
-    pub(super) first: Vec<usize>,
-    pub(super) two_sides: bool,
-    pub(super) sliding: bool,
-    pub(super) stress: bool,
-    pub(super) lambda: f64,
-    pub(super) mu: f64,
+    pub(crate) first: Vec<usize>,
+    pub(crate) two_sides: bool,
+    pub(crate) sliding: bool,
+    pub(crate) stress: bool,
+    pub(crate) lambda: f64,
+    pub(crate) mu: f64,
     /// A in place of lambda and mu.
-    pub(super) tensor: Option<[f64; 6]>,
-    pub(super) kappa: f64,
-    pub(super) gauss: bool,
+    pub(crate) tensor: Option<[f64; 6]>,
+    pub(crate) kappa: f64,
+    pub(crate) gauss: bool,
     /// Body force, traction, displacement, gap.
-    pub(super) data: Vec<Polynomial>,
-    pub(super) along_normal: f64,
-    pub(super) fields: Vec<[f64; 2]>,
+    pub(crate) data: Vec<Polynomial>,
+    pub(crate) along_normal: f64,
+    pub(crate) fields: Vec<[f64; 2]>,
 }
 
 /// More than a field on these meshes has nodes.
-pub(super) const MOST_NODES: usize = 32;
+pub(crate) const MOST_NODES: usize = 32;
 
-pub(super) fn polynomial() -> impl Strategy<Value = Polynomial> {
+pub(crate) fn polynomial() -> impl Strategy<Value = Polynomial> {
     let coefficients = prop::array::uniform6(-1.0_f64..1.0);
     (coefficients, 0_usize..6, any::<bool>()).prop_map(|(mut coefficients, kind, hidden)| {
         // Nothing, a constant, an affine function that is zero at the origin, a quadratic one.
@@ -122,7 +122,7 @@ pub(super) fn polynomial() -> impl Strategy<Value = Polynomial> {
     })
 }
 
-pub(super) fn problems(contact: Contact, two_sides: bool) -> impl Strategy<Value = Draw> {
+pub(crate) fn problems(contact: Contact, two_sides: bool) -> impl Strategy<Value = Draw> {
     let mesh = (
         prop_oneof![Just([1, 1]), Just([2, 1]), Just([1, 2])],
         prop::sample::select(&[Diagonal::Left, Diagonal::Right, Diagonal::Crossed]),
@@ -186,19 +186,19 @@ pub(super) fn problems(contact: Contact, two_sides: bool) -> impl Strategy<Value
 }
 
 /// A side of the body.
-pub(super) type Edges = Vec<[usize; 2]>;
+pub(crate) type Edges = Vec<[usize; 2]>;
 
 /// Vertices, triangles, and the sides by name.
-pub(super) type Parts = (Vec<[f64; 2]>, Vec<[usize; 3]>, BTreeMap<&'static str, Edges>);
+pub(crate) type Parts = (Vec<[f64; 2]>, Vec<[usize; 3]>, BTreeMap<&'static str, Edges>);
 
 impl Draw {
-    pub(super) fn order(&self, count: usize) -> Vec<usize> {
+    pub(crate) fn order(&self, count: usize) -> Vec<usize> {
         let mut order: Vec<usize> = (0..count).collect();
         order.sort_by_key(|&i| self.keys[i]);
         order
     }
 
-    pub(super) fn parts(&self) -> Parts {
+    pub(crate) fn parts(&self) -> Parts {
         let [nx, ny] = self.cells;
         let (width, height) = (nx as f64, ny as f64);
         let cells = Rectangle { width, height, nx, ny, diagonal: self.diagonal };
@@ -237,13 +237,13 @@ impl Draw {
     }
 
     /// The names of the sides in contact.
-    pub(super) fn contact(&self) -> &'static [&'static str] {
+    pub(crate) fn contact(&self) -> &'static [&'static str] {
         if self.two_sides { &["bottom", "left"] } else { &["bottom"] }
     }
 
     /// The names of the sides with a displacement, in alphabetical order, and which components they prescribe. The
     /// right and the upper side meet, and agree.
-    pub(super) fn displacement(&self) -> &'static [(&'static str, [bool; 2])] {
+    pub(crate) fn displacement(&self) -> &'static [(&'static str, [bool; 2])] {
         if self.sliding {
             &[("right", [true, false]), ("top", [true, true])]
         } else {
@@ -253,7 +253,7 @@ impl Draw {
 
     /// The name of the side with a traction: one that is neither in contact nor prescribed, if there is one. The
     /// others are free.
-    pub(super) fn traction(&self) -> Option<&'static str> {
+    pub(crate) fn traction(&self) -> Option<&'static str> {
         match (self.two_sides, self.sliding) {
             (false, _) => Some("left"),
             (true, false) => Some("right"),
@@ -261,7 +261,7 @@ impl Draw {
         }
     }
 
-    pub(super) fn tractions(&self) -> [Traction; 2] {
+    pub(crate) fn tractions(&self) -> [Traction; 2] {
         [0, 1].map(|component| Traction {
             polynomial: self.data[2 + component],
             along_normal: self.along_normal,
@@ -269,12 +269,12 @@ impl Draw {
         })
     }
 
-    pub(super) fn gap(&self) -> Polynomial {
+    pub(crate) fn gap(&self) -> Polynomial {
         self.data[6]
     }
 
     /// The problem as the solver is given it.
-    pub(super) fn problem(&self) -> Problem {
+    pub(crate) fn problem(&self) -> Problem {
         let (vertices, triangles, sides) = self.parts();
         let named = sides.into_iter().map(|(name, edges)| (name.to_owned(), edges));
         let mesh = Mesh::new(vertices, triangles, named).expect("moved a little, it is a mesh");
@@ -299,18 +299,18 @@ impl Draw {
         Problem::new(mesh, material, [shared(self.data[0]), shared(self.data[1])], conditions)
     }
 
-    pub(super) fn rule(&self) -> EdgeRule {
+    pub(crate) fn rule(&self) -> EdgeRule {
         if self.gauss { EdgeRule::gauss(3) } else { EdgeRule::Exact }
     }
 
     /// The first field, and a step to another one.
-    pub(super) fn fields(&self, nodes: usize) -> [Vec<[f64; 2]>; 2] {
+    pub(crate) fn fields(&self, nodes: usize) -> [Vec<[f64; 2]>; 2] {
         [0, 1].map(|k| self.fields[k * MOST_NODES..][..nodes].to_vec())
     }
 }
 
 /// The triangle that has this edge, and which of its edges it is.
-pub(super) fn owner(triangles: &[[usize; 3]], edge: [usize; 2]) -> BoundaryEdge {
+pub(crate) fn owner(triangles: &[[usize; 3]], edge: [usize; 2]) -> BoundaryEdge {
     let opposite = |corners: &[usize; 3]| {
         let has = edge.iter().all(|v| corners.contains(v));
         corners.iter().position(|v| has && !edge.contains(v))

@@ -4,7 +4,7 @@ use crate::numbers::{Exact, Magnitude};
 use crate::verdict::Ordered;
 
 /// A number that a double can be read as.
-pub(super) trait Given: Ordered {
+pub(crate) trait Given: Ordered {
     /// The value of a double.
     fn given(value: f64) -> Self;
 
@@ -30,6 +30,6 @@ impl Given for Magnitude {
     }
 }
 
-pub(super) fn read<S: Given>(field: &[[f64; 2]]) -> Vec<[S; 2]> {
+pub(crate) fn read<S: Given>(field: &[[f64; 2]]) -> Vec<[S; 2]> {
     field.iter().map(|v| v.map(S::given)).collect()
 }

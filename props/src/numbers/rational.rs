@@ -1,0 +1,89 @@
+//! Sums, products and quotients of rational numbers, as num-rational has them, but without a greatest common divisor where the
+//! denominators are powers of 2, as those of doubles and of whole numbers: there a shift brings to lowest terms. Elsewhere the
+//! divisors are as small as can be (Knuth, 4.5.1).
+
+use num_bigint::BigInt;
+use num_integer::Integer;
+use num_rational::BigRational;
+use num_traits::{One, Signed};
+
+/// k where a number is 2^k.
+fn exponent(number: &BigInt) -> Option<u64> {
+    number.trailing_zeros().filter(|zeros| zeros + 1 == number.bits() && number.is_positive())
+}
+
+/// numerator / 2^exponent
+fn dyadic(numerator: BigInt, exponent: u64) -> BigRational {
+    let zeros = numerator.trailing_zeros().map_or(exponent, |zeros| zeros.min(exponent));
+    let numerator = if zeros == 0 { numerator } else { numerator >> zeros };
+    BigRational::new_raw(numerator, BigInt::one() << (exponent - zeros))
+}
+
+/// The greatest common divisor with a divisor that may be much smaller.
+fn common(number: &BigInt, divisor: &BigInt) -> BigInt {
+    if number.bits() > divisor.bits() {
+        (number % divisor).gcd(divisor)
+    } else {
+        number.gcd(divisor)
+    }
+}
+
+/// a + b
+pub fn sum(a: &BigRational, b: &BigRational) -> BigRational {
+    match (exponent(a.denom()), exponent(b.denom())) {
+        (Some(p), Some(q)) if p == q => dyadic(a.numer() + b.numer(), p),
+        (Some(p), Some(q)) if p < q => dyadic((a.numer() << (q - p)) + b.numer(), q),
+        (Some(p), Some(q)) => dyadic(a.numer() + (b.numer() << (p - q)), p),
+        _ => {
+            let both = a.denom().gcd(b.denom());
+            let (p, q) = (a.denom() / &both, b.denom() / &both);
+            let sum = a.numer() * &q + b.numer() * &p;
+            let shared = common(&sum, &both);
+            BigRational::new_raw(sum / &shared, p * (b.denom() / shared))
+        }
+    }
+}
+
+/// a b
+pub fn product(a: &BigRational, b: &BigRational) -> BigRational {
+    match (exponent(a.denom()), exponent(b.denom())) {
+        (Some(p), Some(q)) => dyadic(a.numer() * b.numer(), p + q),
+        _ => {
+            let (p, q) = (common(a.numer(), b.denom()), common(b.numer(), a.denom()));
+            let numerator = a.numer() / &p * (b.numer() / &q);
+            BigRational::new_raw(numerator, a.denom() / q * (b.denom() / p))
+        }
+    }
+}
+
+/// a / b
+pub fn quotient(a: &BigRational, b: &BigRational) -> BigRational {
+    match exponent(b.numer()) {
+        Some(_) => product(a, &b.recip()),
+        None => a / b,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shortcuts_are_the_operations_in_lowest_terms() {
+        let ratio = |n: i64, d: i64| BigRational::new(n.into(), d.into());
+        let numerators = [-12, -5, -4, -1, 0, 1, 2, 3, 6, 8, 1 << 40];
+        let numbers = numerators.map(|n| [1, 2, 3, 8, 12].map(|d| ratio(n, d)));
+        for (a, b) in numbers
+            .as_flattened()
+            .iter()
+            .flat_map(|a| numbers.as_flattened().iter().map(move |b| (a, b)))
+        {
+            let parts = |x: BigRational| (x.numer().clone(), x.denom().clone());
+            assert_eq!(parts(sum(a, b)), parts(a + b), "{a} + {b}");
+            assert_eq!(parts(product(a, b)), parts(a * b), "{a} {b}");
+            if *b != ratio(0, 1) {
+                assert_eq!(parts(quotient(a, b)), parts(a / b), "{a} / {b}");
+            }
+        }
+    }
+}
