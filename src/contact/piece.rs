@@ -438,10 +438,8 @@ impl<S: Scalar + From<f64>> Piece<S> {
 
     /// Returns whether both lie on the same boundary with the same partner.
     pub(crate) fn is_of_same_boundary<T>(&self, other: &Piece<T>) -> bool {
-        let names = |piece: &PieceGeometry| {
-            piece.stretches.iter().map(|s| Arc::clone(&s.boundary)).collect::<Vec<_>>()
-        };
-        names(&self.geometry) == names(&other.geometry)
+        let [own, others] = [&self.geometry.stretches, &other.geometry.stretches];
+        own.iter().map(|s| &s.boundary).eq(others.iter().map(|s| &s.boundary))
     }
 
     /// The responses of the law, component by component, each with the numbers of the component's values among those of the piece.

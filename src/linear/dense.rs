@@ -3,9 +3,10 @@
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::reborrow::{Reborrow, ReborrowMut};
-use faer::{MatMut, Par};
+use faer::{Accum, MatMut, MatRef, Par};
 
 use crate::solve::SolveError;
 
@@ -21,6 +22,37 @@ pub(crate) fn cholesky(matrix: MatMut<'_, f64>) -> Result<(), SolveError> {
     cholesky_in_place(matrix, Default::default(), Par::Seq, stack, Default::default())
         .map(|_| ())
         .map_err(|_| SolveError::NotPositiveDefinite)
+}
+
+/// The lower triangle of a matrix becomes its Cholesky factor, of which the `leading` block is given: the matrix is not read there.
+///
+/// # Errors
+/// As [`cholesky`].
+pub(crate) fn extend_cholesky(
+    matrix: MatMut<'_, f64>,
+    leading: MatRef<'_, f64>,
+) -> Result<(), SolveError> {
+    let kept = leading.nrows();
+    let (mut top, _, mut below, mut rest) = matrix.split_at_mut(kept, kept);
+    top.copy_from_triangular_lower(leading);
+    if rest.nrows() == 0 {
+        return Ok(());
+    }
+    if kept > 0 {
+        solve_lower_triangular_in_place(leading, below.rb_mut().transpose_mut(), Par::Seq);
+        triangular::matmul(
+            rest.rb_mut(),
+            BlockStructure::TriangularLower,
+            Accum::Add,
+            below.rb(),
+            BlockStructure::Rectangular,
+            below.rb().transpose(),
+            BlockStructure::Rectangular,
+            -1.0,
+            Par::Seq,
+        );
+    }
+    cholesky(rest)
 }
 
 /// The lower triangle of a symmetric matrix whose leading block of this size is positive definite, and whose Schur complement is
@@ -140,6 +172,39 @@ mod tests {
     use faer::Mat;
 
     use super::*;
+
+    /// The Cholesky factor of a matrix of this size, or `None`: by extension if one of the `leading` block is given.
+    fn factor(n: usize, leading: Option<&Mat<f64>>) -> Option<Mat<f64>> {
+        let sum = |i: usize, j: usize| 1.0 / (1.0 + i as f64 + j as f64);
+        let mut matrix =
+            Mat::from_fn(n, n, |i, j| sum(i, j) + f64::from(u8::from(i == j)) * (1.0 + i as f64));
+        match leading {
+            Some(leading) => extend_cholesky(matrix.as_mut(), leading.as_ref()).ok()?,
+            None => cholesky(matrix.as_mut()).ok()?,
+        }
+        Some(matrix)
+    }
+
+    /// The largest difference of the lower triangles.
+    fn off(a: &Mat<f64>, b: &Mat<f64>) -> f64 {
+        let entries = (0..a.ncols()).flat_map(|j| (j..a.nrows()).map(move |i| (i, j)));
+        entries.fold(0.0, |most: f64, at| most.max((a[at] - b[at]).abs()))
+    }
+
+    #[test]
+    fn a_factor_that_is_extended_is_that_of_the_whole_matrix() {
+        let n = 90;
+        let whole = factor(n, None).unwrap();
+        for kept in [0, 1, 40, n] {
+            let leading = factor(kept, None).unwrap();
+            let extended = factor(n, Some(&leading)).unwrap();
+            assert_abs_diff_eq!(off(&whole, &extended), 0.0, epsilon = 1e-13);
+        }
+        let wrong = factor(40, None).unwrap() * 2.0;
+        assert!(factor(n, Some(&wrong)).is_none_or(|wrong| off(&whole, &wrong) > 1e-3));
+        // What is left must be positive definite.
+        assert!(factor(n, Some(&(factor(40, None).unwrap() * 1e-3))).is_none());
+    }
 
     /// U S V^T of m rows with Householder reflections as U and V.
     fn with_singular_values(values: &[f64], m: usize) -> Vec<Vec<f64>> {

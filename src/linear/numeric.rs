@@ -341,8 +341,10 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
     for i in whole..n {
         sum += a[i] * b[i];
     }
-    for i in 0..LANES {
-        sum += sums[i];
+    if whole > 0 {
+        for i in 0..LANES {
+            sum += sums[i];
+        }
     }
     sum
 }

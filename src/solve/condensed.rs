@@ -6,7 +6,8 @@
 //! for its unknown:
 //!
 //! - its step solves w + dw = Psi'(y) + H dy with dy = -G dw, where H = Psi''(y) = R R^T is block diagonal; with
-//!   s = w - Psi'(y) this is dw = R t - s, (I + R^T G R) t = R^T G s: symmetric, with no eigenvalue below 1,
+//!   s = w - Psi'(y) this is dw = R t - s, (I + R^T G R) t = R^T G s: symmetric, with no eigenvalue below 1. From one step to the
+//!   next few pieces change, so those that press most are eliminated first, and of L the columns before the first change stay,
 //! - DJ d = -s . dy, d^T A d = dw . G dw.
 //!
 //! **Where contact alone holds the body** A has no factor. Factored is K = A + B^T D B, with the springs D of a few pieces
@@ -42,7 +43,7 @@ use crate::contact::Discretization;
 use crate::held::holding::holding;
 use crate::kernel::DoubleDouble;
 use crate::linear::compliance::{Compliance, Reach};
-use crate::linear::dense::{norm, quasidefinite};
+use crate::linear::dense::{extend_cholesky, norm, quasidefinite};
 use crate::linear::factor::Factor;
 use crate::linear::system::{Factored, System};
 use crate::model::mesh::ROUNDED;
@@ -105,6 +106,8 @@ pub(crate) struct Condensed<'a, 'd, 'p> {
     reference: f64,
     w: Vec<f64>,
     first: bool,
+    /// The last tangent of all pieces.
+    last: Option<Tangent>,
 }
 
 impl<'a, 'd, 'p> Condensed<'a, 'd, 'p> {
@@ -129,8 +132,18 @@ impl<'a, 'd, 'p> Condensed<'a, 'd, 'p> {
         });
         let w = vec![0.0; reach.functionals()];
         let rows = place.len();
-        let first = true;
-        Ok(Condensed { system, shift, factored, compliance, forces, rows, reference, w, first })
+        Ok(Condensed {
+            system,
+            shift,
+            factored,
+            compliance,
+            forces,
+            rows,
+            reference,
+            w,
+            first: true,
+            last: None,
+        })
     }
 }
 
@@ -161,12 +174,14 @@ impl Route for Condensed<'_, '_, '_> {
         }
         self.shift.add(self.system.d, 1.0, &dy, &mut self.w);
         let soft = self.first;
+        let last = self.last.take();
         let (g, forces, w, shift) = (&self.compliance.g, &self.forces[..], &self.w, &self.shift);
         let all = Functionals { g, forces, w, shift };
         let p = soft.then(|| self.start(&y, until)).flatten();
-        let mut body = Reduced::new(self, all, y, p);
+        let mut body = Reduced { last, ..Reduced::new(self, all, y, p) };
         let left = newton::minimise(self.system.d, &mut body, soft, residuals, until)?;
-        let Reduced { change, taken, .. } = body;
+        let Reduced { change, taken, last, .. } = body;
+        self.last = last;
         self.compliance.subtract(&change, &mut v);
         let energy: f64 = v.iter().map(|v| v * v).sum();
         for (w, (change, taken)) in self.w.iter_mut().zip(change.iter().zip(&taken)) {
@@ -294,6 +309,7 @@ struct Reduced<'r, 'a, 'd, 'p> {
     /// The rest, D dy.
     taken: Vec<f64>,
     dw: Vec<f64>,
+    last: Option<Tangent>,
 }
 
 impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
@@ -305,7 +321,7 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
     ) -> Self {
         let start = y.iter().map(|y| y.head().abs()).collect();
         let (change, taken) = (vec![0.0; y.len()], vec![0.0; y.len()]);
-        Reduced { route, of, y, p, start, change, taken, dw: Vec::new() }
+        Reduced { route, of, y, p, start, change, taken, dw: Vec::new(), last: None }
     }
 
     /// All functionals take part.
@@ -343,47 +359,81 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
         Roots { columns, positive }
     }
 
-    /// L of E + R^T G R = L E L^T.
-    fn factored(&self, roots: &Roots) -> Result<Mat<f64>, SolveError> {
-        let mut system = self.stiffened(&roots.columns);
+    /// Puts the columns of R first that the `last` tangent begins with, and those of what presses most before the others. Returns how
+    /// many are the same as there.
+    fn reorder(&self, columns: &mut Vec<Root>, last: &[Root]) -> usize {
+        let mut rest: Vec<Option<Root>> = columns.drain(..).map(Some).collect();
+        // They are in the order of their functionals, with some taken away.
+        let starts: Vec<usize> = rest.iter().flatten().map(|(values, _)| values.start).collect();
+        for root in last {
+            let first = starts.partition_point(|start| *start < root.0.start);
+            let end = starts.partition_point(|start| *start <= root.0.start);
+            match rest[first..end].iter_mut().find(|other| other.as_ref() == Some(root)) {
+                Some(same) => columns.extend(same.take()),
+                None => break,
+            }
+        }
+        let kept = columns.len();
+        let least = |(values, _): &Root| {
+            let p = self.y[values.clone()].iter().map(|y| y.head());
+            p.fold(f64::INFINITY, f64::min)
+        };
+        columns.extend(rest.into_iter().flatten());
+        columns[kept..].sort_by(|a, b| least(b).total_cmp(&least(a)));
+        kept
+    }
+
+    /// R in some order, and L of E + R^T G R = L E L^T. Of the `last` one the columns are kept that come before the first change, if all
+    /// of E is positive.
+    fn factored(&self, mut roots: Roots, last: Option<&Tangent>) -> Result<Tangent, SolveError> {
+        let last = last.filter(|_| self.of.shift.is_none());
+        let kept = match last {
+            Some(last) => self.reorder(&mut roots.columns, &last.roots.columns),
+            None if self.of.shift.is_none() => self.reorder(&mut roots.columns, &[]),
+            None => 0,
+        };
+        let mut system = self.stiffened(&roots.columns, kept);
         let mut negative = roots.positive..system.nrows();
         for i in negative.clone() {
             system[(i, i)] -= 2.0;
         }
-        quasidefinite(system.as_mut(), roots.positive).map_err(|_| SolveError::Singular)?;
+        match last {
+            Some(last) => extend_cholesky(system.as_mut(), last.factor.submatrix(0, 0, kept, kept)),
+            None => quasidefinite(system.as_mut(), roots.positive),
+        }
+        .map_err(|_| SolveError::Singular)?;
         let is_loose = |i: usize| !(system[(i, i)] * system[(i, i)] > LOOSE);
-        if negative.any(is_loose) { Err(SolveError::Singular) } else { Ok(system) }
+        if negative.any(is_loose) {
+            return Err(SolveError::Singular);
+        }
+        Ok(Tangent { roots, factor: system })
     }
 
-    /// R and L of the tangent with the Hessian `at` an iterate. Where contact holds the body, and what is in contact does not, a little of
-    /// the springs of all pieces is added.
-    fn tangent(&self, at: &Derivatives) -> Result<(Roots, Mat<f64>), SolveError> {
-        let of = |hessian: &[DMatrix<f64>]| {
-            let roots = self.roots(hessian);
-            self.factored(&roots).map(|factor| (roots, factor))
-        };
-        match of(&at.hessian) {
+    /// The tangent with the Hessian `at` an iterate. Where contact holds the body, and what is in contact does not, a little of the
+    /// springs of all pieces is added.
+    fn tangent(&self, at: &Derivatives, last: Option<&Tangent>) -> Result<Tangent, SolveError> {
+        match self.factored(self.roots(&at.hessian), last) {
             Err(SolveError::Singular) if !self.of.shift.is_none() => {
-                of(&supported(self.route.system.d, at))
+                self.factored(self.roots(&supported(self.route.system.d, at)), None)
             }
             tangent => tangent,
         }
     }
 
-    /// The lower triangle of I + R^T G R.
-    fn stiffened(&self, roots: &[Root]) -> Mat<f64> {
+    /// The lower triangle of I + R^T G R, but for that of its first `kept` columns.
+    fn stiffened(&self, roots: &[Root], kept: usize) -> Mat<f64> {
         match roots.iter().map(|(values, _)| values.len()).max() {
             None => Mat::zeros(0, 0),
-            Some(..=2) => self.stiffened_by::<2>(roots),
-            Some(3) => self.stiffened_by::<3>(roots),
-            Some(4) => self.stiffened_by::<4>(roots),
-            Some(_) => self.stiffened_by::<6>(roots),
+            Some(..=2) => self.stiffened_by::<2>(roots, kept),
+            Some(3) => self.stiffened_by::<3>(roots, kept),
+            Some(4) => self.stiffened_by::<4>(roots, kept),
+            Some(_) => self.stiffened_by::<6>(roots, kept),
         }
     }
 
     /// [`Reduced::stiffened`] where a piece has up to W functionals, column by column: G R is added up from columns of G, which are
     /// contiguous.
-    fn stiffened_by<const W: usize>(&self, roots: &[Root]) -> Mat<f64> {
+    fn stiffened_by<const W: usize>(&self, roots: &[Root], kept: usize) -> Mat<f64> {
         let mut system = Mat::zeros(roots.len(), roots.len());
         // Entries beyond those of a piece are zero.
         let mut gr = vec![0.0; self.y.len() + W];
@@ -396,8 +446,13 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
         for j in (1..firsts.len()).rev() {
             firsts[j - 1] = firsts[j - 1].min(firsts[j]);
         }
-        for ((j, (values, root)), first) in roots.iter().enumerate().zip(firsts) {
-            let rows = first..self.y.len();
+        let before = entries[..kept].iter().fold(usize::MAX, |least, (start, _)| least.min(*start));
+        let entry = |(start, root): &(usize, [f64; W]), gr: &[f64]| {
+            let gr = &gr[*start..*start + W];
+            (0..W).fold(0.0, |sum, k| sum + root[k] * gr[k])
+        };
+        for ((j, (values, root)), first) in roots.iter().enumerate().zip(firsts).skip(kept) {
+            let rows = first.min(before)..self.y.len();
             gr[rows.clone()].fill(0.0);
             for (functional, &factor) in values.clone().zip(root) {
                 let g = &self.of.g.col_as_slice(functional)[rows.clone()];
@@ -406,11 +461,14 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
                 }
             }
             let column = &mut system.col_as_slice_mut(j)[j..];
-            for (sum, (start, root)) in column.iter_mut().zip(&entries[j..]) {
-                let gr = &gr[*start..*start + W];
-                *sum = (0..W).fold(0.0, |sum, k| sum + root[k] * gr[k]);
+            for (sum, of_row) in column.iter_mut().zip(&entries[j..]) {
+                *sum = entry(of_row, &gr);
             }
             column[0] += 1.0;
+            // The row of a new column in those that are kept.
+            for (i, of_row) in entries[..kept].iter().enumerate() {
+                system[(j, i)] = entry(of_row, &gr);
+            }
         }
         system
     }
@@ -485,13 +543,14 @@ impl Body for Reduced<'_, '_, '_, '_> {
             self.route.system.enters_step();
         }
         let s = self.s(at);
-        let (Roots { columns, positive }, factor) = self.tangent(at)?;
+        let tangent = self.tangent(at, self.last.as_ref())?;
+        let Tangent { roots: Roots { columns, positive }, factor } = &tangent;
         let gs = self.times_compliance(&s);
         let mut t =
             Col::from_fn(columns.len(), |i| product(&columns[i].1, &gs[columns[i].0.clone()]));
         let (l, mut column) = (factor.as_ref(), t.as_mat_mut());
         solve_lower_triangular_in_place(l, column.as_mut(), Par::Seq);
-        for i in positive..columns.len() {
+        for i in *positive..columns.len() {
             column[(i, 0)] = -column[(i, 0)];
         }
         solve_upper_triangular_in_place(l.transpose(), column.as_mut(), Par::Seq);
@@ -508,7 +567,7 @@ impl Body for Reduced<'_, '_, '_, '_> {
         self.of.shift.add(self.route.system.d, 1.0, &dy, &mut taken);
         let all = dw.iter().zip(&taken).map(|(dw, taken)| dw + taken);
         let curvature = -all.zip(&dy).map(|(dw, dy)| dw * dy).sum::<f64>();
-        self.dw = dw;
+        (self.dw, self.last) = (dw, Some(tangent));
         Ok(Step { dy, slope, curvature })
     }
 
@@ -530,6 +589,12 @@ type Root = (Range<usize>, DVector<f64>);
 struct Roots {
     columns: Vec<Root>,
     positive: usize,
+}
+
+/// R, and L of E + R^T G R = L E L^T.
+struct Tangent {
+    roots: Roots,
+    factor: Mat<f64>,
 }
 
 /// The stiffness, beside that of the body on the springs of the shift, below which a motion counts as free.

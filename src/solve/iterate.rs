@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 
 use crate::contact::discretization::{Discretization, Functional};
 use crate::contact::stress_points::Nodal;
-use crate::contact::{EdgeRule, Piece, residual};
+use crate::contact::{EdgeRule, residual};
 use crate::held::solvability::{Play, Slides};
 use crate::kernel::DoubleDouble;
 use crate::linear::system::System;
@@ -118,13 +118,13 @@ impl Iterate {
         }
         let Functional { values: forces, magnitudes, energy } =
             d.linear_residual_by(&Parts { heads: &heads, tails: &tails });
-        let in_doubles = |piece: &Piece| {
+        let mut p = Vec::with_capacity(system.functionals());
+        let mut p_magnitudes = Vec::with_capacity(system.functionals());
+        for piece in &d.contact {
             let with_tails = piece.p(&heads).into_iter().zip(piece.p0(&tails));
-            with_tails.map(|(p, of_tail)| DoubleDouble::from(p + of_tail)).collect::<Vec<_>>()
-        };
-        let mut p: Vec<DoubleDouble> = d.contact.iter().flat_map(in_doubles).collect();
-        let mut p_magnitudes: Vec<f64> =
-            d.contact.iter().flat_map(|piece| piece.p0_magnitudes(&heads)).collect();
+            p.extend(with_tails.map(|(p, of_tail)| DoubleDouble::from(p + of_tail)));
+            p_magnitudes.extend(piece.p0_magnitudes(&heads));
+        }
         // gamma times the pressure is small beside displacement and gap, and has few digits in doubles.
         let is_fine =
             matches!(d.rule, EdgeRule::Gauss(_)) || p.iter().zip(&p_magnitudes).any(has_few_digits);

@@ -175,8 +175,8 @@ fn joined(lines: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
             Some(before) => before.extend(line.into_iter().skip(1)),
             None => match joined.iter_mut().find(|other| line.last() == other.first()) {
                 Some(after) => {
-                    let rest = std::mem::replace(after, line);
-                    after.extend(rest.into_iter().skip(1));
+                    let before = line.len().saturating_sub(1);
+                    after.splice(0..0, line.into_iter().take(before));
                 }
                 None => joined.push(line),
             },
