@@ -112,7 +112,7 @@ fn loads(parts: &ProblemParts, space: &Space) -> Vec<[f64; 2]> {
         }
     }
     for &edge in mesh.outline() {
-        let e = mesh.triangle_edges()[edge.triangle][edge.local];
+        let e = mesh.number_of(edge);
         let traction = match parts.boundary.get(&e) {
             Some(Boundary::Loaded(traction) | Boundary::Supported(_, _, Some(traction))) => {
                 traction
