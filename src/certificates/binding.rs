@@ -15,10 +15,10 @@ use super::oscillation::{self, Oscillation};
 use super::parts::{Boundary, ProblemParts};
 use super::{adapt, build};
 use crate::contact::contact_line;
-use crate::held::rigid::Parts;
 use crate::kernel::{Material, Triangle};
 use crate::model::mesh::bisection::Refinement;
 use crate::model::mesh::length;
+use crate::model::rigid::Parts;
 use crate::model::{BoundaryEdge, Degree, Mesh, MeshError, Problem, Space};
 
 /// Numbers that differ by this, in units of the largest of their kind, are the same.

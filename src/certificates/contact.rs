@@ -18,11 +18,11 @@ use nalgebra::Vector2;
 use super::certificate::{self, turned};
 use super::field::Field;
 use super::parts::is_curved;
-use crate::contact::friction::Bound;
 use crate::contact::law::Law;
 use crate::contact::piece::Stretch;
 use crate::contact::{EdgeRule, Piece};
 use crate::kernel::edge_integral::positive_interval;
+use crate::model::law::Bound;
 use crate::model::{BoundaryEdge, Degree, Mesh, Problem};
 
 /// An edge of Gamma_C, or two parts of edges that face each other, with what the solution says there.

@@ -17,12 +17,12 @@ use super::sweeps::improve;
 use crate::contact::law::Law;
 use crate::contact::residual::add_internal_forces;
 use crate::contact::{EdgeRule, Pair, Piece};
-use crate::held::rigid::{Parts, free_motions, pins};
 use crate::linear::dense::inner;
 use crate::linear::factor::Factor;
 use crate::linear::matrix::{LowerTriangle, Neighbours, Numbering};
 use crate::linear::ordering::nested_dissection;
 use crate::model::mesh::length;
+use crate::model::rigid::{Parts, free_motions, pins};
 use crate::model::{BoundaryEdge, Degree, Problem, Space};
 use crate::solve::SolveError;
 
