@@ -240,7 +240,7 @@ impl Results {
     }
 
     /// Returns whether the solution is not proved, or something else that was asked for could not be had.
-    pub(crate) fn falls_short(&self) -> bool {
+    pub fn falls_short(&self) -> bool {
         self.reason.is_some() || !self.missing.is_empty()
     }
 
