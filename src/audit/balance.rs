@@ -51,24 +51,24 @@ type Chosen = ([FreeForce; 3], f64);
 /// The change of the pressures at both ends of edge `edge` of Gamma_C by equilibrium, in units of themselves.
 #[derive(Clone, Copy)]
 pub(crate) struct Change<S> {
-    pub edge: usize,
-    pub factors: [S; 2],
+    pub(crate) edge: usize,
+    pub(crate) factors: [S; 2],
 }
 
 /// The additions to the tractions of the certificate that equilibrium needs.
 pub(crate) struct Closed<S> {
     /// The forces that are added at both ends of each edge.
-    pub added: Vec<[Vector2<S>; 2]>,
-    pub changes: Vec<Change<S>>,
-    pub stops: Vec<Stop<S>>,
+    pub(crate) added: Vec<[Vector2<S>; 2]>,
+    pub(crate) changes: Vec<Change<S>>,
+    pub(crate) stops: Vec<Stop<S>>,
 }
 
 /// A support of triangle `root` against a motion that the conditions leave free: a force along its edge 0, at both ends.
 pub(crate) struct Stop<S> {
-    pub root: usize,
-    pub force: [Vector2<S>; 2],
+    pub(crate) root: usize,
+    pub(crate) force: [Vector2<S>; 2],
     /// Its force, or its moment over the size of the body, in units of the forces on the boundary.
-    pub share: f64,
+    pub(crate) share: f64,
 }
 
 /// A support against a motion that is free may take this part of the forces on the boundary: what the loads, which do no work on
@@ -89,7 +89,7 @@ pub(crate) struct SpanningTree {
 impl SpanningTree {
     /// Breadth first, from all held roots at once; edges inside a triangle that was cut, elsewhere than in the middle of an
     /// edge, come before all others.
-    pub fn new(certificate: &Certificate, owners: &[[Option<Owner>; 2]]) -> SpanningTree {
+    pub(crate) fn new(certificate: &Certificate, owners: &[[Option<Owner>; 2]]) -> SpanningTree {
         let count = certificate.pieces.len();
         let (mut found, mut parts) = (Vec::with_capacity(count), 0);
         let mut part_of = vec![usize::MAX; count];
@@ -179,11 +179,11 @@ fn held_roots(certificate: &Certificate, owners: &[[Option<Owner>; 2]]) -> Vec<u
 
 /// The edges of a certificate with the forces that it has on them.
 pub(crate) struct OnEdges<'a, S> {
-    pub certificate: &'a Certificate,
-    pub owners: &'a [[Option<Owner>; 2]],
-    pub points: &'a [Vector2<S>],
+    pub(crate) certificate: &'a Certificate,
+    pub(crate) owners: &'a [[Option<Owner>; 2]],
+    pub(crate) points: &'a [Vector2<S>],
     /// tau N at both ends.
-    pub forces: &'a dyn Fn(usize) -> [Vector2<S>; 2],
+    pub(crate) forces: &'a dyn Fn(usize) -> [Vector2<S>; 2],
 }
 
 impl<S: Enclosing> OnEdges<'_, S> {
@@ -192,7 +192,7 @@ impl<S: Enclosing> OnEdges<'_, S> {
     ///
     /// # Errors
     /// A connected part that neither Gamma_D nor pressures on Gamma_C balance.
-    pub fn close(
+    pub(crate) fn close(
         &self,
         tree: &SpanningTree,
         wrenches: &mut [Wrench<S>],

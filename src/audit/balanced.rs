@@ -302,7 +302,7 @@ impl<S: Enclosing> Balanced<S> {
     }
 
     /// The forces on triangle `t` towards its outside, and its body force.
-    pub fn loads_as_given(&self, certificate: &Certificate, t: usize) -> Loads<S> {
+    pub(crate) fn loads_as_given(&self, certificate: &Certificate, t: usize) -> Loads<S> {
         let piece = &certificate.pieces[t];
         let forces = outward(piece.edges, t, &self.topology, &self.forces);
         Loads { forces, body: piece.body.map(exactly) }

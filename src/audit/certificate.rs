@@ -498,7 +498,7 @@ pub struct Shape<S> {
 
 impl<S: Enclosing> Shape<S> {
     #[doc(hidden)]
-    pub fn bulges_of(&self, piece: &Piece) -> Option<[Vector2<S>; 3]> {
+    pub(crate) fn bulges_of(&self, piece: &Piece) -> Option<[Vector2<S>; 3]> {
         self.bulges.as_ref().map(|bulges| piece.edges.map(|e| bulges[e]))
     }
 

@@ -301,9 +301,9 @@ pub enum WrongLifting {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct LiftingValue<S> {
     /// L(w) - int m : eps(w)
-    pub middle: S,
+    pub(crate) middle: S,
     /// An upper bound of |w|_a.
-    pub norm: f64,
+    pub(crate) norm: f64,
 }
 
 /// w0 of the module's head: its Bernstein coefficients on the edges of Gamma_C, and what R(w0) lies between.
@@ -322,9 +322,9 @@ impl Cover {
 /// Bounds of omega from above and below: times g - v_n, and times w0_n; and of int s |chi|.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Missed {
-    pub open: [f64; 2],
-    pub covered: [f64; 2],
-    pub dragged: f64,
+    pub(crate) open: [f64; 2],
+    pub(crate) covered: [f64; 2],
+    pub(crate) dragged: f64,
 }
 
 /// A certificate whose triangles are in equilibrium, with what its data and its bound are worth for forces.

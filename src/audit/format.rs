@@ -208,16 +208,7 @@ pub fn audit(header: Header, arrays: &[u8]) -> Result<Audit, Refused> {
 /// # Errors
 /// A reason, in words, why they are none.
 pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), String> {
-    if header.format != FORMAT {
-        return Err(format!("the format is {}; expected {FORMAT}", header.format));
-    }
-    if header.statement != STATEMENT {
-        return Err("it states something else than this program can verify".to_owned());
-    }
-    let found = hash(bytes);
-    if found != header.hash {
-        return Err(format!("its hash is {found}; certificate.json says {:?}", header.hash));
-    }
+    check_header(header, bytes)?;
     let mut arrays = ArrayReader::new(&header.arrays, bytes)?;
     let tensors = arrays.next("tensors")?.map(|c| Material::tensor(c, None));
     let tensors: Vec<Material<f64>> = tensors.collect();
@@ -235,6 +226,41 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
         polygon: arrays.next("polygon")?.collect(),
         facing: BTreeMap::new(),
     };
+    add_pairs(&mut certificate, &mut arrays)?;
+    add_directions(&mut certificate, &mut arrays)?;
+    add_laws(&mut certificate, &mut arrays)?;
+    for (point, d) in arrays.next("frames")? {
+        if certificate.frames.insert(point, d).is_some() {
+            return Err(format!("two frames at point {point}"));
+        }
+    }
+    certificate.curved = match header.degree {
+        1 => None,
+        2 => Some(curved(&mut arrays)?),
+        other => return Err(format!("the degree of v is {other}; expected 1 or 2")),
+    };
+    let shares = arrays.next("shares")?.collect();
+    let forces = forces(header, &certificate, &mut arrays)?;
+    arrays.end()?;
+    Ok((certificate, Claim { shares, bound: header.bound, forces }))
+}
+
+fn check_header(header: &Header, bytes: &[u8]) -> Result<(), String> {
+    if header.format != FORMAT {
+        return Err(format!("the format is {}; expected {FORMAT}", header.format));
+    }
+    if header.statement != STATEMENT {
+        return Err("it states something else than this program can verify".to_owned());
+    }
+    let found = hash(bytes);
+    if found != header.hash {
+        return Err(format!("its hash is {found}; certificate.json says {:?}", header.hash));
+    }
+    Ok(())
+}
+
+/// Which edges face each other.
+fn add_pairs(certificate: &mut Certificate, arrays: &mut ArrayReader) -> Result<(), String> {
     for [e, other] in arrays.next::<[usize; 2]>("pairs")? {
         for [e, other] in [[e, other], [other, e]] {
             if certificate.facing.insert(e, other).is_some() {
@@ -242,6 +268,11 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
             }
         }
     }
+    Ok(())
+}
+
+/// The directions of contact and of supports that are not along normals.
+fn add_directions(certificate: &mut Certificate, arrays: &mut ArrayReader) -> Result<(), String> {
     for (e, d) in arrays.next::<(usize, [[f64; 2]; 2])>("directions")? {
         match certificate.edges.get_mut(e).map(|edge| &mut edge.role) {
             Some(Role::Contact { along: along @ None, .. }) => *along = Some(d),
@@ -251,6 +282,11 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
             _ => return Err(format!("a direction for edge {e}, which has none, or has one")),
         }
     }
+    Ok(())
+}
+
+/// The laws of contact other than that without friction.
+fn add_laws(certificate: &mut Certificate, arrays: &mut ArrayReader) -> Result<(), String> {
     for (e, number, [shear, beside]) in arrays.next::<(usize, usize, [[f64; 2]; 2])>("laws")? {
         match (certificate.edges.get_mut(e).map(|edge| &mut edge.role), number) {
             (Some(Role::Contact { law: law @ Law::Contact, .. }), 1..=3) => {
@@ -264,29 +300,19 @@ pub fn decode(header: &Header, bytes: &[u8]) -> Result<(Certificate, Claim), Str
             _ => return Err(format!("a law for edge {e}, which has none, or has one")),
         }
     }
-    for (point, d) in arrays.next("frames")? {
-        if certificate.frames.insert(point, d).is_some() {
-            return Err(format!("two frames at point {point}"));
-        }
-    }
-    match header.degree {
-        1 => {}
-        2 => {
-            let (bulges, data) = arrays.next::<([f64; 2], [f64; 2])>("bulges")?.unzip();
-            let prescribed = arrays.next("prescribed at cuts")?.map(given);
-            certificate.curved = Some(Curved {
-                at_cuts: arrays.next("displacement at cuts")?.collect(),
-                prescribed: prescribed.collect::<Result<_, _>>()?,
-                bulges,
-                data,
-            });
-        }
-        other => return Err(format!("the degree of v is {other}; expected 1 or 2")),
-    }
-    let shares = arrays.next("shares")?.collect();
-    let forces = forces(header, &certificate, &mut arrays)?;
-    arrays.end()?;
-    Ok((certificate, Claim { shares, bound: header.bound, forces }))
+    Ok(())
+}
+
+/// The part of a v of degree 2 that is not affine.
+fn curved(arrays: &mut ArrayReader) -> Result<Curved, String> {
+    let (bulges, data) = arrays.next::<([f64; 2], [f64; 2])>("bulges")?.unzip();
+    let prescribed = arrays.next("prescribed at cuts")?.map(given);
+    Ok(Curved {
+        at_cuts: arrays.next("displacement at cuts")?.collect(),
+        prescribed: prescribed.collect::<Result<_, _>>()?,
+        bulges,
+        data,
+    })
 }
 
 /// Motion, boundary and the axis of its weight; where the weight is 1, and the width over which it falls; what the force lies
@@ -302,24 +328,66 @@ fn forces(
     certificate: &Certificate,
     arrays: &mut ArrayReader,
 ) -> Result<Evidence, String> {
-    let (vertices, cuts) = (certificate.vertices.len(), certificate.cuts.len());
-    let edges = certificate.edges.len();
     let names = header.boundaries.clone();
-    let boundary = |number: usize| match number.checked_sub(1) {
+    let of = boundaries(&names, certificate, arrays)?;
+    let (targets, between) = targets(&names, arrays)?;
+    let Some((&of_cover, between)) = between.split_first() else {
+        let alone = !names.is_empty() || of.iter().any(Option::is_some);
+        return if alone {
+            Err("boundaries without forces".to_owned())
+        } else {
+            Ok(Evidence::default())
+        };
+    };
+    let named = certificate.edges.iter().zip(&of).all(|(edge, of)| !is_named(edge) || of.is_some());
+    if !named || targets[0].motion != Motion::Along(None) {
+        return Err("a force or an edge is that of no boundary".to_owned());
+    }
+    let mut all = displacements("w", targets.len(), certificate, arrays)?
+        .map(|(vertices, beyond)| Lifting { vertices, beyond });
+    let is_zero = |w: &Lifting| {
+        let beyond = w.beyond.iter().flatten().flatten();
+        w.vertices.iter().chain(beyond).all(|&w| w == [0.0; 2])
+    };
+    let cover = all.next().filter(|w| of_cover != [0.0; 2] || !is_zero(w));
+    let targets = &targets[1..];
+    let liftings = targets.iter().copied().zip(all).collect();
+    let (pairs, of_pairs) = dual_pairs(targets, certificate, arrays)?;
+    let between = Some(Between { cover: of_cover, liftings: between.to_vec(), pairs: of_pairs });
+    Ok(Evidence { names, of, cover, liftings, pairs, between })
+}
+
+/// A boundary by its number, from 1; 0 says that there is none.
+fn boundary(number: usize, names: &[String]) -> Result<Option<usize>, String> {
+    match number.checked_sub(1) {
         Some(k) if k >= names.len() => Err(format!("there is no boundary {number}")),
         found => Ok(found),
-    };
-    let mut of = vec![None; edges];
+    }
+}
+
+/// The boundary of each edge.
+fn boundaries(
+    names: &[String],
+    certificate: &Certificate,
+    arrays: &mut ArrayReader,
+) -> Result<Vec<Option<usize>>, String> {
+    let mut of = vec![None; certificate.edges.len()];
     for (e, number) in arrays.next::<(usize, usize)>("boundaries")? {
         if !certificate.edges.get(e).is_some_and(|edge| is_named(edge) && of[e].is_none()) {
             return Err(format!("edge {e} has a boundary twice, or holds nothing"));
         }
-        of[e] = boundary(number)?;
+        of[e] = boundary(number, names)?;
     }
-    let mut between = Vec::new();
-    let mut targets = Vec::new();
-    for entry in arrays.next::<ForceEntry>("forces")? {
-        let ([motion, of, axis], [from, to, width], ends) = entry;
+    Ok(of)
+}
+
+/// Each force, w0 first, and what it is said to lie between.
+fn targets(
+    names: &[String],
+    arrays: &mut ArrayReader,
+) -> Result<(Vec<ForceTarget>, Vec<[f64; 2]>), String> {
+    let (mut targets, mut between) = (Vec::new(), Vec::new());
+    for ([motion, of, axis], [from, to, width], ends) in arrays.next::<ForceEntry>("forces")? {
         let weight = match axis {
             0 if [from, to, width] == [0.0; 3] => None,
             // Its kinks lie one after the other.
@@ -334,52 +402,49 @@ fn forces(
             (3, None) => Motion::Turn,
             _ => return Err(format!("there is no motion {motion} with this weight")),
         };
-        let boundary = boundary(of)?;
-        // w0 comes first.
+        let boundary = boundary(of, names)?;
         if boundary.is_none() != targets.is_empty() {
             return Err("a force is that of no boundary".to_owned());
         }
         targets.push(ForceTarget { boundary, motion });
         between.push(ends);
     }
-    let Some((&of_cover, between)) = between.split_first() else {
-        let alone = !names.is_empty() || of.iter().any(Option::is_some);
-        return if alone {
-            Err("boundaries without forces".to_owned())
-        } else {
-            Ok(Evidence::default())
-        };
+    Ok((targets, between))
+}
+
+/// The values of a displacement at vertices; where it is quadratic, at cuts, with its bulges on edges, too.
+type Values = (Vec<[f64; 2]>, Option<[Vec<[f64; 2]>; 2]>);
+
+fn displacements(
+    prefix: &str,
+    count: usize,
+    certificate: &Certificate,
+    arrays: &mut ArrayReader,
+) -> Result<impl Iterator<Item = Values> + use<>, String> {
+    let [of_cuts, of_bulges] = ["at cuts", "bulges"].map(|what| format!("{prefix} {what}"));
+    let at_vertices = arrays.lists(prefix, count, certificate.vertices.len())?;
+    let beyond = if arrays.has(&of_bulges) {
+        let at_cuts = arrays.lists(&of_cuts, count, certificate.cuts.len())?;
+        let bulges = arrays.lists(&of_bulges, count, certificate.edges.len())?;
+        at_cuts.into_iter().zip(bulges).map(|(a, b)| Some([a, b])).collect()
+    } else {
+        vec![None; count]
     };
-    let named = certificate.edges.iter().zip(&of).all(|(edge, of)| !is_named(edge) || of.is_some());
-    if !named || targets[0].motion != Motion::Along(None) {
-        return Err("a force or an edge is that of no boundary".to_owned());
-    }
-    let (count, targets) = (targets.len(), targets.split_off(1));
-    let displacements = |arrays: &mut ArrayReader, prefix: &str, count: usize| {
-        let [of_cuts, of_bulges] = ["at cuts", "bulges"].map(|what| format!("{prefix} {what}"));
-        let at_vertices = arrays.lists(prefix, count, vertices)?;
-        let beyond = if arrays.has(&of_bulges) {
-            let at_cuts = arrays.lists(&of_cuts, count, cuts)?;
-            let bulges = arrays.lists(&of_bulges, count, edges)?;
-            at_cuts.into_iter().zip(bulges).map(|(a, b)| Some([a, b])).collect()
-        } else {
-            vec![None; count]
-        };
-        Ok::<_, String>(at_vertices.into_iter().zip(beyond))
-    };
-    let mut all =
-        displacements(arrays, "w", count)?.map(|(vertices, beyond)| Lifting { vertices, beyond });
-    let is_zero = |w: &Lifting| {
-        let beyond = w.beyond.iter().flatten().flatten();
-        w.vertices.iter().chain(beyond).all(|&w| w == [0.0; 2])
-    };
-    let cover = all.next().filter(|w| of_cover != [0.0; 2] || !is_zero(w));
-    let liftings = targets.iter().copied().zip(all).collect();
-    let of_pairs: Vec<(usize, [f64; 2])> = arrays.next("dual forces")?.collect();
-    let duals = displacements(arrays, "dual w", of_pairs.len())?;
-    let roles = arrays.lists("dual edges", of_pairs.len(), edges)?;
-    let mut pairs = Vec::with_capacity(of_pairs.len());
-    for ((&(force, _), (w, beyond)), roles) in of_pairs.iter().zip(duals).zip(roles) {
+    Ok(at_vertices.into_iter().zip(beyond))
+}
+
+/// Dual pairs for some of the forces, and what each is said to prove.
+fn dual_pairs(
+    targets: &[ForceTarget],
+    certificate: &Certificate,
+    arrays: &mut ArrayReader,
+) -> Result<(Vec<(ForceTarget, Certificate)>, Vec<[f64; 2]>), String> {
+    let of_pairs = arrays.next::<(usize, [f64; 2])>("dual forces")?;
+    let (forces, between): (Vec<usize>, Vec<[f64; 2]>) = of_pairs.unzip();
+    let duals = displacements("dual w", forces.len(), certificate, arrays)?;
+    let roles = arrays.lists("dual edges", forces.len(), certificate.edges.len())?;
+    let mut pairs = Vec::with_capacity(forces.len());
+    for ((force, (w, beyond)), roles) in forces.into_iter().zip(duals).zip(roles) {
         let target = targets.get(force).ok_or("a dual pair is for no force")?;
         let along = |(e, (number, numbers)): (usize, RoleEntry)| {
             Ok(match (role(e, number, numbers)?, certificate.edges[e].role) {
@@ -392,12 +457,7 @@ fn forces(
         let roles = roles.into_iter().enumerate().map(along).collect::<Result<_, String>>()?;
         pairs.push((*target, certificate.with_dual(w, beyond, roles)));
     }
-    let between = Some(Between {
-        cover: of_cover,
-        liftings: between.to_vec(),
-        pairs: of_pairs.into_iter().map(|(_, ends)| ends).collect(),
-    });
-    Ok(Evidence { names, of, cover, liftings, pairs, between })
+    Ok((pairs, between))
 }
 
 /// An edge that holds something has the name of its boundary.

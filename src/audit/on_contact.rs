@@ -9,19 +9,19 @@ use crate::kernel::contact_edge::integral_of_product;
 /// v and g on an edge of Gamma_C.
 pub(super) struct OnEdge<S> {
     /// v at both ends.
-    pub v: [Vector2<S>; 2],
+    pub(crate) v: [Vector2<S>; 2],
     /// g at both ends.
-    pub gap: [f64; 2],
+    pub(crate) gap: [f64; 2],
     /// The bulges of both; `None` where they are affine.
-    pub bulges: Option<(Vector2<S>, f64)>,
+    pub(crate) bulges: Option<(Vector2<S>, f64)>,
 }
 
 /// An edge of Gamma_C.
 pub(super) struct OnContact<S> {
     /// An upper bound of v_n - g, the Bernstein coefficients of it or of a multiple: none may be positive.
-    pub beyond: [S; 4],
+    pub(crate) beyond: [S; 4],
     /// 2 int tau_n (v_n - g)
-    pub term: S,
+    pub(crate) term: S,
 }
 
 /// Contact along the normal. All is in units of the length, which is needed only where there is a gap.

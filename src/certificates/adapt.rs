@@ -13,6 +13,7 @@
 //! length in place of one chord, which would have a gap of its own.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::time::Duration;
 
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
@@ -80,7 +81,7 @@ pub struct Adapted {
     /// Its bound, or why there is none.
     pub certified: Result<Continuous, CertifyError>,
     /// The time that the certificates and the meshes took, all levels together.
-    pub certifying: std::time::Duration,
+    pub certifying: Duration,
     /// All levels, from the coarsest on.
     pub levels: Vec<AdaptedLevel>,
     /// The number of the one that is given, from 0.
@@ -163,84 +164,49 @@ pub fn adapt_to(
     let of_solve = |phase| watcher(Stage::Solve(phase));
     let mut newest = problem.mesh.opposite_longest();
     let mut start: Option<Vec<[f64; 2]>> = None;
-    let (mut levels, mut times) = (Vec::new(), Times::default());
-    let mut certifying = std::time::Duration::ZERO;
+    let (mut levels, mut times, mut certifying) = (Vec::new(), Times::default(), Duration::ZERO);
     let mut before: Option<Best> = None;
     let (best, unmet) = loop {
         let level = levels.len();
         let course = Course::default().watched_by(&of_solve);
         let course = start.as_deref().map_or(course, |start| course.from_displacement(start));
-        let (solution, took) =
-            match (solve_along(&problem, method, settings, course), before.take()) {
-                (Ok(solved), best) => {
-                    before = best;
-                    solved
-                }
-                (Err(error), None) => return Err(AdaptError::Solve { level, error }),
-                (Err(error), Some(best)) => {
-                    // The residuals of the steps are on lines of their own.
-                    let error = error.to_string();
-                    let error = error.lines().next().unwrap_or_default();
-                    break (best, Some(format!("level {level} has no solution: {error}")));
-                }
-            };
-        times = times.plus(&took);
+        let solution = match (solve_along(&problem, method, settings, course), before.take()) {
+            (Ok((solution, took)), best) => {
+                (before, times) = (best, times.plus(&took));
+                solution
+            }
+            (Err(error), None) => return Err(AdaptError::Solve { level, error }),
+            (Err(error), Some(best)) => break (best, Some(without_solution(level, &error))),
+        };
         watcher(Stage::Certify(level));
-        let begin = std::time::Instant::now();
-        let certified = certify_with(&problem, &solution, &asked);
-        certifying += begin.elapsed();
+        let certified = timed(&mut certifying, || certify_with(&problem, &solution, &asked));
         let certified = match certified {
             Ok(certified) => certified,
             Err(error) => {
                 let unmet = Some(format!("level {level} has no certificate: {error}"));
-                let (off, reached) = (f64::INFINITY, f64::INFINITY);
-                let certified = Err(error);
-                let this = || Best { problem, solution, certified, level, off, reached };
+                let this = || Best::new(problem, solution, Err(error), level, force);
                 break (before.unwrap_or_else(this), unmet);
             }
         };
-        let (bound, relative) = (certified.bound, certified.relative);
-        let within = force.map(|boundary| within(&certified, boundary));
-        // What is to be small, and what the target compares.
-        let (off, reached) = within.map_or((bound, relative), |within| (within, within));
-        levels.push(AdaptedLevel {
-            unknowns: unknowns(&problem.mesh, method.degree),
-            triangles: problem.mesh.triangles().len(),
-            newton_steps: solution.newton.iterations(),
-            bound,
-            relative,
-            force: within.filter(|within| within.is_finite()),
-        });
-        let met = reached <= target.relative;
+        levels.push(AdaptedLevel::new(&problem, &solution, &certified, force));
         watcher(Stage::Refine);
-        let begin = std::time::Instant::now();
-        let finer = if met { Err(None) } else { finer(&problem, &newest, &certified, force) };
-        certifying += begin.elapsed();
+        let (_, reached) = off(&certified, force);
+        let is_met = reached <= target.relative;
+        let finer = || if is_met { Err(None) } else { finer(&problem, &newest, &certified, force) };
+        let finer = timed(&mut certifying, finer);
         start = finer.iter().map(|f| f.prolonged(&problem.mesh, &solution.displacement)).next();
+        let this = Best::new(problem.clone(), solution, Ok(certified), level, force);
         let best = match before.take() {
-            Some(best) if !met && best.off <= off => best,
-            _ => Best {
-                problem: problem.clone(),
-                solution,
-                certified: Ok(certified),
-                level,
-                off,
-                reached,
-            },
+            Some(best) if !is_met && best.off <= this.off => best,
+            _ => this,
         };
         let finer = match finer {
             Ok(finer) => finer,
             Err(unmet) => break (best, unmet),
         };
-        let far_smaller = FAR_SMALLER * target.max_unknowns as f64;
-        let is_small = (unknowns(&problem.mesh, method.degree) as f64) < far_smaller;
-        if level >= best.level + NO_BETTER && best.reached <= 1.0 && !is_small {
-            let what = force.map_or("the bound", |_| "what the force lies between");
-            break (best, Some(format!("{what} has not come nearer for {NO_BETTER} levels")));
-        }
-        if unknowns(&finer.mesh, method.degree) > target.max_unknowns {
-            let reason = "the next mesh has more unknowns than adapt.max_unknowns allows";
-            break (best, Some(reason.to_owned()));
+        let counts = [&problem.mesh, &finer.mesh].map(|mesh| unknowns(mesh, method.degree));
+        if let Some(unmet) = best.why_last(level, counts, target, force) {
+            break (best, Some(unmet));
         }
         newest = vec![0; finer.mesh.triangles().len()];
         problem = problem.refined(finer);
@@ -248,6 +214,45 @@ pub fn adapt_to(
     };
     let Best { problem, solution, certified, level, .. } = best;
     Ok((problem, Adapted { solution, times, certified, certifying, levels, level, unmet }))
+}
+
+/// The reason that there is no finer level; the residuals of the steps are on further lines of the error.
+fn without_solution(level: usize, error: &SolveError) -> String {
+    let error = error.to_string();
+    format!("level {level} has no solution: {}", error.lines().next().unwrap_or_default())
+}
+
+/// Adds the time that this takes.
+fn timed<T>(sum: &mut Duration, what: impl FnOnce() -> T) -> T {
+    let begin = std::time::Instant::now();
+    let found = what();
+    *sum += begin.elapsed();
+    found
+}
+
+/// The number that is to be small, and the one that the target compares.
+fn off(certified: &Continuous, force: Option<&str>) -> (f64, f64) {
+    let within = force.map(|boundary| within(certified, boundary));
+    within.map_or((certified.bound, certified.relative), |within| (within, within))
+}
+
+impl AdaptedLevel {
+    fn new(
+        problem: &Problem,
+        solution: &Solution,
+        certified: &Continuous,
+        force: Option<&str>,
+    ) -> AdaptedLevel {
+        let within = force.map(|boundary| within(certified, boundary));
+        AdaptedLevel {
+            unknowns: unknowns(&problem.mesh, solution.degree),
+            triangles: problem.mesh.triangles().len(),
+            newton_steps: solution.newton.iterations(),
+            bound: certified.bound,
+            relative: certified.relative,
+            force: within.filter(|within| within.is_finite()),
+        }
+    }
 }
 
 /// The level with what is to be small at its smallest so far, with its problem.
@@ -259,6 +264,37 @@ struct Best {
     off: f64,
     /// The number that the target is compared with.
     reached: f64,
+}
+
+impl Best {
+    fn new(
+        problem: Problem,
+        solution: Solution,
+        certified: Result<Continuous, CertifyError>,
+        level: usize,
+        force: Option<&str>,
+    ) -> Best {
+        let unknown = (f64::INFINITY, f64::INFINITY);
+        let (off, reached) = certified.as_ref().map_or(unknown, |certified| off(certified, force));
+        Best { problem, solution, certified, level, off, reached }
+    }
+
+    /// The reason that this level is the last, `next` being the unknowns of the mesh that would follow.
+    fn why_last(
+        &self,
+        level: usize,
+        [unknowns, next]: [usize; 2],
+        target: Target,
+        force: Option<&str>,
+    ) -> Option<String> {
+        let is_small = (unknowns as f64) < FAR_SMALLER * target.max_unknowns as f64;
+        if level >= self.level + NO_BETTER && self.reached <= 1.0 && !is_small {
+            let what = force.map_or("the bound", |_| "what the force lies between");
+            return Some(format!("{what} has not come nearer for {NO_BETTER} levels"));
+        }
+        let reason = "the next mesh has more unknowns than adapt.max_unknowns allows";
+        (next > target.max_unknowns).then(|| reason.to_owned())
+    }
 }
 
 /// The mesh of `problem`, refined where the bound, or what the force lies between, has its largest shares; or why there is none.

@@ -4,101 +4,151 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 
-use super::certificate::turned;
+use super::certificate::{is_oblique, turned};
 use super::contact::Contact;
 use super::field::Field;
 use super::parts::{Free, ProblemParts, held_along};
-use crate::model::BoundaryEdge;
 use crate::model::mesh::length;
 
 /// v: u with the prescribed values, and pushed out of the obstacle at the vertices of Gamma_C and, if it is quadratic, between
 /// them; on the edge k of Gamma_C by `further[k]` more than doubles ask for.
 pub(super) fn admissible(parts: &ProblemParts, u: &Field, further: &[f64]) -> Field {
-    let mut field = u.clone();
-    for (vertex, v) in field.vertices.iter_mut().enumerate() {
+    let size = u.vertices.iter().flatten().fold(0.0_f64, |max, u| max.max(u.abs()));
+    let out = Out { parts, further, size };
+    let mut v = u.clone();
+    hold(parts, &mut v.vertices);
+    settle(parts, &mut v);
+    out.push_vertices(&mut v.vertices);
+    if let Some(bulges) = &mut v.bulges {
+        parts.hold_between(bulges);
+        out.push_ends(&mut v.vertices, bulges);
+        out.push_between(&v.vertices, bulges);
+    }
+    out.part_bodies(&mut v);
+    v
+}
+
+/// Gives v the values that are prescribed at vertices.
+fn hold(parts: &ProblemParts, v: &mut [[f64; 2]]) {
+    for (vertex, v) in v.iter_mut().enumerate() {
         *v = match (parts.held_alone(vertex), parts.prescribed[vertex]) {
             (Some((d, w)), _) => held_along(d, w, *v),
             (None, [Some(x), Some(y)]) => [x, y],
             (None, _) => *v,
         };
     }
-    settle(parts, &mut field);
-    let v = &mut field.vertices;
-    let size = u.vertices.iter().flatten().fold(0.0_f64, |max, u| max.max(u.abs()));
-    let obstacles = || parts.contact.iter().zip(further).filter(|(edge, _)| !edge.is_pair());
-    let mut walls: BTreeMap<usize, Vec<Wall>> = BTreeMap::new();
-    for (edge, further) in obstacles() {
-        for (k, vertex) in parts.mesh.ends(edge.edge).into_iter().enumerate() {
-            let (n, gap) = (edge.directions[k], edge.gap[k]);
-            // Balls must see it.
-            let is_rounded = parts.frames.contains_key(&vertex) || is_tilted(n);
-            let scale = gap.abs() + if is_rounded { size } else { 0.0 };
-            let margin = 64.0 * f64::EPSILON * scale + further;
-            let (most, further) = (gap - margin, *further);
-            walls.entry(vertex).or_default().push(Wall { n, gap, further, most, margin });
+}
+
+/// What v is pushed out of.
+struct Out<'a> {
+    parts: &'a ProblemParts<'a>,
+    /// On each edge of Gamma_C, by how much more than doubles ask for.
+    further: &'a [f64],
+    /// The largest component of u.
+    size: f64,
+}
+
+impl Out<'_> {
+    fn edges(&self) -> impl Iterator<Item = (&Contact, f64)> {
+        self.parts.contact.iter().zip(self.further.iter().copied())
+    }
+
+    /// The edges in contact with obstacles.
+    fn obstacles(&self) -> impl Iterator<Item = (&Contact, f64)> {
+        self.edges().filter(|(edge, _)| !edge.is_pair())
+    }
+
+    fn push_vertices(&self, v: &mut [[f64; 2]]) {
+        let parts = self.parts;
+        for (&vertex, walls) in &mut self.walls() {
+            let free = parts.free_at(vertex);
+            let out = out_of(walls, v[vertex].into(), free);
+            v[vertex] = match (parts.frames.get(&vertex), parts.held_alone(vertex)) {
+                (Some(_), Some((d, w))) => held_along(d, w, out.into()),
+                _ => out.into(),
+            };
+            let all = walls.iter().all(|wall| wall.further == 0.0 && !is_oblique(wall.n.into()));
+            if all && matches!(free, Free::All) {
+                walls.sort_by(|a, b| b.gap.total_cmp(&a.gap));
+                walls.iter().for_each(|w| touch(w.n, w.gap, self.size, &mut v[vertex]));
+            }
         }
     }
-    for (&vertex, walls) in &walls {
-        let free = parts.free_at(vertex);
-        let out = out_of(walls, v[vertex].into(), free);
-        v[vertex] = match (parts.frames.get(&vertex), parts.held_alone(vertex)) {
-            (Some(_), Some((d, w))) => held_along(d, w, out.into()),
-            _ => out.into(),
-        };
-    }
-    for (&vertex, walls) in &mut walls {
-        let all = walls.iter().all(|wall| wall.further == 0.0 && !is_tilted(wall.n));
-        if all && matches!(parts.free_at(vertex), Free::All) {
-            walls.sort_by(|a, b| b.gap.total_cmp(&a.gap));
-            walls.iter().for_each(|wall| touch(wall.n, wall.gap, size, &mut v[vertex]));
+
+    /// The obstacles at each vertex.
+    fn walls(&self) -> BTreeMap<usize, Vec<Wall>> {
+        let mut walls: BTreeMap<usize, Vec<Wall>> = BTreeMap::new();
+        for (edge, further) in self.obstacles() {
+            for (k, vertex) in self.parts.mesh.ends(edge.edge).into_iter().enumerate() {
+                let (n, gap) = (edge.directions[k], edge.gap[k]);
+                // Balls must see it.
+                let is_rounded = self.parts.frames.contains_key(&vertex) || is_oblique(n.into());
+                let scale = gap.abs() + if is_rounded { self.size } else { 0.0 };
+                let margin = 64.0 * f64::EPSILON * scale + further;
+                walls.entry(vertex).or_default().push(Wall {
+                    n,
+                    gap,
+                    further,
+                    most: gap - margin,
+                    margin,
+                });
+            }
         }
+        walls
     }
-    if let Some(bulges) = &mut field.bulges {
-        parts.hold_between(bulges);
-        let number = |edge: BoundaryEdge| parts.mesh.triangle_edges()[edge.triangle][edge.local];
-        let at_ends = |v: &[[f64; 2]], edge: BoundaryEdge| {
-            parts.mesh.ends(edge).map(|vertex| Vector2::from(v[vertex]))
-        };
-        for (edge, further) in obstacles() {
-            let ends = parts.mesh.ends(edge.edge);
-            let bulge = Vector2::from(bulges[number(edge.edge)]);
-            let over =
-                Over::new(edge, (at_ends(&field.vertices, edge.edge), bulge), (size, *further));
-            let modulus = parts.material(edge.edge.triangle).mu();
-            let free = ends.map(|vertex| matches!(parts.free_at(vertex), Free::All));
+
+    /// Moves the ends of edges, where that costs less than a bulge.
+    fn push_ends(&self, v: &mut [[f64; 2]], bulges: &[[f64; 2]]) {
+        for (edge, further) in self.obstacles() {
+            let ends = self.parts.mesh.ends(edge.edge);
+            let over = self.over(edge, further, v, bulges);
+            let modulus = self.parts.material(edge.edge.triangle).mu();
+            let free = ends.map(|vertex| matches!(self.parts.free_at(vertex), Free::All));
             if let Some((k, step)) = over.at_an_end(edge, modulus, free) {
-                let v = &mut field.vertices[ends[k]];
+                let v = &mut v[ends[k]];
                 *v = (Vector2::from(*v) - edge.directions[k] * step).into();
             }
         }
-        for (edge, further) in obstacles() {
-            let bulge = &mut bulges[number(edge.edge)];
-            let v = (at_ends(&field.vertices, edge.edge), Vector2::from(*bulge));
-            let over = Over::new(edge, v, (size, *further));
+    }
+
+    fn push_between(&self, v: &[[f64; 2]], bulges: &mut [[f64; 2]]) {
+        for (edge, further) in self.obstacles() {
+            let over = self.over(edge, further, v, bulges);
+            let bulge = &mut bulges[self.parts.mesh.number_of(edge.edge)];
             let mean = (edge.directions[0] + edge.directions[1]) / 2.0;
             *bulge = (Vector2::from(*bulge) - mean * over.between(edge)).into();
-            if *further == 0.0 && !edge.turns() {
-                touch(edge.directions[0], edge.gap_bulge, size + edge.gap[0].abs(), bulge);
+            if further == 0.0 && !edge.turns() {
+                touch(edge.directions[0], edge.gap_bulge, self.size + edge.gap[0].abs(), bulge);
             }
         }
     }
-    let may_open = |edge: &Contact| edge.is_pair() && !edge.is_tied();
-    let pairs = || parts.contact.iter().zip(further).filter(|(edge, _)| may_open(edge));
-    for _ in 0..SWEEPS_TOGETHER {
-        let pressed = |contact: &Contact| contact.is_pressed() && !contact.is_sliver();
-        for (contact, further) in pairs().filter(|(contact, _)| pressed(contact)) {
-            move_apart(parts, contact, &mut field, (size, *further), true);
+
+    fn over(&self, edge: &Contact, further: f64, v: &[[f64; 2]], bulges: &[[f64; 2]]) -> Over {
+        let mesh = self.parts.mesh;
+        let at_ends = mesh.ends(edge.edge).map(|vertex| Vector2::from(v[vertex]));
+        let bulge = Vector2::from(bulges[mesh.number_of(edge.edge)]);
+        Over::new(edge, (at_ends, bulge), (self.size, further))
+    }
+
+    /// Moves bodies together that press each other, and apart where they go through each other.
+    fn part_bodies(&self, v: &mut Field) {
+        let (parts, size) = (self.parts, self.size);
+        let pairs = || self.edges().filter(|(edge, _)| edge.is_pair() && !edge.is_tied());
+        for _ in 0..SWEEPS_TOGETHER {
+            let pressed = |contact: &Contact| contact.is_pressed() && !contact.is_sliver();
+            for (contact, further) in pairs().filter(|(contact, _)| pressed(contact)) {
+                move_apart(parts, contact, v, (size, further), true);
+            }
+        }
+        for _ in 0..SWEEPS {
+            let moved = pairs().fold(false, |moved, (contact, further)| {
+                move_apart(parts, contact, v, (size, further), false) || moved
+            });
+            if !moved {
+                break;
+            }
         }
     }
-    for _ in 0..SWEEPS {
-        let moved = pairs().fold(false, |moved, (contact, further)| {
-            move_apart(parts, contact, &mut field, (size, *further), false) || moved
-        });
-        if !moved {
-            break;
-        }
-    }
-    field
 }
 
 /// Puts v on the obstacle where it is pressed on both sides, and to rest across where it sticks: the method gives way there a little, on
@@ -140,7 +190,7 @@ fn settle(parts: &ProblemParts, v: &mut Field) {
     }
     let Some(bulges) = &mut v.bulges else { return };
     for edge in obstacles() {
-        let bulge = &mut bulges[parts.mesh.triangle_edges()[edge.edge.triangle][edge.edge.local]];
+        let bulge = &mut bulges[parts.mesh.number_of(edge.edge)];
         let [a, b] = parts.mesh.ends(edge.edge).map(|vertex| Vector2::from(vertices[vertex]));
         let middle = (a + b) / 2.0 + Vector2::from(*bulge);
         let d = (edge.directions[0] + edge.directions[1]) / 2.0;
@@ -202,7 +252,7 @@ fn move_apart(
             }
         }
         if quadratic {
-            let number = mesh.triangle_edges()[side.edge.triangle][side.edge.local];
+            let number = mesh.number_of(side.edge);
             add(Err(number), along, [0.0, 2.0, 0.0]);
         }
     }
@@ -235,11 +285,6 @@ fn move_apart(
         moved = true;
     }
     moved
-}
-
-/// n is not along an axis.
-fn is_tilted(n: Vector2<f64>) -> bool {
-    n[0] != 0.0 && n[1] != 0.0
 }
 
 /// Puts v, which may be `size` large, on the obstacle to the last bit, where it is there but for rounding, and n is along an
@@ -288,7 +333,6 @@ fn out_of(walls: &[Wall], v: Vector2<f64>, free: Free) -> Vector2<f64> {
             for b in &n[..k] {
                 let sine = a.n.perp(&b.n);
                 if sine.abs() > 1e-6 {
-                    let turned = |n: Vector2<f64>| Vector2::new(-n.y, n.x);
                     places.push((turned(a.n) * b.most - turned(b.n) * a.most) / sine);
                 }
             }
@@ -341,7 +385,7 @@ impl Over {
         let middle = (v[0] + v[1]) / 2.0 + bulge * 2.0;
         let gap = [g, (g + h) / 2.0 + 2.0 * edge.gap_bulge, h];
         let of_part = |part| coefficients(&[v[0], middle, v[1]], &d, &gap, part);
-        let tilted = if is_tilted(d[0]) || is_tilted(d[1]) { size } else { 0.0 };
+        let tilted = if d.into_iter().any(|d| is_oblique(d.into())) { size } else { 0.0 };
         let largest = v[0].dot(&d[0]).abs() + v[1].dot(&d[1]).abs() + bulge.dot(&d[0]).abs();
         let scale = largest + tilted + g.abs() + h.abs() + edge.gap_bulge.abs();
         Over {

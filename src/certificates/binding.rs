@@ -15,10 +15,10 @@ use super::oscillation::{self, Oscillation};
 use super::parts::{Boundary, ProblemParts};
 use super::{adapt, build};
 use crate::contact::contact_line;
-use crate::held::rigid::Parts;
 use crate::kernel::{Material, Triangle};
 use crate::model::mesh::bisection::Refinement;
 use crate::model::mesh::length;
+use crate::model::rigid::Parts;
 use crate::model::{BoundaryEdge, Degree, Mesh, MeshError, Problem, Space};
 
 /// Numbers that differ by this, in units of the largest of their kind, are the same.
@@ -296,7 +296,7 @@ fn named(
 /// The edges of the outline by their ends: their numbers, and the ends with the body on the left.
 fn sides(mesh: &Mesh) -> BTreeMap<[usize; 2], (usize, [usize; 2])> {
     let side = |&edge: &BoundaryEdge| {
-        let (ends, number) = (mesh.ends(edge), mesh.triangle_edges()[edge.triangle][edge.local]);
+        let (ends, number) = (mesh.ends(edge), mesh.number_of(edge));
         (sorted(ends), (number, ends))
     };
     mesh.outline().iter().map(side).collect()
@@ -346,7 +346,7 @@ impl Comparison<'_> {
         let Comparison { certificate, parts: &ProblemParts { mesh, .. }, .. } = *self;
         let on = |name: &String| -> BTreeSet<usize> {
             let edges = mesh.edges_of(name).unwrap_or_default().iter();
-            edges.map(|edge| mesh.triangle_edges()[edge.triangle][edge.local]).collect()
+            edges.map(|&edge| mesh.number_of(edge)).collect()
         };
         let on: Vec<BTreeSet<usize>> = forces.names.iter().map(on).collect();
         for (e, (edge, of)) in certificate.edges.iter().zip(&forces.of).enumerate() {
@@ -538,7 +538,7 @@ impl Comparison<'_> {
         let other = other.ok_or_else(differs)?;
         let (number, [_, b]) = self.side(other).ok_or_else(differs)?;
         let mesh = parts.mesh;
-        if number != mesh.triangle_edges()[side.edge.triangle][side.edge.local] {
+        if number != mesh.number_of(side.edge) {
             return Err(differs());
         }
         let [u, v] = self.places_on(other, b);

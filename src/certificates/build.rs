@@ -17,9 +17,9 @@ use super::quarters::{halved, quarters};
 use super::tractions::{moments, stresses, with_force};
 use crate::kernel::composite::Affine;
 use crate::kernel::{Enclosing, Triangle};
+use crate::model::Mesh;
 use crate::model::boundary_normals::SmoothBoundary;
 use crate::model::mesh::length;
-use crate::model::{BoundaryEdge, Mesh};
 
 /// A certificate with equilibrated tractions, before any improvement.
 pub(super) struct Built {
@@ -111,7 +111,7 @@ impl Built {
                 continue;
             }
             for &edge in mesh.edges_of(name).unwrap_or_default() {
-                let whole = mesh.triangle_edges()[edge.triangle][edge.local];
+                let whole = mesh.number_of(edge);
                 along.of(whole).iter().for_each(|&(e, _)| line.of[e] = Some(line.names.len()));
             }
             line.names.push(name.clone());
@@ -119,7 +119,7 @@ impl Built {
         let mut before: Option<(usize, usize)> = None;
         let mut arc = 0.0;
         for contact in &parts.contact {
-            let whole = mesh.triangle_edges()[contact.edge.triangle][contact.edge.local];
+            let whole = mesh.number_of(contact.edge);
             for &(e, [s, t]) in along.of(whole) {
                 let (ends, Some(name)) = (edges[e].ends, line.of[e]) else { continue };
                 if !contact.sides[0].has((s + t) / 2.0) {
@@ -178,8 +178,7 @@ impl Built {
             }
             (whole, all)
         };
-        let number = |edge: &BoundaryEdge| mesh.triangle_edges()[edge.triangle][edge.local];
-        Along(mesh.outline().iter().map(number).map(on).collect())
+        Along(mesh.outline().iter().map(|&edge| on(mesh.number_of(edge))).collect())
     }
 
     /// Gives the edges of Gamma_C their pressures and data, and to each what faces it.
@@ -214,7 +213,7 @@ impl Built {
             for part in &contact.parts {
                 let there = contact.sides.iter().filter_map(|side| {
                     let x = side.middle(part.ends);
-                    let whole = parts.mesh.triangle_edges()[side.edge.triangle][side.edge.local];
+                    let whole = parts.mesh.number_of(side.edge);
                     let inside = |(_, [s, t]): &&(usize, [f64; 2])| *s < x && x < *t;
                     along.of(whole).iter().find(inside).map(|&(e, _)| e)
                 });

@@ -18,11 +18,11 @@ use nalgebra::Vector2;
 use super::certificate::{self, turned};
 use super::field::Field;
 use super::parts::is_curved;
-use crate::contact::friction::Bound;
 use crate::contact::law::Law;
 use crate::contact::piece::Stretch;
 use crate::contact::{EdgeRule, Piece};
 use crate::kernel::edge_integral::positive_interval;
+use crate::model::law::Bound;
 use crate::model::{BoundaryEdge, Degree, Mesh, Problem};
 
 /// An edge of Gamma_C, or two parts of edges that face each other, with what the solution says there.
@@ -627,7 +627,7 @@ impl Contact {
     pub(crate) fn along_side(&self, mesh: &Mesh, i: usize, field: &Field) -> [Vector2<f64>; 3] {
         let side = &self.sides[i];
         let [a, b] = mesh.ends(side.edge).map(|vertex| Vector2::from(field.vertices[vertex]));
-        let number = mesh.triangle_edges()[side.edge.triangle][side.edge.local];
+        let number = mesh.number_of(side.edge);
         let bulge = field.bulges.as_ref().map_or(Vector2::zeros(), |all| all[number].into());
         let middle = (a + b) / 2.0 + bulge * 2.0;
         let [s, t] = side.places;

@@ -17,12 +17,12 @@ use super::sweeps::improve;
 use crate::contact::law::Law;
 use crate::contact::residual::add_internal_forces;
 use crate::contact::{EdgeRule, Pair, Piece};
-use crate::held::rigid::{Parts, free_motions, pins};
 use crate::linear::dense::inner;
 use crate::linear::factor::Factor;
 use crate::linear::matrix::{LowerTriangle, Neighbours, Numbering};
 use crate::linear::ordering::nested_dissection;
 use crate::model::mesh::length;
+use crate::model::rigid::{Parts, free_motions, pins};
 use crate::model::{BoundaryEdge, Degree, Problem, Space};
 use crate::solve::SolveError;
 
@@ -132,6 +132,16 @@ fn independent(demands: &[Prescription]) -> (Option<Prescription>, Option<Prescr
     (Some(first), demands.iter().find(across).copied())
 }
 
+/// The vector with these components along two directions.
+fn meeting([(d, along_d), (e, along_e)]: [(Vector2<f64>, f64); 2]) -> Vector2<f64> {
+    if is_oblique(d.into()) || is_oblique(e.into()) {
+        let right = |d: Vector2<f64>| Vector2::new(d[1], -d[0]);
+        return (right(e) * along_d - right(d) * along_e) / d.perp(&e);
+    }
+    // d or e has component c alone.
+    [0, 1].map(|c| if d[c] != 0.0 { d[c] * along_d } else { e[c] * along_e }).into()
+}
+
 /// How many times as stiff as those of the method springs are: of softer ones w opens, and what ties it costs energy; of ten times stiffer
 /// ones the energy is the same to a thousandth.
 const STIFFNESS: f64 = 30.0;
@@ -165,7 +175,7 @@ fn demands(
     };
     for (boundary, name) in names.iter().enumerate() {
         for &edge in parts.mesh.edges_of(name).unwrap_or_default() {
-            let e = parts.mesh.triangle_edges()[edge.triangle][edge.local];
+            let e = parts.mesh.number_of(edge);
             match parts.boundary.get(&e) {
                 Some(&Boundary::Held(held, _)) => {
                     let axes = [Vector2::x(), Vector2::y()];
@@ -323,27 +333,26 @@ impl<'a> Lifter<'a> {
     /// # Errors
     /// A place where two boundaries ask for what is not to be had together.
     pub(crate) fn field(&self, target: ForceTarget) -> Result<Vec<[f64; 2]>, String> {
+        let prescribed = self.prescribed(target)?;
+        let mut field = prescribed.clone();
+        self.relax(&mut field, target);
+        self.prescribe_again(&mut field, &prescribed);
+        if target.boundary.is_none() {
+            self.cover(&mut field);
+        }
+        Ok(field)
+    }
+
+    /// The values that are demanded of w, and 0 at all other nodes.
+    fn prescribed(&self, target: ForceTarget) -> Result<Vec<[f64; 2]>, String> {
         let mut field = vec![[0.0; 2]; self.space.nodes().len()];
         for (&node, demands) in &self.demands {
             let value = |demand: &Prescription| self.value(node, demand, target);
-            let w =
-                match independent(demands) {
-                    (Some(a), Some(b)) => {
-                        let (d, e) = (a.direction, b.direction);
-                        let right = |d: Vector2<f64>| Vector2::new(d[1], -d[0]);
-                        let axes = |d: Vector2<f64>| !is_oblique(d.into());
-                        if axes(d) && axes(e) {
-                            // d or e has component c alone.
-                            Vector2::from([0, 1].map(|c| {
-                                if d[c] != 0.0 { d[c] * value(&a) } else { e[c] * value(&b) }
-                            }))
-                        } else {
-                            (right(e) * value(&a) - right(d) * value(&b)) / d.perp(&e)
-                        }
-                    }
-                    (Some(a), None) => a.direction * (value(&a) / a.direction.dot(&a.direction)),
-                    _ => continue,
-                };
+            let w = match independent(demands) {
+                (Some(a), Some(b)) => meeting([&a, &b].map(|of| (of.direction, value(of)))),
+                (Some(a), None) => a.direction * (value(&a) / a.direction.dot(&a.direction)),
+                _ => continue,
+            };
             // All contact boundaries together yield to what holds.
             if target.boundary.is_some() {
                 let off = |demand: &&Prescription| {
@@ -356,26 +365,28 @@ impl<'a> Lifter<'a> {
             }
             field[node] = w.into();
         }
-        // -K w on the free unknowns.
+        Ok(field)
+    }
+
+    /// Gives the free unknowns the least energy beside what is prescribed: K x = -K w.
+    fn relax(&self, field: &mut [[f64; 2]], target: ForceTarget) {
         let mut right = vec![[0.0; 2]; field.len()];
-        add_internal_forces(&self.space, &self.parts.problem.material, &field, &mut right);
+        add_internal_forces(&self.space, &self.parts.problem.material, field, &mut right);
         for piece in &self.parts.tied {
-            let opens: Vec<f64> = piece
-                .jumps(&field)
-                .into_iter()
-                .enumerate()
-                .map(|(i, jump)| jump - self.jump(piece, i, target))
-                .collect();
+            let jumps = piece.jumps(field).into_iter().enumerate();
+            let opens: Vec<f64> = jumps.map(|(i, w)| w - self.jump(piece, i, target)).collect();
             let forces = springs(piece) * DVector::from_vec(opens);
             piece.add_contact(forces.as_slice(), &mut right);
         }
         right.as_flattened_mut().iter_mut().for_each(|r| *r = -*r);
-        let prescribed = field.clone();
         let mut x = self.numbering.gather(&right);
         self.factor.forward(&mut x);
         self.factor.backward(&mut x);
-        self.numbering.scatter(&x, &mut field);
-        // Turning a vector into a frame and back rounds what is prescribed.
+        self.numbering.scatter(&x, field);
+    }
+
+    /// Turning a vector into a frame and back rounds what is prescribed.
+    fn prescribe_again(&self, field: &mut [[f64; 2]], prescribed: &[[f64; 2]]) {
         for (&node, demands) in &self.demands {
             if demands.iter().all(|demand| !is_oblique(demand.direction.into())) {
                 for c in (0..2).filter(|&c| demands.iter().any(|d| d.direction[c] != 0.0)) {
@@ -383,36 +394,38 @@ impl<'a> Lifter<'a> {
                 }
             }
         }
-        // w0 is 1 where w is free, too: it need not have the least energy.
-        if target.boundary.is_none() {
-            for OnContact { edge, boundary, side, directions, .. } in
-                on_contact(self.parts, self.names, |k| !self.parts.contact[k].is_tied())
-            {
-                let share = self.shares[boundary][side];
-                for (a, node) in self.space.edge_nodes(edge).into_iter().enumerate() {
-                    let (d, w) = (directions[a], Vector2::from(field[node]));
-                    let along = match self.demands.get(&node) {
-                        None => d,
-                        Some(held) if held.iter().all(|demand| demand.what.yields()) => d,
-                        // A body that another one holds may be held across contact there, and move the other way.
-                        Some(held) if share != 1.0 => match independent(held) {
-                            (Some(one), None)
-                                if held.iter().all(|demand| demand.what == What::Support) =>
-                            {
-                                Vector2::new(-one.direction[1], one.direction[0])
-                            }
-                            _ => continue,
-                        },
-                        Some(_) => continue,
-                    };
-                    let moved = along.dot(&d);
-                    if moved.abs() > 0.5 {
-                        field[node] = (w + along * ((share - w.dot(&d)) / moved)).into();
-                    }
+    }
+
+    /// Makes w0 1 along contact where w is free, too: w0 need not have the least energy.
+    fn cover(&self, field: &mut [[f64; 2]]) {
+        let may_open = |k: usize| !self.parts.contact[k].is_tied();
+        for on in on_contact(self.parts, self.names, may_open) {
+            let share = self.shares[on.boundary][on.side];
+            for (node, d) in self.space.edge_nodes(on.edge).into_iter().zip(on.directions) {
+                let Some(along) = self.free_along(node, d, share) else { continue };
+                let (moved, w) = (along.dot(&d), Vector2::from(field[node]));
+                if moved.abs() > 0.5 {
+                    field[node] = (w + along * ((share - w.dot(&d)) / moved)).into();
                 }
             }
         }
-        Ok(field)
+    }
+
+    /// The direction in which w0 can be moved at a node of contact along d. A body that another one holds may be held across
+    /// contact there, and move the other way.
+    fn free_along(&self, node: usize, d: Vector2<f64>, share: f64) -> Option<Vector2<f64>> {
+        let Some(held) = self.demands.get(&node) else { return Some(d) };
+        if held.iter().all(|demand| demand.what.yields()) {
+            return Some(d);
+        }
+        match independent(held) {
+            (Some(one), None)
+                if share != 1.0 && held.iter().all(|demand| demand.what == What::Support) =>
+            {
+                Some(turned(one.direction))
+            }
+            _ => None,
+        }
     }
 
     /// The dual pair of `certificates::dual`: a given w, and a stress rho in equilibrium near C eps of our own displacement for

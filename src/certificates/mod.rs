@@ -56,10 +56,10 @@ pub use signorini_audit::{dual, forces, proof};
 
 use self::proof::{Piece, Role};
 pub use self::quantities::ProvedQuantities;
-use crate::contact::friction::Bound;
 use crate::contact::law::Law;
 use crate::kernel::{Ball, Scalar, Triangle};
 use crate::memory;
+use crate::model::law::Bound;
 use crate::model::{Degree, Mesh, Problem};
 use crate::quote::quoted;
 use crate::results::Solution;

@@ -77,16 +77,15 @@ impl<'a> ProblemParts<'a> {
             return Err(CertifyError::Unsupported(why));
         }
         let mesh = &problem.mesh;
-        let number = |edge: BoundaryEdge| mesh.triangle_edges()[edge.triangle][edge.local];
         let directions = SupportDirections { known: Vec::new(), rounding: constraints.rounding() };
         let mut supports = Conditions { mesh, smooth: None, directions };
         let mut boundary: BTreeMap<usize, Boundary> =
-            mesh.outline().iter().map(|&edge| (number(edge), Boundary::Free)).collect();
+            mesh.outline().iter().map(|&edge| (mesh.number_of(edge), Boundary::Free)).collect();
         for (name, condition) in &problem.conditions {
             // The names were found when the problem was discretised.
             for &edge in mesh.edges_of(name).unwrap_or_default() {
                 if let Some(what) = supports.on_edge(name, condition, edge)? {
-                    boundary.insert(number(edge), what);
+                    boundary.insert(mesh.number_of(edge), what);
                 }
             }
         }
@@ -219,7 +218,7 @@ impl<'a> ProblemParts<'a> {
                 continue;
             }
             for &edge in self.mesh.edges_of(name).unwrap_or_default() {
-                let e = self.mesh.triangle_edges()[edge.triangle][edge.local];
+                let e = self.mesh.number_of(edge);
                 let Some(Boundary::Supported(d, ..)) = self.boundary.get(&e) else { continue };
                 let is_held = |vertex: usize| match self.frames.get(&vertex) {
                     Some(frame) => frame == d,
@@ -364,7 +363,7 @@ fn lines(
     let mut lines: Vec<OnLine> = Vec::new();
     for (k, edge) in contact.iter().enumerate() {
         for (i, side) in edge.sides.iter().enumerate() {
-            let e = mesh.triangle_edges()[side.edge.triangle][side.edge.local];
+            let e = mesh.number_of(side.edge);
             let line = match boundary.get(&e) {
                 Some(&Boundary::Contact(line)) => line,
                 _ => {

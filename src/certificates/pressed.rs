@@ -19,12 +19,12 @@ use super::errors::CertifyError;
 use super::parts::{Boundary, ProblemParts};
 use super::tractions::load;
 use crate::contact::residual::add_internal_forces;
-use crate::held::rigid::{FreeMotion, Parts, pins};
 use crate::linear::dense::{dot, inner, singular_vectors};
 use crate::linear::factor::Factor;
 use crate::linear::matrix::{LowerTriangle, Neighbours, Numbering};
 use crate::linear::ordering::nested_dissection;
 use crate::model::constraints::Constraints;
+use crate::model::rigid::{FreeMotion, Parts, pins};
 use crate::model::{BoundaryEdge, Degree, Space};
 use crate::solve::SolveError;
 
@@ -112,7 +112,7 @@ fn loads(parts: &ProblemParts, space: &Space) -> Vec<[f64; 2]> {
         }
     }
     for &edge in mesh.outline() {
-        let e = mesh.triangle_edges()[edge.triangle][edge.local];
+        let e = mesh.number_of(edge);
         let traction = match parts.boundary.get(&e) {
             Some(Boundary::Loaded(traction) | Boundary::Supported(_, _, Some(traction))) => {
                 traction

@@ -284,13 +284,13 @@ pub(super) fn prove(
     // Those in M^2.
     let contact = state.on_contact.iter().map(|term| term.upper());
     let shares = proof.shares.iter().zip(contact).map(|(share, contact)| (share + contact) / 4.0);
-    let certified = (&forces, &*shares.collect::<Vec<f64>>());
-    let bounds = (parts, built);
-    let (list, mut evidence, limits) =
-        list(bounds, solution.degree, &line.names, certified, (&open, asked));
+    let shares: Vec<f64> = shares.collect();
+    let (names, forces, shares, degree) = (&line.names, &forces, &shares, solution.degree);
+    let prover = Prover { parts, built, degree, names, forces, shares, asked };
+    let (list, mut evidence, limits) = prover.list(&open);
     let mut list: Vec<Quantity> = list
         .into_iter()
-        .map(|(name, boundary, weight, interval)| {
+        .map(|(Question { name, boundary, weight }, interval)| {
             let boundary = line.names[boundary].clone();
             let value = match weight {
                 Some(weight) => weighted(solution, &boundary, weight),
@@ -494,154 +494,189 @@ fn peak(force: &Quantity, zones: &[Zone], line: &Line, solution: &Solution) -> O
     Some(Quantity { name, boundary, weight: None, value, interval })
 }
 
-/// A number of a boundary between two others, or why not.
-type Found = (Name, usize, Option<Ramp>, Result<[f64; 2], String>);
+/// A number of a boundary that is asked for.
+#[derive(Clone, Copy)]
+struct Question {
+    name: Name,
+    boundary: usize,
+    weight: Option<Ramp>,
+}
 
-/// Forces, moments and reactions of all boundaries, with what triangles contribute to the width of those by dual pairs; `shares`
-/// are those of the triangles in M^2.
-fn list(
-    (parts, built): (&ProblemParts, &Built),
+/// A number of a boundary between two others, or why not.
+type Found = (Question, Result<[f64; 2], String>);
+
+/// How contact acts on a boundary.
+#[derive(Clone, Copy, Default)]
+struct Acts {
+    /// The axis along which it acts, with its sign: then the force says all of its components.
+    axis: Option<(usize, f64)>,
+    /// Bodies that are tied pull, too.
+    pulls: bool,
+}
+
+/// Proves forces, moments and reactions.
+struct Prover<'a> {
+    parts: &'a ProblemParts<'a>,
+    built: &'a Built,
     degree: Degree,
-    names: &[String],
-    (forces, shares): (&Forces<Ball>, &[f64]),
-    (open, asked_for): (&[bool], &Asked),
-) -> (Vec<Found>, Evidence, Vec<f64>) {
-    let mut asked: Vec<(Name, usize, Option<Ramp>)> = Vec::new();
-    // The direction of contact of a boundary, if it is along an axis: then the force says all of its components.
-    let mut axes = vec![None; names.len()];
-    // Bodies that are tied on it pull, too.
-    let mut pulls = vec![false; names.len()];
-    for (boundary, name) in names.iter().enumerate() {
+    names: &'a [String],
+    forces: &'a Forces<'a, Ball>,
+    /// The shares of the triangles in M^2.
+    shares: &'a [f64],
+    asked: &'a Asked,
+}
+
+impl Prover<'_> {
+    /// Forces, moments and reactions of all boundaries, with what triangles contribute to the width of those by dual pairs; w
+    /// is free on the `open` edges of Gamma_C.
+    fn list(&self, open: &[bool]) -> (Vec<Found>, Evidence, Vec<f64>) {
+        let (questions, acts): (Vec<_>, Vec<_>) =
+            (0..self.names.len()).map(|boundary| self.questions(boundary)).unzip();
+        let questions = questions.concat();
+        let lifter = match Lifter::new(self.parts, self.degree, self.names, open) {
+            Ok(lifter) => lifter,
+            Err(error) => {
+                let why = |question| (question, Err(error.clone()));
+                return (questions.into_iter().map(why).collect(), Evidence::default(), Vec::new());
+            }
+        };
+        let (mut evidence, refused) = self.liftings(&lifter, &questions);
+        let cover = evidence.cover.as_ref().and_then(|w| self.forces.cover(w).ok());
+        let between = self.forces.between(&evidence.liftings, cover.as_ref());
+        let (by_pairs, limits) = self.dual_pairs(&mut evidence, &between, cover.as_ref());
+        let nearest =
+            |((target, _), ends): (&(ForceTarget, _), &Result<[f64; 2], WrongLifting>)| {
+                let ends = ends.clone().map_err(|error| error.to_string())?;
+                Ok(evidence.nearest(*target, ends, &by_pairs))
+            };
+        let nearest: Vec<_> = evidence.liftings.iter().zip(&between).map(nearest).collect();
+        let mut nearest = nearest.into_iter();
+        let intervals = refused.into_iter().map(|refused| match refused {
+            Some(why) => Err(why),
+            None => nearest.next().unwrap_or_else(|| Err(String::new())),
+        });
+        let found = questions.into_iter().zip(intervals);
+        let found =
+            found.flat_map(|(question, ends)| answers(question, acts[question.boundary], ends));
+        (found.collect(), evidence.proving(cover.as_ref(), &between, by_pairs), limits)
+    }
+
+    /// The numbers of a boundary that are asked for, and how contact acts there.
+    fn questions(&self, boundary: usize) -> (Vec<Question>, Acts) {
+        let (parts, name) = (self.parts, &self.names[boundary]);
         let edges = parts.mesh.edges_of(name).unwrap_or_default();
-        let what: Vec<&Boundary> = edges
-            .iter()
-            .filter_map(|edge| {
-                parts.boundary.get(&parts.mesh.triangle_edges()[edge.triangle][edge.local])
-            })
-            .collect();
+        let what = || edges.iter().filter_map(|&e| parts.boundary.get(&parts.mesh.number_of(e)));
         // Of a pair, those of the first body.
-        let lines = what.iter().filter_map(|what| match what {
+        let lines = what().filter_map(|what| match what {
             Boundary::Contact(line) => Some(&parts.lines[*line]),
             _ => None,
         });
         let contacts = lines.flatten().filter(|&&(_, side)| side == 0);
         let contacts: Vec<&Contact> = contacts.map(|&(k, _)| &parts.contact[k]).collect();
-        let mut along = contacts.iter().map(|contact| contact.directions);
-        pulls[boundary] = contacts.iter().any(|contact| contact.is_tied());
-        let is_glued = contacts.iter().any(|contact| contact.law == Law::Bonded);
-        let acts_across = is_glued || contacts.iter().any(|contact| contact.has_friction());
+        let mut acts = Acts { axis: None, pulls: contacts.iter().any(|contact| contact.is_tied()) };
         let mut pairs = parts.problem.pairs.iter().filter(|pair| pair.boundaries.contains(name));
         if pairs.clone().count() > 1 && pairs.any(|pair| pair.boundaries[0] != *name) {
             // The jump of w is that of the first bodies, and this one is a first and a second body.
-            continue;
+            return (Vec::new(), acts);
         }
+        let ask = |name, weight| Question { name, boundary, weight };
+        let mut questions = Vec::new();
+        let mut along = contacts.iter().map(|contact| contact.directions);
         if let Some([d, _]) = along.next() {
+            let is_glued = contacts.iter().any(|contact| contact.law == Law::Bonded);
+            let acts_across = is_glued || contacts.iter().any(|contact| contact.has_friction());
             let constant = !acts_across && along.all(|other| other == [d, d]);
-            axes[boundary] = (0..2).find(|&c| constant && d[1 - c] == 0.0).map(|c| (c, d[c]));
+            acts.axis = (0..2).find(|&c| constant && d[1 - c] == 0.0).map(|c| (c, d[c]));
             // Glue has no direction.
-            if !is_glued {
-                asked.push((Name::ContactForce, boundary, None));
+            questions.extend((!is_glued).then(|| ask(Name::ContactForce, None)));
+            let own = self.asked.forces.iter().filter(|(of, ramp)| of == name && ramp.is_some());
+            questions.extend(own.map(|&(_, ramp)| ask(Name::ContactForce, ramp)));
+            if acts.axis.is_none() {
+                questions.extend([0, 1].map(|c| ask(Name::ContactComponent(c), None)));
             }
-            let own = asked_for.forces.iter().filter(|(of, ramp)| of == name && ramp.is_some());
-            asked.extend(own.map(|&(_, ramp)| (Name::ContactForce, boundary, ramp)));
-            if axes[boundary].is_none() {
-                asked.extend([0, 1].map(|c| (Name::ContactComponent(c), boundary, None)));
-            }
-            asked.push((Name::ContactMoment, boundary, None));
-        } else if what
-            .iter()
-            .any(|what| matches!(what, Boundary::Held(..) | Boundary::Supported(..)))
-        {
-            asked.extend([0, 1].map(|c| (Name::Reaction(c), boundary, None)));
-            asked.push((Name::ReactionMoment, boundary, None));
+            questions.push(ask(Name::ContactMoment, None));
+        } else if what().any(|what| matches!(what, Boundary::Held(..) | Boundary::Supported(..))) {
+            questions.extend([0, 1].map(|c| ask(Name::Reaction(c), None)));
+            questions.push(ask(Name::ReactionMoment, None));
         }
+        (questions, acts)
     }
-    let lifter = match Lifter::new(parts, degree, names, open) {
-        Ok(lifter) => lifter,
-        Err(error) => {
-            let why = |(name, boundary, weight)| (name, boundary, weight, Err(error.clone()));
-            return (asked.into_iter().map(why).collect(), Evidence::default(), Vec::new());
-        }
-    };
-    let all = ForceTarget { boundary: None, motion: Motion::Along(None) };
-    let mut evidence =
-        Evidence { cover: lifter.lifting(all, built, forces.of).ok(), ..Evidence::default() };
-    let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
-    let mut refused = Vec::with_capacity(asked.len());
-    for &(name, boundary, weight) in &asked {
-        let target = ForceTarget { boundary: Some(boundary), motion: name.motion(weight) };
-        refused.push(match lifter.lifting(target, built, forces.of) {
-            Ok(w) => {
-                evidence.liftings.push((target, w));
-                None
-            }
-            Err(why) => Some(why),
+
+    /// The displacements w, w0 among them, and for each question why there is none.
+    fn liftings(&self, lifter: &Lifter, questions: &[Question]) -> (Evidence, Vec<Option<String>>) {
+        let lifting = |target| lifter.lifting(target, self.built, self.forces.of);
+        let all = ForceTarget { boundary: None, motion: Motion::Along(None) };
+        let mut evidence = Evidence { cover: lifting(all).ok(), ..Evidence::default() };
+        let refused = questions.iter().map(|&Question { name, boundary, weight }| {
+            let target = ForceTarget { boundary: Some(boundary), motion: name.motion(weight) };
+            lifting(target).map(|w| evidence.liftings.push((target, w))).err()
         });
+        let refused = refused.collect();
+        (evidence, refused)
     }
-    let mut by_pairs = Vec::new();
-    let between = forces.between(&evidence.liftings, cover.as_ref());
-    let to_second_order = |target: &ForceTarget| {
+
+    /// Adds dual pairs to the evidence where they say more than the liftings, which prove what forces are `between`; returns
+    /// what they prove, and what triangles contribute to its width.
+    fn dual_pairs(
+        &self,
+        evidence: &mut Evidence,
+        between: &[Result<[f64; 2], WrongLifting>],
+        cover: Option<&Cover>,
+    ) -> (Vec<[f64; 2]>, Vec<f64>) {
+        let (mut by_pairs, mut limits) = (Vec::new(), Vec::new());
+        let (parts, degree, names) = (self.parts, self.degree, self.names);
+        let mut lifters = Lifters { parts, degree, names, made: BTreeMap::new() };
+        for (&(target, _), first) in evidence.liftings.iter().zip(between) {
+            let Ok(first) = first else { continue };
+            if !self.is_to_second_order(target) {
+                continue;
+            }
+            let goal = (self.forces, cover);
+            let pair = |splits| lifters.pair(splits, target, self.built, goal);
+            for (Tried { found, pair }, mut sides) in best_pairs(pair) {
+                let [low, high] = found.between;
+                sides.retain(|side| if *side == 0 { low > first[0] } else { high < first[1] });
+                for &side in &sides {
+                    limits.resize(self.shares.len(), 0.0);
+                    let more = found.limits(side, self.shares);
+                    limits.iter_mut().zip(more).for_each(|(limit, more)| *limit += more);
+                }
+                if !sides.is_empty() {
+                    evidence.pairs.push((target, pair));
+                    by_pairs.push(found.between);
+                }
+            }
+        }
+        (by_pairs, limits)
+    }
+
+    fn is_to_second_order(&self, target: ForceTarget) -> bool {
         let Motion::Along(weight) = target.motion else { return false };
-        let is = |(of, ramp): &(String, Option<Ramp>)| {
-            *ramp == weight && target.boundary.is_some_and(|boundary| names[boundary] == *of)
-        };
-        asked_for.forces.iter().any(is)
-    };
-    let mut limits = Vec::new();
-    let mut lifters = Lifters { parts, degree, names, made: BTreeMap::new() };
-    for (k, &(target, _)) in evidence.liftings.iter().enumerate() {
-        let Ok(first) = (if to_second_order(&target) { between[k].clone() } else { continue })
-        else {
-            continue;
-        };
-        let goal = (forces, cover.as_ref());
-        for (Tried { found, pair }, sides) in
-            best_pairs(|splits| lifters.pair(splits, target, built, goal))
-        {
-            let [low, high] = found.between;
-            let helps = |side: &usize| if *side == 0 { low > first[0] } else { high < first[1] };
-            let sides: Vec<usize> = sides.into_iter().filter(helps).collect();
-            for &side in &sides {
-                limits.resize(shares.len(), 0.0);
-                let more = found.limits(side, shares);
-                limits.iter_mut().zip(more).for_each(|(limit, more)| *limit += more);
-            }
-            if !sides.is_empty() {
-                evidence.pairs.push((target, pair));
-                by_pairs.push(found.between);
-            }
+        self.asked.forces.iter().any(|(of, ramp)| {
+            *ramp == weight && target.boundary.is_some_and(|boundary| self.names[boundary] == *of)
+        })
+    }
+}
+
+/// The numbers of a boundary that the interval of a functional says: of a force along an axis all components, too.
+fn answers(question: Question, acts: Acts, interval: Result<[f64; 2], String>) -> Vec<Found> {
+    let interval = interval.map(|ends| question.name.of_functional(ends, acts.pulls));
+    let mut found = Vec::new();
+    if let (Name::ContactForce, None, Some((axis, sign))) =
+        (question.name, question.weight, acts.axis)
+    {
+        for c in 0..2 {
+            let along = |[low, high]: [f64; 2]| match (c == axis, sign > 0.0) {
+                (true, true) => [-high, -low],
+                (true, false) => [low, high],
+                (false, _) => [0.0; 2],
+            };
+            let component = Question { name: Name::ContactComponent(c), ..question };
+            found.push((component, interval.clone().map(along)));
         }
     }
-    let targets = evidence.liftings.iter().map(|(target, _)| *target);
-    let nearest = |(target, ends): (ForceTarget, &Result<[f64; 2], WrongLifting>)| {
-        ends.clone().map(|ends| evidence.nearest(target, ends, &by_pairs))
-    };
-    let nearest: Vec<Result<[f64; 2], WrongLifting>> = targets.zip(&between).map(nearest).collect();
-    let evidence = evidence.proving(cover.as_ref(), &between, by_pairs);
-    let mut between = nearest.into_iter();
-    let mut found: Vec<Found> = Vec::with_capacity(asked.len());
-    for ((name, boundary, weight), refused) in asked.into_iter().zip(refused) {
-        let interval = match refused {
-            Some(why) => Err(why),
-            None => {
-                between.next().map_or(Err(String::new()), |ends| ends.map_err(|e| e.to_string()))
-            }
-        };
-        let interval = interval.map(|ends| name.of_functional(ends, pulls[boundary]));
-        if let (Name::ContactForce, None, Some((axis, sign))) = (name, weight, axes[boundary]) {
-            for c in 0..2 {
-                let along = |[low, high]: [f64; 2]| match (c == axis, sign > 0.0) {
-                    (true, true) => [-high, -low],
-                    (true, false) => [low, high],
-                    (false, _) => [0.0; 2],
-                };
-                let interval = interval.clone().map(along);
-                found.push((Name::ContactComponent(c), boundary, None, interval));
-            }
-        }
-        found.push((name, boundary, weight, interval));
-    }
-    (found, evidence, limits)
+    found.push((question, interval));
+    found
 }
 
 #[cfg(test)]

@@ -9,7 +9,6 @@ use std::sync::Arc;
 
 use super::friction::{Bound, Friction};
 use super::law::Law;
-use super::pairs::{self, Pair, PairPiece, PairSide};
 use super::piece::{Piece, PieceGeometry, PieceNode, SideData, Stretch};
 use crate::kernel::Scalar;
 use crate::kernel::contact_edge::traction_stiffness;
@@ -19,6 +18,7 @@ use crate::model::element::Degree;
 use crate::model::function::SharedFunction;
 use crate::model::mesh::{BoundaryEdge, ROUNDED};
 use crate::model::obstacle::Closest;
+use crate::model::pairs::{self, Pair, PairPiece, PairSide};
 use crate::model::problem::{Condition, Problem};
 use crate::model::space::Space;
 use crate::quote::key;

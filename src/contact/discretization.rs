@@ -11,7 +11,6 @@ use super::friction::Bound;
 use super::law::{EdgeRule, Law};
 use super::piece::{Piece, PieceGeometry};
 use super::stress_points::{Nodal, StressPoint, each_stress};
-use crate::held::rigid::FreeMotion;
 use crate::held::solvability;
 use crate::held::solvability::{NotHeld, Slides};
 use crate::kernel::PreciseBall;
@@ -22,6 +21,7 @@ use crate::model::element::Degree;
 use crate::model::loads::LoadVector;
 use crate::model::problem::Problem;
 use crate::model::revolution;
+use crate::model::rigid::FreeMotion;
 use crate::model::space::Space;
 use crate::model::{loads, material};
 

@@ -1,4 +1,4 @@
-//! Friction on parts of Gamma_C: which law, and how much; and its integrals over a piece of Gamma_C, in doubles and in balls.
+//! The integrals of friction over a piece of Gamma_C, in doubles and in balls.
 //!
 //! With the bound m, gamma s for Tresca's slip bound s and mu P_n for Coulomb's coefficient mu, the tangential P_t is cut off to
 //! F = clip(P_t; \[m\]+): the shear stress on the body is -F / gamma (`kernel::friction`). s is affine on a piece, from its values at
@@ -11,64 +11,9 @@ use super::moments;
 use crate::kernel::friction::{
     ExactFriction, FrictionIntegrals, exact_clip_bregman, gauss_clip_bregman, gauss_friction,
 };
-use crate::kernel::{DoubleDouble, Element, PreciseBall, Scalar};
+use crate::kernel::{DoubleDouble, Element, PreciseBall};
 use crate::model::element::{Degree, with_element};
-use crate::model::function::SharedFunction;
-
-/// The law of friction on a part of Gamma_C.
-#[non_exhaustive]
-#[derive(Clone)]
-pub enum Friction {
-    /// Tresca's: |sigma_t| <= s with a given slip bound s >= 0, a stress, pressed or not; where the body slides, sigma_t has this
-    /// size and is directed against the slip.
-    Tresca(SharedFunction),
-    /// Coulomb's: the same with s = mu |sigma_n| for this coefficient mu >= 0.
-    Coulomb(f64),
-}
-
-impl Friction {
-    /// Tresca's law with this slip bound.
-    pub fn tresca(bound: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static) -> Self {
-        Friction::Tresca(std::sync::Arc::new(bound))
-    }
-}
-
-/// The bound of the shear stress on a piece.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Bound {
-    /// s at the start and at the end.
-    Tresca([f64; 2]),
-    /// mu
-    Coulomb(f64),
-    /// s at the start, at the end and in the middle, quadratic for quadratic elements; none where it is negative. It is what Coulomb's
-    /// law has for a given pressure.
-    Given([f64; 3]),
-}
-
-impl Bound {
-    /// m at the nodes of the piece, where P_n has the values `normal`.
-    pub(crate) fn at_nodes<S: Scalar + From<f64>>(self, gamma: S, normal: &[S]) -> Vec<S> {
-        let exact = <S as From<f64>>::from;
-        match self {
-            Bound::Tresca(ends) => {
-                let [start, end] = ends.map(|s| gamma * exact(s));
-                let middle = (start + end) / <S as From<i32>>::from(2);
-                [start, end, middle].into_iter().take(normal.len()).collect()
-            }
-            Bound::Coulomb(mu) => normal.iter().map(|&p| exact(mu) * p).collect(),
-            Bound::Given(s) => s.into_iter().take(normal.len()).map(|s| gamma * exact(s)).collect(),
-        }
-    }
-
-    /// The slip bound in the middle, where P_n / gamma has this mean.
-    pub(crate) fn mean(self, pressure: f64) -> f64 {
-        match self {
-            Bound::Tresca([start, end]) => (start + end) / 2.0,
-            Bound::Coulomb(mu) => mu * pressure.max(0.0),
-            Bound::Given([.., middle]) => middle.max(0.0),
-        }
-    }
-}
+pub use crate::model::law::{Bound, Friction};
 
 /// The integrals across the direction of contact.
 pub(crate) struct Across {

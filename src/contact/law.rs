@@ -2,54 +2,14 @@
 
 use nalgebra::DMatrix;
 
-use super::friction::{self, Bound};
+use super::friction;
 use crate::kernel::edge_integral::{self, ExactEdge};
 use crate::kernel::{DoubleDouble, EdgeIntegrals, Element, Response};
 use crate::model::element::{Degree, with_element};
+pub use crate::model::law::Law;
 use crate::model::quadrature;
 
-/// How the two sides of Gamma_C act on each other.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub enum Law {
-    /// Unilateral contact without friction, conditions (2).
-    #[default]
-    Contact,
-    /// Sliding without lift-off: no jump along the direction of contact.
-    Sliding,
-    /// No jump at all: meshes that do not match, glued.
-    Bonded,
-    /// Contact, and friction across up to a bound.
-    Friction(Bound),
-}
-
 impl Law {
-    /// Responses to each component of the jump by itself: along the direction of contact, and across if the law feels that, but
-    /// for friction.
-    pub(crate) fn responses(self) -> &'static [Response] {
-        match self {
-            Law::Contact | Law::Friction(_) => &[Response::Unilateral],
-            Law::Sliding => &[Response::Bilateral],
-            Law::Bonded => &[Response::Bilateral, Response::Bilateral],
-        }
-    }
-
-    /// The number of components of the jump that it feels.
-    pub(crate) fn components(self) -> usize {
-        match self {
-            Law::Friction(_) => 2,
-            _ => self.responses().len(),
-        }
-    }
-
-    /// The values of P at the nodes of a piece, component after component, at which the interface gives way to none: pressed and
-    /// sticking.
-    pub fn closed(self, degree: Degree) -> Vec<f64> {
-        let nodes = degree.nodes_per_edge();
-        let value = |i: usize| if i < nodes { 1.0 } else { 0.0 };
-        (0..self.components() * nodes).map(value).collect()
-    }
-
     /// The integrals of (8) and J_h over a piece with this gamma for P with the nodal values `p`, component after component; with the
     /// weight r where it has these `radii` at its ends. Friction is for plane bodies.
     pub(crate) fn integrals<T: Copy + Into<DoubleDouble>>(
@@ -117,10 +77,7 @@ fn bilateral<T: Copy + Into<DoubleDouble>>(
 ) -> Integrals {
     with_element!(degree, E => {
         let p = std::array::from_fn(|a| p[a].into().head());
-        match radii {
-            None => edge_integral::bilateral::<E, f64, _, _>(p).into(),
-            Some(radii) => edge_integral::bilateral_in_revolution::<E, f64, _, _>(p, radii).into(),
-        }
+        edge_integral::bilateral::<E, f64, _, _>(p, radii).into()
     })
 }
 
@@ -221,14 +178,8 @@ impl EdgeRule {
                 E::exact_in_revolution(p.map(DoubleDouble::head), radii)
             }
             (EdgeRule::Gauss(rule), radii) => {
-                let points = in_double_doubles(rule);
-                let fine = match radii {
-                    None => edge_integral::gauss::<E, _, _, _>(p, points),
-                    Some(radii) => {
-                        let radii = radii.map(DoubleDouble::from);
-                        edge_integral::gauss_in_revolution::<E, _, _, _>(p, radii, points)
-                    }
-                };
+                let (points, radii) = (in_double_doubles(rule), fine(radii));
+                let fine = edge_integral::gauss_in_revolution::<E, _, _, _>(p, radii, points);
                 EdgeIntegrals {
                     energy: fine.energy.head(),
                     gradient: fine.gradient.map(DoubleDouble::head),
@@ -269,20 +220,11 @@ impl EdgeRule {
         match self {
             EdgeRule::Exact => {
                 let [p, q] = [p, q].map(|values| values.map(DoubleDouble::head));
-                match radii {
-                    None => edge_integral::exact_bregman::<E, _, _>(p, q),
-                    Some(radii) => {
-                        edge_integral::exact_bregman_in_revolution::<E, _, _>(p, q, radii)
-                    }
-                }
+                edge_integral::exact_bregman::<E, _, _>(p, q, radii)
             }
             EdgeRule::Gauss(rule) => {
-                let points = in_double_doubles(rule).map(|(s, weight)| match radii {
-                    None => (s, weight),
-                    Some(radii) => {
-                        (s, weight * edge_integral::radius(radii.map(DoubleDouble::from), s))
-                    }
-                });
+                let points = in_double_doubles(rule)
+                    .map(|(s, weight)| (s, edge_integral::times_radius(weight, fine(radii), s)));
                 edge_integral::gauss_bregman::<E, _, _, _>(p, q, points).head()
             }
         }
@@ -298,6 +240,10 @@ fn is_open<const M: usize>(p: &[DoubleDouble; M]) -> bool {
     heads[..2].iter().all(|p| *p <= 0.0) && heads[2..].iter().all(|p| middle(p) <= 0.0)
 }
 
+fn fine(radii: Option<[f64; 2]>) -> Option<[DoubleDouble; 2]> {
+    radii.map(|radii| radii.map(DoubleDouble::from))
+}
+
 /// Points and weights, exactly.
 pub(super) fn in_double_doubles(
     rule: &[(f64, f64)],
@@ -309,6 +255,7 @@ pub(super) fn in_double_doubles(
 mod tests {
     use super::*;
     use crate::kernel::P2;
+    use crate::model::law::Bound;
 
     const LAWS: [Law; 4] =
         [Law::Contact, Law::Sliding, Law::Bonded, Law::Friction(Bound::Tresca([0.4, 0.7]))];

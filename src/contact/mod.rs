@@ -7,8 +7,6 @@ pub mod friction;
 pub mod law;
 #[doc(hidden)]
 pub mod moments;
-#[doc(hidden)]
-pub mod pairs;
 pub mod piece;
 #[doc(hidden)]
 pub mod residual;
@@ -18,5 +16,8 @@ pub use contact_line::ContactLine;
 pub use discretization::Discretization;
 pub use friction::Friction;
 pub use law::{EdgeRule, Law};
-pub use pairs::{Pair, PairError, PairPiece, PairSide};
 pub use piece::Piece;
+
+#[doc(hidden)]
+pub use crate::model::pairs;
+pub use crate::model::pairs::{Pair, PairError, PairPiece, PairSide};

@@ -9,9 +9,7 @@ use super::friction;
 use super::law::{EdgeRule, Law};
 use super::piece::Piece;
 use crate::kernel::ball::{PreciseBall, larger};
-use crate::kernel::edge_integral::{
-    bilateral, bilateral_in_revolution, gauss, gauss_in_revolution, radius, roots, value_at,
-};
+use crate::kernel::edge_integral::{bilateral, gauss_in_revolution, roots, times_radius, value_at};
 use crate::kernel::friction::gauss_friction;
 use crate::kernel::{Element, Response};
 use crate::model::element::{Degree, with_element};
@@ -24,10 +22,7 @@ impl Piece<PreciseBall> {
             Response::Unilateral => moments(rule, self.degree, self.radii, p),
             Response::Bilateral => with_element!(self.degree, E => {
                 let p = std::array::from_fn(|a| p[a]);
-                match self.radii {
-                    None => bilateral::<E, _, _, _>(p).gradient.into(),
-                    Some(radii) => bilateral_in_revolution::<E, _, _, _>(p, radii).gradient.into(),
-                }
+                bilateral::<E, _, _, _>(p, self.radii).gradient.into()
             }),
         };
         let responses = self.geometry.law.responses().iter();
@@ -65,10 +60,7 @@ fn moments_of<E: Element<N, M>, const N: usize, const M: usize>(
     match rule {
         EdgeRule::Gauss(points) => {
             let points = points.iter().map(|&(s, w)| (PreciseBall::from(s), PreciseBall::from(w)));
-            match radii {
-                None => gauss::<E, _, _, _>(p, points).gradient,
-                Some(radii) => gauss_in_revolution::<E, _, _, _>(p, radii, points).gradient,
-            }
+            gauss_in_revolution::<E, _, _, _>(p, radii, points).gradient
         }
         // Bernstein's coefficients bound P.
         EdgeRule::Exact if degree.bernstein(&p).iter().all(|c| c.upper() <= 0.0) => {
@@ -262,7 +254,7 @@ fn by_pieces<E: Element<N, M>, const N: usize, const M: usize>(
             for (s, weight, _) in points {
                 let value = value_at::<E, _, _, _>(p, s);
                 let shapes: [PreciseBall; M] = E::edge_values(s);
-                let weight = radii.map_or(weight, |radii| weight * radius(radii, s));
+                let weight = times_radius(weight, radii, s);
                 for (sum, shape) in sum.iter_mut().zip(shapes) {
                     *sum += length * weight * value * shape;
                 }

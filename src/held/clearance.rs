@@ -1,13 +1,13 @@
 //! The motions that nothing stops at a solution of (8), within the clearance of the contact edges that do not press.
 
 use super::grip::across;
-use super::rigid::{FreeMotion, NEGLIGIBLE, Parts, null_space};
 use super::solvability::{Slides, all, joined, moves, negligible, rows};
 use crate::contact::discretization::Discretization;
 use crate::contact::law::Law;
 use crate::contact::piece::Piece;
 use crate::kernel::{DoubleDouble, Response};
 use crate::linear::dense::{dot, norm};
+use crate::model::rigid::{FreeMotion, NEGLIGIBLE, Parts, null_space};
 
 /// The share of the largest P above which an edge presses; smaller P may be left by the tolerance of Newton's method. At a
 /// hundredth of this share, edges that touch without a force would count as holding the body.

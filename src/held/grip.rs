@@ -9,12 +9,12 @@
 //! non-negative least squares with one more equation for each e. With Coulomb's friction the cone of the c_i is that of
 //! c_i + mu r_t and c_i - mu r_t: what friction can do at a node grows with what presses there.
 
-use super::rigid::{FreeMotion, NEGLIGIBLE, Parts};
 use super::solvability::{MARGIN, jumps, moves, nnls_residual};
-use crate::contact::friction::Bound;
 use crate::contact::law::Law;
 use crate::contact::piece::Piece;
 use crate::linear::dense::{dot, norm, singular_vectors};
+use crate::model::law::Bound;
+use crate::model::rigid::{FreeMotion, NEGLIGIBLE, Parts};
 use crate::model::space::Space;
 
 /// The largest number of rows. Rows of a straight boundary are multiples of each other and count once; beyond this number

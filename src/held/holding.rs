@@ -3,10 +3,10 @@
 
 use std::collections::BTreeSet;
 
-use super::rigid::Parts;
 use super::solvability::jumps;
 use crate::contact::discretization::Discretization;
 use crate::linear::dense::dot;
+use crate::model::rigid::Parts;
 
 /// As few pieces as hold the body, far apart, chosen one functional after the other: the one that moves most in the motions that those
 /// before leave free. `acts` says of a functional of a piece whether it has a spring.

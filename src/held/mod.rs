@@ -6,8 +6,6 @@ pub(crate) mod corners;
 pub(crate) mod grip;
 pub(crate) mod holding;
 #[doc(hidden)]
-pub mod rigid;
-#[doc(hidden)]
 pub mod solvability;
 
-pub use rigid::{FreeMotion, Parts};
+pub use crate::model::rigid::{FreeMotion, Parts};

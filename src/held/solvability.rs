@@ -14,12 +14,12 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::grip::Grip;
-use super::rigid::{FreeMotion, NEGLIGIBLE, Parts, null_space, subtract};
 use crate::contact::piece::Piece;
 use crate::kernel::Response;
 use crate::linear::dense::{dot, inner, least_squares, norm, singular_vectors};
 use crate::model::groups::groups;
 use crate::model::mesh::NO_ANGLE;
+use crate::model::rigid::{FreeMotion, NEGLIGIBLE, Parts, null_space, subtract};
 use crate::model::space::Space;
 
 /// The change of the loads, as a share of the largest work of single loads, under which they must go on pressing: a body on the
@@ -438,8 +438,8 @@ const MOST_EXCHANGES: usize = 200;
 
 #[cfg(test)]
 mod tests {
-    use super::super::rigid::pins;
     use super::*;
+    use crate::model::rigid::pins;
 
     /// (down, turn): a plate on supports at these places, pressed by a unit force at `at`.
     fn presses(supports: &[f64], at: f64) -> bool {

@@ -123,11 +123,10 @@ fn partners<'p>(problem: &'p Problem, name: &str) -> Vec<&'p str> {
 
 /// The edges of the boundary that have no name.
 fn unnamed(mesh: &Mesh) -> Vec<BoundaryEdge> {
-    let number = |edge: &BoundaryEdge| mesh.triangle_edges()[edge.triangle][edge.local];
     let mut is_named = vec![false; mesh.edge_count()];
     let all = mesh.boundary_names().flat_map(|name| mesh.edges_of(name).unwrap_or_default());
-    all.for_each(|edge| is_named[number(edge)] = true);
-    mesh.outline().iter().copied().filter(|edge| !is_named[number(edge)]).collect()
+    all.for_each(|&edge| is_named[mesh.number_of(edge)] = true);
+    mesh.outline().iter().copied().filter(|&edge| !is_named[mesh.number_of(edge)]).collect()
 }
 
 fn length_of(mesh: &Mesh, edges: impl Iterator<Item = BoundaryEdge>) -> f64 {

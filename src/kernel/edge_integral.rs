@@ -43,21 +43,9 @@ impl<S: Scalar, const M: usize> EdgeIntegrals<S, M> {
         }
     }
 
-    /// Adds a point of a rule: weight, the value and slope of \[.\]+ there, and the shape functions.
-    fn add(&mut self, weight: S, positive: S, slope: S, shapes: [S; M]) {
-        self.active += weight * slope;
-        self.add_weighted(weight, positive, slope, shapes);
-    }
-
-    /// Adds a point where r is `radius`.
-    #[cfg(not(kani))]
-    fn add_in_revolution(&mut self, weight: S, radius: S, positive: S, slope: S, shapes: [S; M]) {
-        self.active += weight * slope;
-        self.add_weighted(weight * radius, positive, slope, shapes);
-    }
-
-    /// Adds a point to the integrals with a weight.
-    fn add_weighted(&mut self, weight: S, positive: S, slope: S, shapes: [S; M]) {
+    /// Adds a point of a rule: its weight without and with r, the value and slope of \[.\]+ there, and the shape functions.
+    fn add(&mut self, [measure, weight]: [S; 2], positive: S, slope: S, shapes: [S; M]) {
+        self.active += measure * slope;
         self.energy += weight * positive * positive / S::from(2);
         for a in 0..M {
             self.gradient[a] += weight * positive * shapes[a];
@@ -100,39 +88,36 @@ pub fn positive_interval<S: Scalar>(p: [S; 2]) -> [S; 2] {
 }
 
 impl<S: Scalar> ExactEdge<S, 3, 2> for P1 {
-    /// On its positive interval \[P\]+ is affine: \[p_0\]+ at the start and \[p_1\]+ at the end, and so are the N_a.
     fn exact(p: [S; 2]) -> EdgeIntegrals<S, 2> {
-        let [start, end] = positive_interval(p);
-        let length = end - start;
-        let positive = p.map(positive_part);
-        let at_start: [S; 2] = P1::edge_values(start);
-        let at_end: [S; 2] = P1::edge_values(end);
-        let shapes = [0, 1].map(|a| [at_start[a], at_end[a]]);
-        let integral = |f, g| length * integral_of_product(f, g);
-        EdgeIntegrals {
-            energy: integral(positive, positive) / S::from(2),
-            gradient: shapes.map(|n| integral(positive, n)),
-            hessian: shapes.map(|m| shapes.map(|n| integral(m, n))),
-            active: length,
-        }
+        exact_p1(p, |_, f, g| integral_of_product(f, g))
     }
 
     #[cfg(not(kani))]
     fn exact_in_revolution(p: [S; 2], radii: [S; 2]) -> EdgeIntegrals<S, 2> {
-        let [start, end] = positive_interval(p);
-        let length = end - start;
-        let positive = p.map(positive_part);
-        let at_start: [S; 2] = P1::edge_values(start);
-        let at_end: [S; 2] = P1::edge_values(end);
-        let shapes = [0, 1].map(|a| [at_start[a], at_end[a]]);
-        let radius = [at_start, at_end].map(|at| radii[0] * at[0] + radii[1] * at[1]);
-        let integral = |f, g| length * weighted_product(radius, f, g);
-        EdgeIntegrals {
-            energy: integral(positive, positive) / S::from(2),
-            gradient: shapes.map(|n| integral(positive, n)),
-            hessian: shapes.map(|m| shapes.map(|n| integral(m, n))),
-            active: length,
-        }
+        let r =
+            |shapes: [[S; 2]; 2]| [0, 1].map(|k| radii[0] * shapes[0][k] + radii[1] * shapes[1][k]);
+        exact_p1(p, |shapes, f, g| weighted_product(r(shapes), f, g))
+    }
+}
+
+/// On its positive interval \[P\]+ is affine: \[p_0\]+ at the start and \[p_1\]+ at the end, and so are the N_a, with which
+/// `product` integrates products.
+fn exact_p1<S: Scalar>(
+    p: [S; 2],
+    product: impl Fn([[S; 2]; 2], [S; 2], [S; 2]) -> S,
+) -> EdgeIntegrals<S, 2> {
+    let [start, end] = positive_interval(p);
+    let length = end - start;
+    let positive = p.map(positive_part);
+    let at_start: [S; 2] = P1::edge_values(start);
+    let at_end: [S; 2] = P1::edge_values(end);
+    let shapes = [0, 1].map(|a| [at_start[a], at_end[a]]);
+    let integral = |f, g| length * product(shapes, f, g);
+    EdgeIntegrals {
+        energy: integral(positive, positive) / S::from(2),
+        gradient: shapes.map(|n| integral(positive, n)),
+        hessian: shapes.map(|m| shapes.map(|n| integral(m, n))),
+        active: length,
     }
 }
 
@@ -145,24 +130,25 @@ pub fn weighted_product<S: Scalar>(r: [S; 2], f: [S; 2], g: [S; 2]) -> S {
 
 impl ExactEdge<f64, 6, 3> for P2 {
     fn exact(p: [f64; 3]) -> EdgeIntegrals<f64, 3> {
-        let mut sum = EdgeIntegrals::of(0.0);
-        each_positive_point(p, |s, weight| {
-            // Inside a positive piece P itself is integrated: a rounding error of its sign near the ends of the piece must not cut
-            // it again.
-            sum.add(weight, value_at::<P2, f64, 6, 3>(p, s), 1.0, P2::edge_values(s));
-        });
-        sum
+        exact_p2(p, None)
     }
 
     #[cfg(not(kani))]
     fn exact_in_revolution(p: [f64; 3], radii: [f64; 2]) -> EdgeIntegrals<f64, 3> {
-        let mut sum = EdgeIntegrals::of(0.0);
-        each_positive_point(p, |s, weight| {
-            let value = value_at::<P2, f64, 6, 3>(p, s);
-            sum.add_in_revolution(weight, radius(radii, s), value, 1.0, P2::edge_values(s));
-        });
-        sum
+        exact_p2(p, Some(radii))
     }
+}
+
+fn exact_p2(p: [f64; 3], radii: Option<[f64; 2]>) -> EdgeIntegrals<f64, 3> {
+    let mut sum = EdgeIntegrals::of(0.0);
+    each_positive_point(p, |s, weight| {
+        // Inside a positive piece P itself is integrated: a rounding error of its sign near the ends of the piece must not cut
+        // it again.
+        let (value, weights) =
+            (value_at::<P2, f64, 6, 3>(p, s), [weight, times_radius(weight, radii, s)]);
+        sum.add(weights, value, 1.0, P2::edge_values(s));
+    });
+    sum
 }
 
 /// Calls `add` with the points and weights of Gauss's rule on the pieces where P is positive.
@@ -181,29 +167,13 @@ fn each_positive_point(p: [f64; 3], mut add: impl FnMut(f64, f64)) {
 }
 
 /// r at `s` from its values at the two ends.
-#[cfg(not(kani))]
 pub fn radius<S: Scalar>(radii: [S; 2], s: S) -> S {
     radii[0] * (S::from(1) - s) + radii[1] * s
 }
 
-/// [`gauss`] with the weight r, which has the values `radii` at the two ends.
-#[cfg(not(kani))]
-pub fn gauss_in_revolution<E, S, const N: usize, const M: usize>(
-    p: [S; M],
-    radii: [S; 2],
-    rule: impl IntoIterator<Item = (S, S)>,
-) -> EdgeIntegrals<S, M>
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
-    let mut sum = EdgeIntegrals::of(S::from(0));
-    for (s, weight) in rule {
-        let value = value_at::<E, S, N, M>(p, s);
-        let (positive, slope) = (positive_part(value), positive_part_slope(value));
-        sum.add_in_revolution(weight, radius(radii, s), positive, slope, E::edge_values(s));
-    }
-    sum
+/// A weight at `s`, times r where r has these `radii` at the two ends.
+pub fn times_radius<S: Scalar>(weight: S, radii: Option<[S; 2]>, s: S) -> S {
+    radii.map_or(weight, |radii| weight * radius(radii, s))
 }
 
 /// The integrals by a rule on the whole edge: `rule` yields points in \[0, 1\] with their weights.
@@ -215,45 +185,53 @@ where
     E: Element<N, M>,
     S: Scalar,
 {
-    let mut sum = EdgeIntegrals::of(S::from(0));
-    for (s, weight) in rule {
-        let value = value_at::<E, S, N, M>(p, s);
-        let shapes = E::edge_values(s);
-        sum.add(weight, positive_part(value), positive_part_slope(value), shapes);
-    }
-    sum
+    gauss_in_revolution::<E, S, N, M>(p, None, rule)
 }
 
-/// The integrals with P in place of \[P\]+, where an interface pulls as well as it pushes.
-pub fn bilateral<E, S, const N: usize, const M: usize>(p: [S; M]) -> EdgeIntegrals<S, M>
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
-    let hessian: [[S; M]; M] =
-        std::array::from_fn(|a| std::array::from_fn(|b| mass::<E, S, N, M>(a, b)));
-    let gradient: [S; M] = hessian.map(|row| (0..M).fold(S::from(0), |sum, b| sum + row[b] * p[b]));
-    let energy = (0..M).fold(S::from(0), |sum, a| sum + gradient[a] * p[a]) / S::from(2);
-    EdgeIntegrals { energy, gradient, hessian, active: S::from(1) }
-}
-
-/// [`bilateral`] with the weight r, which has the values `radii` at the two ends: by Boole's rule, which is exact for it.
-#[cfg(not(kani))]
-pub fn bilateral_in_revolution<E, S, const N: usize, const M: usize>(
+/// [`gauss`] with the weight r, where r has these `radii` at the two ends.
+pub fn gauss_in_revolution<E, S, const N: usize, const M: usize>(
     p: [S; M],
-    radii: [S; 2],
+    radii: Option<[S; 2]>,
+    rule: impl IntoIterator<Item = (S, S)>,
 ) -> EdgeIntegrals<S, M>
 where
     E: Element<N, M>,
     S: Scalar,
 {
     let mut sum = EdgeIntegrals::of(S::from(0));
-    for (i, weight) in [(0, 7), (1, 32), (2, 12), (3, 32), (4, 7)] {
-        let (s, weight) = (S::from(i) / S::from(4), S::from(weight) / S::from(90));
+    for (s, weight) in rule {
         let value = value_at::<E, S, N, M>(p, s);
-        sum.add_in_revolution(weight, radius(radii, s), value, S::from(1), E::edge_values(s));
+        let (positive, slope) = (positive_part(value), positive_part_slope(value));
+        sum.add([weight, times_radius(weight, radii, s)], positive, slope, E::edge_values(s));
     }
     sum
+}
+
+/// The integrals with P in place of \[P\]+, where an interface pulls as well as it pushes; with the weight r by Boole's rule, which is
+/// exact for it.
+pub fn bilateral<E, S, const N: usize, const M: usize>(
+    p: [S; M],
+    radii: Option<[S; 2]>,
+) -> EdgeIntegrals<S, M>
+where
+    E: Element<N, M>,
+    S: Scalar,
+{
+    if radii.is_some() {
+        let mut sum = EdgeIntegrals::of(S::from(0));
+        for (i, weight) in [(0, 7), (1, 32), (2, 12), (3, 32), (4, 7)] {
+            let (s, weight) = (S::from(i) / S::from(4), S::from(weight) / S::from(90));
+            let (value, weights) =
+                (value_at::<E, S, N, M>(p, s), [weight, times_radius(weight, radii, s)]);
+            sum.add(weights, value, S::from(1), E::edge_values(s));
+        }
+        return sum;
+    }
+    let hessian: [[S; M]; M] =
+        std::array::from_fn(|a| std::array::from_fn(|b| mass::<E, S, N, M>(a, b)));
+    let gradient: [S; M] = hessian.map(|row| (0..M).fold(S::from(0), |sum, b| sum + row[b] * p[b]));
+    let energy = (0..M).fold(S::from(0), |sum, a| sum + gradient[a] * p[a]) / S::from(2);
+    EdgeIntegrals { energy, gradient, hessian, active: S::from(1) }
 }
 
 /// int N_a N_b over \[0, 1\].
@@ -281,31 +259,11 @@ pub fn bregman<S: Scalar>(a: S, b: S) -> S {
 }
 
 /// The integral over the edge of the [Bregman distance](bregman) from P to Q, without quadrature error: over the pieces on
-/// which neither changes sign.
-pub fn exact_bregman<E, const N: usize, const M: usize>(p: [f64; M], q: [f64; M]) -> f64
-where
-    E: Element<N, M>,
-{
-    exact_bregman_with::<E, N, M>(p, q, |_, weight| weight)
-}
-
-/// [`exact_bregman`] with the weight r, which has the values `radii` at the two ends.
-#[cfg(not(kani))]
-pub fn exact_bregman_in_revolution<E, const N: usize, const M: usize>(
+/// which neither changes sign; with the weight r where r has these `radii` at the two ends.
+pub fn exact_bregman<E, const N: usize, const M: usize>(
     p: [f64; M],
     q: [f64; M],
-    radii: [f64; 2],
-) -> f64
-where
-    E: Element<N, M>,
-{
-    exact_bregman_with::<E, N, M>(p, q, |s, weight| weight * radius(radii, s))
-}
-
-fn exact_bregman_with<E, const N: usize, const M: usize>(
-    p: [f64; M],
-    q: [f64; M],
-    weight: impl Fn(f64, f64) -> f64,
+    radii: Option<[f64; 2]>,
 ) -> f64
 where
     E: Element<N, M>,
@@ -313,7 +271,8 @@ where
     let mut cuts = Cuts::new();
     cuts.add_roots::<E, N, M>(p);
     cuts.add_roots::<E, N, M>(q);
-    let rule = |[start, end]: [f64; 2]| gauss3(start, end).map(|(s, w)| (s, weight(s, w)));
+    let rule =
+        |[start, end]: [f64; 2]| gauss3(start, end).map(|(s, w)| (s, times_radius(w, radii, s)));
     cuts.pieces().map(|piece| gauss_bregman::<E, f64, N, M>(p, q, rule(piece))).sum()
 }
 
@@ -506,13 +465,13 @@ mod tests {
         };
         let half = 0.5 / 3.0_f64.sqrt();
         for p in [[1.0, -2.0, 0.3], [-1.0, 3.0, 0.5], [0.0, 0.0, 1.0]] {
-            let e = bilateral::<P2, f64, 6, 3>(p);
+            let e = bilateral::<P2, f64, 6, 3>(p, None);
             assert_abs_diff_eq!(e.energy, by_rule(p, &gauss3(0.0, 1.0)), epsilon = 10.0 * ROUNDING);
             assert!((e.energy - by_rule(p, &[(0.5 - half, 0.5), (0.5 + half, 0.5)])).abs() > 1e-3);
         }
         let positive = P1::exact([1.0, 2.0]);
-        assert_eq!(bilateral::<P1, f64, 3, 2>([1.0, 2.0]).hessian, positive.hessian);
-        let negative = bilateral::<P1, f64, 3, 2>([-1.0, -2.0]);
+        assert_eq!(bilateral::<P1, f64, 3, 2>([1.0, 2.0], None).hessian, positive.hessian);
+        let negative = bilateral::<P1, f64, 3, 2>([-1.0, -2.0], None);
         assert_abs_diff_eq!(negative.energy, positive.energy, epsilon = 10.0 * ROUNDING);
     }
 
@@ -531,7 +490,7 @@ mod tests {
         let pairs =
             [([1.0, -2.0], [-0.5, 1.0]), ([1.0, 2.0], [1.5, 2.5]), ([1.0, 1.0], [-1.0, -3.0])];
         for (p, q) in pairs {
-            let distance = exact_bregman::<P1, 3, 2>(p, q);
+            let distance = exact_bregman::<P1, 3, 2>(p, q, None);
             assert_abs_diff_eq!(
                 distance,
                 by_definition(P1::exact, p, q),
@@ -539,7 +498,7 @@ mod tests {
             );
         }
         let (p, q) = ([1.0, 1.0, -1.0], [-1.0, 0.5, 1.0]);
-        let distance = exact_bregman::<P2, 6, 3>(p, q);
+        let distance = exact_bregman::<P2, 6, 3>(p, q, None);
         assert_abs_diff_eq!(distance, by_definition(P2::exact, p, q), epsilon = 10.0 * ROUNDING);
     }
 
@@ -547,7 +506,7 @@ mod tests {
     fn the_bregman_distance_keeps_its_digits_where_a_difference_of_energies_has_none() {
         let (p, q) = ([1.0, 1.0], [1.0 + 1e-9, 1.0 + 1e-9]);
         let step = q[0] - p[0];
-        let distance = exact_bregman::<P1, 3, 2>(p, q);
+        let distance = exact_bregman::<P1, 3, 2>(p, q, None);
         assert_relative_eq!(distance, step * step / 2.0, max_relative = 1e-15);
     }
 
@@ -567,7 +526,7 @@ mod tests {
     fn with_the_weight_r_the_integrals_agree_with_a_fine_rule_and_without_it_they_do_not() {
         for radii in [[0.0, 1.0], [2.0, 0.5], [1.0, 1.0]] {
             for p in [[1.0, -2.0], [-1.0, 3.0], [2.0, 0.5]] {
-                let rule = gauss_in_revolution::<P1, f64, 3, 2>(p, radii, fine());
+                let rule = gauss_in_revolution::<P1, f64, 3, 2>(p, Some(radii), fine());
                 let exact = P1::exact_in_revolution(p, radii);
                 close(&exact, &rule, 3e-4);
                 assert_abs_diff_eq!(exact.energy, rule.energy, epsilon = 1e-8);
@@ -576,7 +535,7 @@ mod tests {
                 assert_eq!(same, radii == [1.0, 1.0], "{p:?} {radii:?}");
             }
             for p in [[1.0, -2.0, 0.3], [1.0, 1.0, -1.0], [2.0, 0.5, 1.0]] {
-                let rule = gauss_in_revolution::<P2, f64, 6, 3>(p, radii, fine());
+                let rule = gauss_in_revolution::<P2, f64, 6, 3>(p, Some(radii), fine());
                 let exact = P2::exact_in_revolution(p, radii);
                 close(&exact, &rule, 5e-4);
                 assert_abs_diff_eq!(exact.energy, rule.energy, epsilon = 1e-8);
@@ -586,7 +545,7 @@ mod tests {
                     step,
                     fine().map(|(s, w)| (s, w * radius(radii, s))),
                 );
-                let bregman = exact_bregman_in_revolution::<P2, 6, 3>(p, step, radii);
+                let bregman = exact_bregman::<P2, 6, 3>(p, step, Some(radii));
                 assert_abs_diff_eq!(bregman, by_rule, epsilon = 1e-7);
             }
         }

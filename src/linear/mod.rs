@@ -1,5 +1,6 @@
 //! Matrices: A and its pattern, the order of elimination, the factor, the compliance of contact edges, small dense algebra.
 
+pub(crate) mod cholesky;
 #[doc(hidden)]
 pub mod compliance;
 #[doc(hidden)]

@@ -10,7 +10,7 @@ use faer::{Accum, MatMut, MatRef, Par};
 use pulp::{Arch, NullaryFnOnce};
 
 use super::factor::Structure;
-use crate::linear::dense;
+use crate::linear::cholesky;
 use crate::linear::matrix::LowerTriangle;
 use crate::solve::SolveError;
 
@@ -255,7 +255,7 @@ fn cholesky(block: &mut [f64], rows: usize, width: usize) -> Result<(), SolveErr
 fn wide_cholesky(block: &mut [f64], rows: usize, width: usize) -> Result<(), SolveError> {
     let block = MatMut::from_column_major_slice_mut(block, rows, width);
     let (mut top, below) = block.split_at_row_mut(width);
-    dense::cholesky(top.as_mut())?;
+    cholesky::factor(top.as_mut())?;
     solve_lower_triangular_in_place(top.as_ref(), below.transpose_mut(), Par::Seq);
     Ok(())
 }

@@ -17,9 +17,9 @@ use super::mesh::{BoundaryEdge, NO_ANGLE, ROUNDED};
 use super::problem::{Condition, Problem};
 use super::revolution::AXIS;
 use super::space::Space;
-use crate::held::rigid;
-use crate::held::rigid::{FreeMotion, Parts, pins};
 use crate::kernel::Scalar;
+use crate::model::rigid;
+use crate::model::rigid::{FreeMotion, Parts, pins};
 use crate::quote;
 
 /// The prescribed components of the displacement.

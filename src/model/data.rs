@@ -5,8 +5,8 @@ use thiserror::Error;
 use super::function::Function;
 use super::material::MaterialError;
 use super::mesh::MeshError;
-use crate::contact::pairs::PairError;
-use crate::held::rigid::FreeMotion;
+use crate::model::pairs::PairError;
+use crate::model::rigid::FreeMotion;
 use crate::quote::{key, number, quoted, short};
 
 /// Why a problem can't be posed on its mesh.

@@ -24,7 +24,7 @@ use self::bodies::Linked;
 use super::mesh::{Mesh, MeshError, TOUCHING, length};
 use super::plane_sweep::{Fault, sweep, turn};
 use super::tree::{Bounds, Tree};
-use crate::contact::pairs::Pair;
+use crate::model::pairs::Pair;
 
 /// The outline of a mesh, with the trees that find what is near.
 struct SearchableOutline<'m> {

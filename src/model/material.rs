@@ -9,9 +9,9 @@
 use nalgebra::{Matrix2, Vector3};
 use thiserror::Error;
 
-use crate::held::rigid::NEGLIGIBLE;
 use crate::kernel::{Ball, Material, Plane, Stress};
 use crate::linear::dense::singular_vectors;
+use crate::model::rigid::NEGLIGIBLE;
 
 /// Why there is no such material.
 #[derive(Clone, Debug, Error, PartialEq)]

@@ -309,6 +309,11 @@ impl Mesh {
         [t[(edge.local + 1) % 3], t[(edge.local + 2) % 3]]
     }
 
+    /// The number of a boundary edge among all edges.
+    pub(crate) fn number_of(&self, edge: BoundaryEdge) -> usize {
+        self.triangle_edges()[edge.triangle][edge.local]
+    }
+
     /// The places of the [`ends`](Mesh::ends) of a boundary edge.
     pub fn places_of_ends(&self, edge: BoundaryEdge) -> [[f64; 2]; 2] {
         self.ends(edge).map(|vertex| self.vertices[vertex])

@@ -12,6 +12,8 @@ pub(crate) mod function;
 #[doc(hidden)]
 pub mod graded_quadrature;
 pub(crate) mod groups;
+#[doc(hidden)]
+pub mod law;
 pub mod loads;
 #[doc(hidden)]
 pub mod material;
@@ -20,6 +22,8 @@ pub mod merge;
 pub mod mesh;
 #[doc(hidden)]
 pub mod obstacle;
+#[doc(hidden)]
+pub mod pairs;
 pub(crate) mod path;
 pub(crate) mod plane_sweep;
 #[doc(hidden)]
@@ -27,6 +31,8 @@ pub mod problem;
 #[doc(hidden)]
 pub mod quadrature;
 pub(crate) mod revolution;
+#[doc(hidden)]
+pub mod rigid;
 pub mod space;
 #[doc(hidden)]
 pub mod structured;

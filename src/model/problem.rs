@@ -8,8 +8,8 @@ use super::material::Materials;
 use super::mesh::bisection::Refinement;
 use super::mesh::{Mesh, MeshError};
 use super::obstacle::Obstacle;
-use crate::contact::friction::Friction;
-use crate::contact::pairs::Pair;
+use crate::model::law::Friction;
+use crate::model::pairs::Pair;
 
 fn zero() -> SharedFunction {
     Arc::new(|_| 0.0)

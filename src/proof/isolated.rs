@@ -18,7 +18,6 @@ use nalgebra::DMatrix;
 use super::Unproved;
 use super::balls::{field, free, root};
 use super::pressed::{EdgePiece, Row};
-use crate::contact::friction::Bound;
 use crate::contact::law::{EdgeRule, Law};
 use crate::contact::{Discretization, Piece};
 use crate::kernel::Response;
@@ -27,6 +26,7 @@ use crate::linear::dense::norm;
 use crate::linear::factor::Factor;
 use crate::linear::system::System;
 use crate::model::Degree;
+use crate::model::law::Bound;
 use crate::solve::coulomb::coefficient;
 
 /// The largest number of functionals, and the largest product of functionals and unknowns, for which a proof is tried: the time

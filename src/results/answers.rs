@@ -29,7 +29,6 @@ use serde::{Deserialize, Serialize};
 use nalgebra::Vector2;
 
 use crate::contact::discretization::Discretization;
-use crate::contact::friction::Bound;
 use crate::contact::law::Law;
 use crate::contact::piece::Contribution;
 use crate::contact::{EdgeRule, Piece};
@@ -37,6 +36,7 @@ use crate::kernel::DoubleDouble;
 use crate::kernel::edge_integral::radius;
 use crate::linear::dense::inner;
 use crate::model::Degree;
+use crate::model::law::Bound;
 use crate::model::mesh::{NO_ANGLE, length};
 
 /// The quantities of one part of Gamma_C, in the units of the case.

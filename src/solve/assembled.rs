@@ -15,10 +15,10 @@ use super::body::{
 use super::iterate::{Evaluation, Iterate, has_few_digits};
 use super::newton::{self, Until};
 use crate::held::clearance;
-use crate::held::rigid::Parts;
 use crate::kernel::DoubleDouble;
 use crate::linear::dense::{dot, norm};
 use crate::linear::system::{Factored, System};
+use crate::model::rigid::Parts;
 
 /// The last factored tangent.
 pub(crate) struct Assembled<'a, 'd, 'p> {

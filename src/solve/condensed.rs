@@ -42,8 +42,9 @@ use super::newton::{self, Until};
 use crate::contact::Discretization;
 use crate::held::holding::holding;
 use crate::kernel::DoubleDouble;
+use crate::linear::cholesky::{self, quasidefinite};
 use crate::linear::compliance::{Compliance, Reach};
-use crate::linear::dense::{extend_cholesky, norm, quasidefinite};
+use crate::linear::dense::norm;
 use crate::linear::factor::Factor;
 use crate::linear::system::{Factored, System};
 use crate::model::mesh::ROUNDED;
@@ -398,7 +399,9 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
             system[(i, i)] -= 2.0;
         }
         match last {
-            Some(last) => extend_cholesky(system.as_mut(), last.factor.submatrix(0, 0, kept, kept)),
+            Some(last) => {
+                cholesky::extend(system.as_mut(), last.factor.submatrix(0, 0, kept, kept))
+            }
             None => quasidefinite(system.as_mut(), roots.positive),
         }
         .map_err(|_| SolveError::Singular)?;

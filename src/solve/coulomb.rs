@@ -26,12 +26,12 @@ use super::body::{Derivatives, all_springs, derivatives};
 use super::course::Course;
 use super::iterate::{Evaluation, Iterate};
 use super::newton::Until;
-use crate::contact::friction::Bound;
 use crate::contact::law::Law;
 use crate::contact::{Discretization, Piece};
 use crate::linear::dense::norm;
 use crate::linear::factor::Factor;
 use crate::linear::system::{Factored, System};
+use crate::model::law::Bound;
 
 /// The share to which the residual must fall for a step to be taken.
 const FALLS: f64 = 0.9;

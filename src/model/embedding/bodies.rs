@@ -9,11 +9,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector2;
 
 use super::{check, check_joints, closest, crossing};
-use crate::contact::pairs::Pair;
-use crate::contact::pairs::search::Boundary;
 use crate::model::boundary_normals::SmoothBoundary;
 use crate::model::groups::groups;
 use crate::model::mesh::{Mesh, MeshError, TOUCHING, length};
+use crate::model::pairs::Pair;
+use crate::model::pairs::search::Boundary;
 use crate::model::plane_sweep::{cross, turn};
 use crate::model::tree::{Bounds, Tree};
 

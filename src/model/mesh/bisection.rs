@@ -163,7 +163,7 @@ impl Mesh {
         halved.close(self, newest);
         let Halved { middles, mut vertices, parents } = halved;
         for &edge in self.outline() {
-            let middle = middles[self.triangle_edges()[edge.triangle][edge.local]];
+            let middle = middles[self.number_of(edge)];
             let Some((vertex, place)) = middle.zip(curve(edge)) else { continue };
             let beside = Vector2::from(place) - Vector2::from(vertices[vertex]);
             let (edge_length, _) = self.length_and_normal(edge);
@@ -203,7 +203,7 @@ impl Mesh {
         let named = self.topology.boundaries.iter().map(|(name, edges)| {
             let halved = edges.iter().flat_map(|&edge| {
                 let [a, b] = self.ends(edge);
-                match middles[self.triangle_edges()[edge.triangle][edge.local]] {
+                match middles[self.number_of(edge)] {
                     None => vec![[a, b]],
                     Some(m) => vec![[a, m], [m, b]],
                 }

@@ -27,17 +27,16 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 pub use self::error::PairError;
-pub(super) use self::error::named;
+pub(crate) use self::error::named;
 use self::search::{Boundary, Facing, Stretch};
-use super::friction::Friction;
-use super::law::Law;
-use crate::held::rigid::Parts;
 use crate::model::boundary_normals::{SmoothBoundary, unit};
 use crate::model::data::{DataError, finite};
 use crate::model::element::Degree;
 use crate::model::function::SharedFunction;
+use crate::model::law::{Friction, Law};
 use crate::model::mesh::{BoundaryEdge, Mesh, MeshError, length};
 use crate::model::problem::Problem;
+use crate::model::rigid::Parts;
 use crate::model::tree::Bounds;
 use crate::quote::quoted;
 

@@ -80,7 +80,7 @@ impl FreeMotion {
     }
 
     /// The displacement at `x` if that is a point of `part`.
-    pub(super) fn at_point_of(&self, part: usize, x: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn at_point_of(&self, part: usize, x: [f64; 2]) -> [f64; 2] {
         self.all().find(|motion| motion.part == part).map_or([0.0; 2], |motion| motion.at(x))
     }
 
@@ -232,7 +232,7 @@ impl Parts {
     }
 
     /// The sum of these motions, each times its weight, with the largest coefficient made 1.
-    pub(super) fn combined(&self, motions: &[FreeMotion], weights: &[f64]) -> FreeMotion {
+    pub(crate) fn combined(&self, motions: &[FreeMotion], weights: &[f64]) -> FreeMotion {
         let mut of_parts: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
         for (motion, weight) in motions.iter().zip(weights) {
             for motion in motion.all() {
@@ -311,7 +311,7 @@ const SAME_MOTION: f64 = 1e-6;
 /// The solutions of homogeneous equations in `count` unknowns, given by their rows: a basis in which as many unknowns as can be are
 /// zero. A direction in which the equations have a singular value that `stops` is not free, beside the
 /// largest value.
-pub(super) fn null_space(
+pub(crate) fn null_space(
     rows: &[Vec<f64>],
     count: usize,
     stops: impl Fn(f64, f64) -> bool,
@@ -389,7 +389,7 @@ fn rounded(c: f64, size: f64) -> String {
 }
 
 /// field <- field - weight * other
-pub(super) fn subtract(field: &mut [[f64; 2]], other: &[[f64; 2]], weight: f64) {
+pub(crate) fn subtract(field: &mut [[f64; 2]], other: &[[f64; 2]], weight: f64) {
     for (f, o) in field.as_flattened_mut().iter_mut().zip(other.as_flattened()) {
         *f -= weight * o;
     }
