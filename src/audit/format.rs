@@ -433,12 +433,15 @@ fn displacements(
     Ok(at_vertices.into_iter().zip(beyond))
 }
 
-/// Dual pairs for some of the forces, and what each is said to prove.
+/// Dual pairs of forces, and what each is said to prove.
+type DualPairs = (Vec<(ForceTarget, Certificate)>, Vec<[f64; 2]>);
+
+/// Dual pairs for some of the forces.
 fn dual_pairs(
     targets: &[ForceTarget],
     certificate: &Certificate,
     arrays: &mut ArrayReader,
-) -> Result<(Vec<(ForceTarget, Certificate)>, Vec<[f64; 2]>), String> {
+) -> Result<DualPairs, String> {
     let of_pairs = arrays.next::<(usize, [f64; 2])>("dual forces")?;
     let (forces, between): (Vec<usize>, Vec<[f64; 2]>) = of_pairs.unzip();
     let duals = displacements("dual w", forces.len(), certificate, arrays)?;
