@@ -409,7 +409,7 @@ def test_ctrl_c_ends_a_solve(tmp_path):
     time.sleep(1)
     run.send_signal(signal.SIGINT)
     # A solve of this size takes a minute and more.
-    _, errors = run.communicate(timeout=20)
+    _, errors = run.communicate(timeout=50)
     assert "KeyboardInterrupt" in errors
 
 
