@@ -39,7 +39,7 @@ fn hold(parts: &ProblemParts, v: &mut [[f64; 2]]) {
     }
 }
 
-/// What v is pushed out of.
+/// The obstacles and bodies that v is pushed out of.
 struct Out<'a> {
     parts: &'a ProblemParts<'a>,
     /// On each edge of Gamma_C, by how much more than doubles ask for.

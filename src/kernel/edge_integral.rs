@@ -72,7 +72,7 @@ pub trait ExactEdge<S, const N: usize, const M: usize>: Element<N, M> {
     /// The integrals without quadrature error. A NaN in `p` makes them NaN.
     fn exact(p: [S; M]) -> EdgeIntegrals<S, M>;
 
-    /// The same with the weight r, which has the values `radii` at the two ends.
+    /// Integrates as [`ExactEdge::exact`] with the weight r, which has the values `radii` at the two ends.
     #[cfg(not(kani))]
     fn exact_in_revolution(p: [S; M], radii: [S; 2]) -> EdgeIntegrals<S, M>;
 }

@@ -167,7 +167,7 @@ pub struct Verifier<'s, 'd, 'p> {
     at_hand: Option<Factored>,
     /// For what is pressed: the bounds at the nodes, and the factor, once it is needed.
     held: Option<HeldByContact>,
-    /// What the proof with Coulomb's friction knows of A.
+    /// Bounds of A for the proof with Coulomb's friction.
     known: Option<isolated::Known>,
     /// The sum of the magnitudes of the residual where it was last evaluated.
     pub(crate) unbalanced: f64,
@@ -497,7 +497,7 @@ fn widen(nodes: &mut [f64], exactly: &[[PreciseBall; 2]], reported: &[[f64; 2]])
     }
 }
 
-/// What is known of other solutions, from where the residual is known carried to the displacement that is reported.
+/// Says what is known of other solutions, from where the residual is known carried to the displacement that is reported.
 fn isolation(
     Isolated { within, everywhere, limits, .. }: Isolated,
     at: &EnclosedResidual,

@@ -192,7 +192,7 @@ impl EnclosedResidual {
         })
     }
 
-    /// What the force of each functional is off the middle of its ball, at most.
+    /// The radius of the ball of each functional's force.
     pub(crate) fn spread(&self) -> Vec<f64> {
         self.pressures.iter().flatten().map(|force| force.radius()).collect()
     }

@@ -71,7 +71,7 @@ pub(super) struct Body<'a, 'd, 'p> {
 struct Compliance {
     /// Its middle.
     g: Mat<f64>,
-    /// What each entry is off by, at most.
+    /// A bound of the error of each entry.
     by: Mat<f64>,
     /// The largest of these, and the norm of what G is off.
     entry: f64,
@@ -168,14 +168,14 @@ impl Body<'_, '_, '_> {
 
 /// Bounds of linear combinations of P0_n(v) and P0_t(v) on a piece, for v of norm 1.
 struct Reach {
-    /// Of P0_n, and of P0_t; 0 where the piece does not feel that.
+    /// The bounds of P0_n and of P0_t; 0 where the piece does not feel that component.
     normal: f64,
     across: f64,
     /// Products of what the components at a node are, n with n, t with t, n with t; what these are off by, and what a component is.
     nodes: Vec<[f64; 3]>,
     entry: f64,
     slack: f64,
-    /// What a polynomial exceeds its nodal values by.
+    /// The factor by which a polynomial exceeds its nodal values.
     between: f64,
 }
 

@@ -11,8 +11,10 @@ pub mod ladder;
 mod slip_tip;
 mod stick_slip;
 pub mod theorem;
+mod unsolved;
 
 pub use ladder::{Ladder, LadderError, Level, problem};
 pub use slip_tip::SlipTip;
 pub use stick_slip::StickSlip;
 pub use theorem::Theorem;
+pub use unsolved::unsolved;

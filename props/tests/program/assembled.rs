@@ -21,11 +21,7 @@ use signorini::linear::matrix;
 use signorini::linear::matrix::{LowerTriangle, Neighbours, Numbering};
 use signorini::model::{BoundaryEdge, Mesh};
 use signorini::nalgebra::Vector2;
-use signorini::proof::Unproved;
-use signorini::results::{
-    MethodReport, NewtonReport, Report, RouteName, Solution, Status, Verdict as Proved,
-};
-use signorini::solve::iterate::Evaluated;
+use study::unsolved;
 
 use props::bodies::{Body, Definition, Rule, Side, combined, contact_class, sum};
 use props::claim::Outcome;
@@ -214,31 +210,6 @@ fn defined<S: Given, const N: usize>(
     all
 }
 
-/// The report that goes with a displacement that nothing was solved for.
-pub fn unsolved() -> Report {
-    let newton = NewtonReport {
-        status: Status::Converged,
-        residuals: Vec::new(),
-        residual: 0.0,
-        factorizations: 0,
-    };
-    let method = MethodReport {
-        route: RouteName::Condensed,
-        predicted_operations: 0.0,
-        condition: 1.0,
-        forward_error: 0.0,
-        threads: 1,
-        slides: 0,
-    };
-    Report {
-        newton,
-        method,
-        enclosure: Err(Unproved::NotHeld),
-        verdict: Proved::Proved,
-        plays: Vec::new(),
-    }
-}
-
 /// The same numbers by the solver, in the same order.
 fn assembled(
     d: &Discretization<'_>,
@@ -246,7 +217,7 @@ fn assembled(
     numbering: Option<&Numbering>,
 ) -> Vec<Named<f64>> {
     let flat = |field: &[[f64; 2]]| field.as_flattened().to_vec();
-    let solution = Solution::new(d, Evaluated::new(d, u.to_vec()), unsolved());
+    let solution = unsolved(d, u.to_vec());
     let q = &solution.quantities;
     // In order along the edge.
     let sorted =
@@ -460,8 +431,7 @@ fn contact_length_is_the_measure_of_the_pressed_part<const N: usize>(
     let lengths = sum(&exact.body.contact, |side| side.length);
     // Root, difference, product, sum.
     let slack = lengths * Exact::of_double(12.0 * UNIT);
-    let length =
-        Solution::new(d, Evaluated::new(d, u.to_vec()), unsolved()).quantities.contact_length;
+    let length = unsolved(d, u.to_vec()).quantities.contact_length;
     let length = Exact::of_double(length);
     measure(-1.0) - slack <= length && length <= measure(1.0) + slack
 }

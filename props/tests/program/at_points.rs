@@ -3,10 +3,9 @@
 use signorini::kernel::{Material, Plane};
 use signorini::model::{Degree, Problem};
 use signorini::results::Solution;
-use signorini::solve::iterate::Evaluated;
 use signorini::solve::{Method, discretize_any};
+use study::unsolved;
 
-use super::assembled::unsolved;
 use props::claim::{Outcome, text};
 use props::proof::sampler::Random;
 use props::{draws, sharpness};
@@ -15,7 +14,7 @@ use props::{draws, sharpness};
 fn anything(degree: Degree, problem: &Problem) -> Result<Solution, String> {
     let d = discretize_any(problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let drawn = super::random_field(&mut Random::new(draws::seed()), d.space.nodes().len());
-    Ok(Solution::new(&d, Evaluated::new(&d, drawn), unsolved()))
+    Ok(unsolved(&d, drawn))
 }
 
 fn unequal() -> Result<Problem, String> {

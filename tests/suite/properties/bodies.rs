@@ -5,8 +5,6 @@ use std::f64::consts::PI;
 use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
 use signorini::model::{Condition, Diagonal, Mesh, Problem, Rectangle, Trapezoid};
-use signorini::proof::Unproved;
-use signorini::results::{MethodReport, NewtonReport, Report, RouteName, Status, Verdict};
 
 use super::{Outcome, text};
 use crate::common::{conditions, constant, function};
@@ -73,29 +71,4 @@ pub fn on_bodies(mut check: impl FnMut(&Problem, Degree) -> Outcome) -> Outcome 
         }
     }
     Ok(())
-}
-
-/// The report that goes with a displacement that nothing was solved for.
-pub fn unsolved() -> Report {
-    let newton = NewtonReport {
-        status: Status::Converged,
-        residuals: Vec::new(),
-        residual: 0.0,
-        factorizations: 0,
-    };
-    let method = MethodReport {
-        route: RouteName::Condensed,
-        predicted_operations: 0.0,
-        condition: 1.0,
-        forward_error: 0.0,
-        threads: 1,
-        slides: 0,
-    };
-    Report {
-        newton,
-        method,
-        enclosure: Err(Unproved::NotHeld),
-        verdict: Verdict::Proved,
-        plays: Vec::new(),
-    }
 }

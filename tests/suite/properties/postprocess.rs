@@ -9,10 +9,10 @@ use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
 use signorini::model::{Condition, Diagonal, Mesh, Problem, Rectangle};
 use signorini::results::{ContactBoundary, EnergyBalance, Solution};
-use signorini::solve::iterate::Evaluated;
 use signorini::solve::{Method, discretize};
+use study::unsolved;
 
-use super::bodies::{on_bodies, unsolved};
+use super::bodies::on_bodies;
 use super::{Outcome, field, for_all, properties, text};
 use crate::common::{moved_to, unit_material};
 
@@ -34,7 +34,7 @@ fn stresses_on(degree: Degree, problem: &Problem, plane: Option<Plane>) -> Resul
 
 fn stresses_of(d: &Discretization, u: Vec<[f64; 2]>, plane: Option<Plane>) -> Outcome {
     let (degree, problem) = (d.space.degree(), d.problem);
-    let solution = Solution::new(d, Evaluated::new(d, u.clone()), unsolved());
+    let solution = unsolved(d, u.clone());
     // Some ten roundings.
     let near = |found: f64, expected: f64| relative_eq!(found, expected, max_relative = 1e-13);
     for (t, (stress, zz)) in solution.stress.iter().enumerate() {
@@ -99,7 +99,7 @@ fn stresses_of(d: &Discretization, u: Vec<[f64; 2]>, plane: Option<Plane>) -> Ou
     // Pressed on all edges, too, where a stretch goes on from one to the next.
     let down: Vec<[f64; 2]> = u.iter().map(|[x, y]| [*x, y - 1e3]).collect();
     for u in [&u, &down] {
-        let solution = Solution::new(d, Evaluated::new(d, u.clone()), unsolved());
+        let solution = unsolved(d, u.clone());
         for part in &solution.boundaries {
             stretches_are_those_of_contact(d, u, &solution, part)?;
         }
@@ -284,7 +284,7 @@ fn recovered(degree: Degree, across: bool) -> Outcome {
 
 fn recovered_from(d: &Discretization, u: Vec<[f64; 2]>, across: bool) -> Outcome {
     let degree = d.space.degree();
-    let solution = Solution::new(d, Evaluated::new(d, u.clone()), unsolved());
+    let solution = unsolved(d, u.clone());
     let key = |place: [f64; 2], normal: [f64; 2]| -> Key {
         let side = if across { [0.0; 2] } else { normal };
         (place.map(f64::to_bits), side.map(|n| n.round().to_bits()))
@@ -345,7 +345,7 @@ fn anything(
 ) -> Result<Solution, String> {
     let d = discretize(problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let values = d.space.nodes().iter().enumerate().map(|(node, &x)| u(node, x)).collect();
-    Ok(Solution::new(&d, Evaluated::new(&d, values), unsolved()))
+    Ok(unsolved(&d, values))
 }
 
 fn unequal() -> Result<Problem, String> {
