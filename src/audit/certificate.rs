@@ -497,7 +497,6 @@ pub struct Shape<S> {
 }
 
 impl<S: Enclosing> Shape<S> {
-    #[doc(hidden)]
     pub(crate) fn bulges_of(&self, piece: &Piece) -> Option<[Vector2<S>; 3]> {
         self.bulges.as_ref().map(|bulges| piece.edges.map(|e| bulges[e]))
     }

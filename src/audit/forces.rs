@@ -301,9 +301,9 @@ pub enum WrongLifting {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct LiftingValue<S> {
     /// L(w) - int m : eps(w)
-    pub(crate) middle: S,
+    middle: S,
     /// An upper bound of |w|_a.
-    pub(crate) norm: f64,
+    norm: f64,
 }
 
 /// w0 of the module's head: its Bernstein coefficients on the edges of Gamma_C, and what R(w0) lies between.
