@@ -75,6 +75,11 @@ impl Rule {
         }
     }
 
+    /// The barycentric coordinates of the points on a triangle without features, in the order of [`Rule::on_triangle`].
+    pub(crate) fn plain(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
+        self.plain.iter().map(|(l, _)| *l)
+    }
+
     /// Calls `f` with barycentric coordinates, place and weight of every point; the weights add up to the area.
     pub fn on_triangle(
         &self,

@@ -1,5 +1,6 @@
 //! L(v) = int_Omega f . v + int_{Gamma_N} t . v for every basis function v; in a body of revolution with the weight r, for a radian.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::data::{DataError, checked};
@@ -58,7 +59,7 @@ pub fn assemble_with(
     points: impl Fn(&dyn Function) -> usize,
 ) -> Result<Vec<[f64; 2]>, DataError> {
     let mut load = vec![[0.0; 2]; space.nodes().len()];
-    each_force(problem, space, points, |force| force.add_to(space.degree(), &mut load))?;
+    each_force(problem, space, points, |force| force.add_to(&force.shapes.in_doubles, &mut load))?;
     Ok(load)
 }
 
@@ -83,20 +84,36 @@ pub(crate) fn assemble_twice(problem: &Problem, space: &Space) -> Result<LoadVec
         space,
         |load| points(load, tested(problem, space)),
         |force| {
-            force.add_to(space.degree(), &mut in_doubles);
-            force.add_to(space.degree(), &mut in_balls);
+            force.add_to(&force.shapes.in_doubles, &mut in_doubles);
+            force.add_to(&force.shapes.in_balls, &mut in_balls);
         },
     )?;
     Ok(LoadVector { in_doubles, in_balls })
 }
 
-/// The place on an element.
-#[derive(Clone, Copy)]
-enum ElementPoint {
-    /// Barycentric coordinates.
-    Inside([f64; 3]),
+/// The shape functions at a point of a triangle or an edge.
+#[derive(Clone)]
+struct Shapes {
+    in_doubles: Vec<f64>,
+    in_balls: Vec<PreciseBall>,
+}
+
+impl Shapes {
+    /// At barycentric coordinates.
+    fn inside(degree: Degree, l: [f64; 3]) -> Self {
+        with_element!(degree, E => Shapes {
+            in_doubles: E::values(l).to_vec(),
+            in_balls: E::values(l.map(PreciseBall::from)).to_vec(),
+        })
+    }
+
     /// Between the ends of an edge, from 0 to 1.
-    OnEdge(f64),
+    fn on_edge(degree: Degree, s: f64) -> Self {
+        with_element!(degree, E => Shapes {
+            in_doubles: E::edge_values(s).to_vec(),
+            in_balls: E::edge_values(PreciseBall::from(s)).to_vec(),
+        })
+    }
 }
 
 /// Weight times value of a load at a point of its rule.
@@ -106,24 +123,18 @@ struct Force<'a> {
     value: f64,
     /// The nodes of the triangle or the edge.
     nodes: &'a [usize],
-    place: ElementPoint,
+    shapes: &'a Shapes,
 }
 
 impl Force<'_> {
-    fn add_to<S>(&self, degree: Degree, load: &mut [[S; 2]])
+    fn add_to<S>(&self, shapes: &[S], load: &mut [[S; 2]])
     where
         S: Scalar + From<f64>,
     {
-        let mut add = |shapes: &[S]| {
-            for (&node, &shape) in self.nodes.iter().zip(shapes) {
-                load[node][self.c] += <S as From<f64>>::from(self.value) * shape;
-            }
-        };
-        let exactly = <S as From<f64>>::from;
-        with_element!(degree, E => match self.place {
-            ElementPoint::Inside(l) => add(&E::values(l.map(exactly))),
-            ElementPoint::OnEdge(s) => add(&E::edge_values(exactly(s))),
-        });
+        let value = <S as From<f64>>::from(self.value);
+        for (&node, &shape) in self.nodes.iter().zip(shapes) {
+            load[node][self.c] += value * shape;
+        }
     }
 }
 
@@ -272,14 +283,18 @@ fn each_body_force(
     mut add: impl FnMut(Force, [f64; 2]),
 ) -> Result<(), DataError> {
     let mut wrong = None;
+    let shapes_at = |l| Shapes::inside(space.degree(), l);
+    // The same on every triangle that is not cut.
+    let known: Vec<([f64; 3], Shapes)> = rule.plain().map(|l| (l, shapes_at(l))).collect();
     for t in triangles {
-        let nodes = space.nodes_of(t);
+        let (nodes, mut expected) = (space.nodes_of(t), known.iter());
         rule.on_triangle(&space.mesh().triangle(t), |l, x, weight| {
+            let shapes = match expected.next() {
+                Some((at, shapes)) if *at == l => Cow::Borrowed(shapes),
+                _ => Cow::Owned(shapes_at(l)),
+            };
             match checked(f.at(x), x, &what) {
-                Ok(f) => {
-                    let place = ElementPoint::Inside(l);
-                    add(Force { c, value: weight * f, nodes, place }, x);
-                }
+                Ok(f) => add(Force { c, value: weight * f, nodes, shapes: &shapes }, x),
                 Err(error) => wrong = wrong.take().or(Some(error)),
             }
         });
@@ -304,7 +319,8 @@ fn each_force_on_boundary(
         rule.on_edge(ends, [], |point| match value(point.x, normal.into()) {
             Ok(t) => {
                 let value = point.weight * length * t;
-                add(Force { c, value, nodes, place: ElementPoint::OnEdge(point.s) }, point.x);
+                let shapes = &Shapes::on_edge(space.degree(), point.s);
+                add(Force { c, value, nodes, shapes }, point.x);
             }
             Err(error) => wrong = wrong.take().or(Some(error)),
         });

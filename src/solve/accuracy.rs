@@ -232,9 +232,10 @@ impl<'a, 'd, 'p> IterativeRefinement<'a, 'd, 'p> {
 
     fn pass(&mut self, route: &mut dyn Route) -> Result<(), SolveError> {
         let size = self.system.size(self.at.energy.sqrt(), &self.iterate.rounded());
-        // The first pass goes as far as it can; corrections stop at what is good enough.
-        let residual = if self.residuals.is_empty() { 0.0 } else { self.settings.tolerance };
-        let until = Until { steps: self.settings.max_iterations, residual };
+        let Settings { max_iterations: steps, tolerance: near, .. } = *self.settings;
+        // The first pass goes to near a solution; corrections stop at what is good enough.
+        let residual = if self.residuals.is_empty() { 0.0 } else { near };
+        let until = Until { steps, residual, near };
         let pass = route.pass(&mut self.iterate, &mut self.at, &mut self.residuals, until)?;
         // The earlier proof is of another displacement.
         self.enclosure = Err(Unproved::NotReached);

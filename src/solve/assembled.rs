@@ -171,12 +171,12 @@ impl Full<'_, '_, '_, '_, '_> {
         r
     }
 
-    /// How much stiffer contact is than the body, by the power method on A^-1 B^T Psi'' B; A is what was factored last.
+    /// How much stiffer contact is than the body, by the power method on A^-1 B^T Psi'' B from the last step on; A is what was factored last.
     fn stiffness(&self, at: &Derivatives) -> Result<f64, SolveError> {
         let Some(Factored { factor, .. }) = &self.route.factored else {
             return Ok(springs_beside_shear(self.route.system.d));
         };
-        Ok(newton::largest_eigenvalue(self.route.system.numbering.count, |x| {
+        Ok(newton::largest_eigenvalue(self.d.clone(), |x| {
             let mut force = vec![0.0; x.len()];
             self.route.system.add_forces(&at.hessian_times(&self.values_of_p0(x)), &mut force);
             factor.solve(&mut force);

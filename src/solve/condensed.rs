@@ -517,15 +517,18 @@ impl Body for Reduced<'_, '_, '_, '_> {
         }
         let at = derivatives(edges, 1.0, &self.y);
         let roots = self.roots(&at.hessian).columns;
-        let stiffness = newton::largest_eigenvalue(roots.len(), |x| {
+        let values_of = |values: &[f64]| -> Vec<f64> {
+            roots.iter().map(|(own, column)| product(column, &values[own.clone()])).collect()
+        };
+        let y: Vec<f64> = self.y.iter().map(|y| y.head()).collect();
+        let stiffness = newton::largest_eigenvalue(values_of(&y), |x| {
             let mut rx = vec![0.0; self.y.len()];
             for ((values, column), x) in roots.iter().zip(x) {
                 for (i, entry) in values.clone().zip(column) {
                     rx[i] += entry * x;
                 }
             }
-            let grx = self.times_compliance(&rx);
-            roots.iter().map(|(values, column)| product(column, &grx[values.clone()])).collect()
+            values_of(&self.times_compliance(&rx))
         });
         // Without contact the body bends so far that condensing loses all digits: contact holds the body, and the tangent
         // must know it.

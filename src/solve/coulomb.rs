@@ -659,7 +659,7 @@ mod tests {
             let mut other = Coulomb::new(&system, 1.0);
             let mut iterate = Iterate::lift(&d);
             let first = size(1.0, &iterate);
-            let until = Until { steps: 200, residual: 0.0 };
+            let until = Until { steps: 200, residual: 0.0, near: 0.0 };
             other.continued(&mut iterate, until).unwrap();
             // The control: for softer springs this is no solution.
             let [last, soft] = [1.0, 0.5].map(|stiffness| size(stiffness, &iterate));
@@ -685,7 +685,7 @@ mod tests {
             let system = System::new(&d).unwrap();
             let mut route = Coulomb::new(&system, 1.0);
             let mut iterate = Iterate::lift(&d);
-            let until = Until { steps: 200, residual: 0.0 };
+            let until = Until { steps: 200, residual: 0.0, near: 0.0 };
             let bounds = vec![[0.05; 3]; d.contact.len()];
             route.tresca(&mut iterate, &mut Vec::new(), until, (&bounds, false)).unwrap();
             let (r, terms) = route.residual(&iterate.evaluate(&system, false));

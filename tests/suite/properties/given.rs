@@ -10,6 +10,7 @@ use signorini::exact::{Corner, Kind, Singular, Smooth};
 use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
 use signorini::model::graded_quadrature::{Features, Rule};
+use signorini::model::material::stable;
 use signorini::model::{
     Condition, DataError, Diagonal, Mesh, Perturbation, Problem, Rectangle, Structured, Trapezoid,
 };
@@ -190,7 +191,7 @@ fn limits(wider: f64) -> Outcome {
     let [most_steps, most_points] = [MOST_ITERATIONS, MOST_GAUSS_POINTS].map(|most| most as f64);
     type Row<'a> = (&'a str, &'a dyn Fn(f64) -> bool, &'a [f64], &'a [f64]);
     // What takes a number, and numbers that are taken and refused.
-    let rows: [Row; 4] = [
+    let rows: [Row; 5] = [
         (
             "tolerance",
             &|t| Settings::new(t, 10).is_ok(),
@@ -208,6 +209,12 @@ fn limits(wider: f64) -> Outcome {
             &|n| ContactQuadrature::gauss(n as usize).is_ok(),
             &[1.0, most_points],
             &[0.0, most_points + 1.0],
+        ),
+        (
+            "Poisson's ratio in plane stress",
+            &|nu| stable(Material::young_poisson(1.0, nu, Plane::Stress)).is_ok(),
+            &[just - 1.0, -0.7, 0.3, 0.5 - just],
+            &[-1.0 - just, -1.5, 0.5 + just + 1.0],
         ),
         (
             "gamma0",

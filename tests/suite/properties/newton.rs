@@ -154,7 +154,7 @@ const MOST: usize = 60;
 /// the number of steps.
 fn ends(body: &mut Body, first: bool) -> Result<(f64, usize), String> {
     let mut residuals = Vec::new();
-    let until = Until { steps: MOST, residual: 0.0 };
+    let until = Until { steps: MOST, residual: 0.0, near: 0.0 };
     newton::minimise(&Springs, body, first, &mut residuals, until).map_err(text)?;
     let at = body::derivatives(&Springs, 1.0, &body.y());
     let Residual { norm, noise } = body.residual(&at);
@@ -270,7 +270,7 @@ fn line_searches(full: bool) -> Outcome {
     for_all(500, any_body(), |body| {
         let body = Body { full, ..body };
         let mut watched = Watched { body, stiffness: None, left: 0.0, soft: 0 };
-        let until = Until { steps: MOST, residual: 0.0 };
+        let until = Until { steps: MOST, residual: 0.0, near: 0.0 };
         newton::minimise(&Springs, &mut watched, true, &mut Vec::new(), until).map_err(text)?;
         if !(watched.left <= 0.0101) {
             return Err(format!("{} of the derivative is left", watched.left));
