@@ -103,8 +103,7 @@ in bytes for each unknown.
 /// What was measured and not built.
 pub const LEFT_OUT: &str = "## Tried, and left out
 
-- Two threads in the sparse factorisation (rayon): n = 128 takes 2.2 times as long, n = 512 1.3 times: supernodes of plane bodies are too
-  small to share. So there is no option for threads.
+- Two threads in the sparse factorisation (rayon): n = 128 takes 2.2 times as long, n = 512 1.3 times: supernodes are too small to share.
 - faer's minimum degree in place of nested dissection: at n = 256 order, analysis and factorisation take 1.8 times as long.
 - No correction where the first pass is accurate enough: 4 to 8 % less time, but forces balance to 1e-12 and not to 1e-15, and
   enclosures are ten times as wide.

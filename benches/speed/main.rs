@@ -38,7 +38,7 @@ struct Plan {
 impl Plan {
     /// The most cells along a side of a square, for P1 and P2.
     fn most(&self) -> [usize; 2] {
-        if self.quick { [64, 32] } else { [512, 256] }
+        if self.quick { [64, 64] } else { [512, 256] }
     }
 
     fn repetitions(&self) -> usize {
