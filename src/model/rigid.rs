@@ -23,6 +23,7 @@ use crate::linear::dense::singular_vectors;
 use crate::model::element::Degree;
 use crate::model::mesh::Mesh;
 use crate::model::space::Space;
+use crate::model::tree::Bounds;
 
 /// The parts of a body.
 #[derive(Clone, Debug)]
@@ -177,20 +178,15 @@ impl Parts {
     pub(crate) fn new(mesh: &Mesh) -> Self {
         let of_triangle = mesh.parts().to_vec();
         let count = of_triangle.iter().max().map_or(0, |last| last + 1);
-        let mut boxes = vec![[[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]]; count];
+        let mut boxes = vec![Bounds::around([]); count];
         let mut places = vec![None; count];
         for (t, &part) in of_triangle.iter().enumerate() {
             let triangle = mesh.triangle(t);
             places[part].get_or_insert_with(|| triangle.point([1.0 / 3.0; 3]).into());
-            let [low, high] = &mut boxes[part];
-            for x in triangle.vertices {
-                for c in 0..2 {
-                    low[c] = low[c].min(x[c]);
-                    high[c] = high[c].max(x[c]);
-                }
-            }
+            let corners = Bounds::around(triangle.vertices.map(Into::into));
+            boxes[part] = boxes[part].with(corners);
         }
-        let frames = boxes.iter().zip(places).map(|([low, high], place)| {
+        let frames = boxes.iter().zip(places).map(|(Bounds { low, high }, place)| {
             let halves = [0, 1].map(|c| high[c] / 2.0 - low[c] / 2.0);
             let centre = [0, 1].map(|c| low[c] + halves[c]);
             PartFrame { centre, half: halves[0].max(halves[1]), place: place.unwrap_or(centre) }

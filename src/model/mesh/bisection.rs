@@ -152,7 +152,7 @@ impl Mesh {
     ///
     /// # Errors
     /// As [`Mesh::bisected`].
-    pub fn bisected_along(
+    pub(crate) fn bisected_along(
         &self,
         newest: &[usize],
         marked: &[usize],
