@@ -48,10 +48,9 @@ fn at_nodes(points: &Points, mesh: &Mesh, degree: Degree) -> Result<Vec<[f64; 2]
     let all = nodes.clone();
     let distance = |k: usize, x: [f64; 2]| (all[k][0] - x[0]).hypot(all[k][1] - x[1]);
     let nearest = |x: [f64; 2]| {
-        let mut near = Vec::new();
-        tree.meeting(Bounds::around([x]).widened(reach), |k| near.push(k));
-        near.retain(|&k| distance(k, x) <= reach);
-        near.into_iter().min_by(|&a, &b| distance(a, x).total_cmp(&distance(b, x)))
+        let near = tree.meeting(Bounds::around([x]).widened(reach)).into_iter();
+        near.filter(|&k| distance(k, x) <= reach)
+            .min_by(|&a, &b| distance(a, x).total_cmp(&distance(b, x)))
     };
     // A field of degree 1 has points at vertices alone.
     let quadratic = points.iter().any(|&(x, _)| nearest(x).is_some_and(|k| k >= vertices));

@@ -23,6 +23,7 @@ use crate::model::Mesh;
 use crate::proof::Intervals;
 use crate::proof::enclosure::{Enclosure, Isolation, Unproved};
 use crate::quote;
+use crate::results::whole::Times;
 use crate::results::{
     ContactBoundary, EnergyBalance, GammaReport, MethodReport, Quantities, Status,
 };
@@ -183,48 +184,27 @@ impl Results {
     /// Turns forces, moments and energies per unit of thickness into those of a body of this thickness; intervals outwards, should
     /// a product be rounded. Norms stay what they are, per unit of thickness.
     pub(super) fn of_thickness(&mut self, thickness: f64) {
-        let times = |x: &mut f64| *x *= thickness;
-        let outwards = |[low, high]: &mut [f64; 2]| {
-            let exact = |x: f64| x == 0.0 || thickness == 1.0;
-            *low = if exact(*low) { *low } else { (*low * thickness).next_down() };
-            *high = if exact(*high) { *high } else { (*high * thickness).next_up() };
+        let outwards = |[low, high]: [f64; 2], factor: f64| {
+            let exact = |x: f64| x == 0.0 || factor == 1.0;
+            let low = if exact(low) { low } else { (low * factor).next_down() };
+            [low, if exact(high) { high } else { (high * factor).next_up() }]
         };
-        let q = &mut self.quantities;
-        [&mut q.energy, &mut q.elastic_energy, &mut q.work, &mut q.contact_force]
-            .into_iter()
-            .chain(&mut q.contact_resultant)
-            .chain(q.reactions.values_mut().flatten())
-            .chain(self.reaction_moments.values_mut())
-            .for_each(times);
-        for part in &mut self.contact {
-            let [x, y] = &mut part.resultant;
-            [&mut part.force, &mut part.moment, x, y].into_iter().for_each(times);
-            if let Some(friction) = &mut part.friction {
-                [&mut friction.shear, &mut friction.dissipated].into_iter().for_each(times);
-            }
-        }
-        if let Some(b) = &mut self.balance {
-            let all = [&mut b.strain, &mut b.loads, &mut b.supports, &mut b.contact];
-            all.into_iter().for_each(times);
-        }
+        let times = Times::thickness(thickness);
+        times.quantities(&mut self.quantities);
+        times.boundaries(&mut self.contact);
+        self.balance.iter_mut().for_each(|balance| times.balance(balance));
+        self.reaction_moments.values_mut().for_each(|moment| *moment *= thickness);
         let Some(Certificates { discrete, continuous }) = &mut self.certificate else { return };
         if let Some(of) = discrete.as_mut().and_then(|discrete| discrete.intervals.as_mut()) {
-            outwards(&mut of.energy);
-            for part in &mut of.contact {
-                outwards(&mut part.force);
-                part.resultant.iter_mut().for_each(outwards);
-            }
-            of.reactions.values_mut().flatten().for_each(outwards);
+            times.intervals(of, outwards);
         }
         let Some(continuous) = continuous else { return };
         let energies = [&mut continuous.potential_energy, &mut continuous.compliance];
-        energies.into_iter().flatten().for_each(outwards);
+        energies.into_iter().flatten().for_each(|energy| *energy = outwards(*energy, thickness));
         for quantity in continuous.quantities.iter_mut().filter(|q| q.name != PEAK) {
             quantity.value *= thickness;
             if let Some((low, Some(high))) = &mut quantity.interval {
-                let mut ends = [*low, *high];
-                outwards(&mut ends);
-                [*low, *high] = ends;
+                [*low, *high] = outwards([*low, *high], thickness);
             }
         }
         for zone in &mut continuous.zones {

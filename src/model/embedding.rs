@@ -132,32 +132,46 @@ impl<'m> SearchableOutline<'m> {
     /// Checks each vertex against the edges near it, then the outline as a whole: what nearly touches often crosses too, and is
     /// better called by its name.
     fn check(&self) -> Result<(), MeshError> {
-        let mut near = Near { outline: self, pairs: Vec::new(), found: 0, error: None };
-        self.search(&mut near);
-        near.check();
-        near.error.map_or(Ok(()), Err)?;
+        self.check_near().0?;
         // Adding 0.0 makes -0 and 0 the same place.
         let place = |[x, y]: &[f64; 2]| Vector2::new(x + 0.0, y + 0.0);
         let places: Vec<Vector2<f64>> = self.mesh.vertices().iter().map(place).collect();
         sweep(&places, &self.ends).map_err(|fault| self.named(fault))
     }
 
-    /// Finds the edges near each vertex: those no further from it than [`TOUCHING`] times the shortest edge there.
-    fn search(&self, near: &mut Near) {
+    /// Checks each vertex against the edges near it, those no further from it than [`TOUCHING`] times the shortest edge there. Of
+    /// several faults that of the first edge counts; where there is one, not all need be found, for of vertices that are near each
+    /// other there may be many. Returns also how many pairs of edges have been looked at.
+    fn check_near(&self) -> (Result<(), MeshError>, usize) {
+        // More pairs for each edge than most meshes have.
+        const ENOUGH: usize = 16;
         let around = |e: usize| Bounds::around(self.places(e).map(Into::into));
         let tree = Tree::new((0..self.ends.len()).map(around).collect());
-        for &vertex in self.at.keys() {
+        let mut fault: Option<([usize; 2], MeshError)> = None;
+        let mut count = 0;
+        for (&vertex, edges) in &self.at {
             let place = self.place(vertex);
             // A little more, to cover rounding.
             let reach = 1.001 * TOUCHING * self.shortest[vertex];
-            tree.meeting(Bounds::around([place.into()]).widened(reach), |e| {
-                let is_near = !self.ends[e].contains(&vertex)
-                    && length(closest(self.places(e), place) - place) <= reach;
-                if is_near && near.error.is_none() {
-                    near.add(vertex, e);
+            for e in tree.meeting(Bounds::around([place.into()]).widened(reach)) {
+                let is_near = length(closest(self.places(e), place) - place) <= reach;
+                if self.ends[e].contains(&vertex) || !is_near {
+                    continue;
                 }
-            });
+                for &f in edges.iter().filter(|&&f| self.ends[f][0] == vertex) {
+                    count += 1;
+                    if fault.as_ref().is_none_or(|(first, _)| [e, f] < *first)
+                        && let Err(error) = self.check_vertex(e, f)
+                    {
+                        fault = Some(([e, f], error));
+                    }
+                }
+            }
+            if fault.is_some() && count > ENOUGH * self.ends.len() {
+                break;
+            }
         }
+        (fault.map_or(Ok(()), |(_, error)| Err(error)), count)
     }
 
     /// The error that a fault of the outline is.
@@ -256,40 +270,6 @@ impl<'m> SearchableOutline<'m> {
     fn is_in(&self, t: usize, p: Vector2<f64>, is_within: impl Fn(f64) -> bool) -> bool {
         let corners = self.mesh.triangles()[t].map(|v| self.place(v));
         (0..3).all(|i| is_within(turn(corners[i], corners[(i + 1) % 3], p)))
-    }
-}
-
-/// Pairs of an edge and an edge whose first vertex is near to it, to be checked in their order, some at a time: of vertices that are
-/// near each other there may be many, and one pair that is wrong is enough.
-struct Near<'o, 'm> {
-    outline: &'o SearchableOutline<'m>,
-    pairs: Vec<[usize; 2]>,
-    /// How many there have been.
-    found: usize,
-    error: Option<MeshError>,
-}
-
-impl Near<'_, '_> {
-    /// Takes note that an edge is near a vertex.
-    fn add(&mut self, vertex: usize, e: usize) {
-        // More pairs for each edge than most meshes have.
-        const AT_A_TIME: usize = 16;
-        let outline = self.outline;
-        let begin = outline.at[&vertex].iter().filter(|&&f| outline.ends[f][0] == vertex);
-        self.pairs.extend(begin.filter(|&&f| f != e).map(|&f| [e, f]));
-        if self.pairs.len() > AT_A_TIME * outline.ends.len() {
-            self.check();
-        }
-    }
-
-    /// Checks those at hand.
-    fn check(&mut self) {
-        let mut pairs = std::mem::take(&mut self.pairs);
-        self.found += pairs.len();
-        pairs.sort_unstable();
-        pairs.dedup();
-        let wrong = pairs.into_iter().find_map(|[e, f]| self.outline.check_vertex(e, f).err());
-        self.error = self.error.take().or(wrong);
     }
 }
 
@@ -433,10 +413,7 @@ mod tests {
         for (vertices, triangles) in [slender(500), comb(200)] {
             let mesh = Mesh::new(vertices, triangles, []).unwrap();
             let outline = SearchableOutline::new(&mesh);
-            let mut near = Near { outline: &outline, pairs: Vec::new(), found: 0, error: None };
-            outline.search(&mut near);
-            near.check();
-            let (found, edges) = (near.found, outline.ends.len());
+            let ((_, found), edges) = (outline.check_near(), outline.ends.len());
             assert!(found < 8 * edges, "{found} pairs of {edges} edges");
         }
     }

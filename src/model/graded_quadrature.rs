@@ -223,55 +223,9 @@ fn around(piece: &Corners, point: [f64; 2]) -> Option<Vec<Corners>> {
 
 #[cfg(test)]
 mod tests {
-    use approx::{assert_abs_diff_eq, assert_relative_eq};
+    use approx::assert_relative_eq;
 
     use super::*;
-
-    const T: Triangle<f64> = Triangle {
-        vertices: [Vector2::new(0.1, 0.0), Vector2::new(0.9, 0.0), Vector2::new(0.4, 0.7)],
-    };
-
-    fn integral(features: Features, n: usize, f: impl Fn([f64; 2]) -> f64) -> f64 {
-        let mut sum = 0.0;
-        Rule::new(features, n).on_triangle(&T, |l, x, weight| {
-            let from_l = T.point(l);
-            // Sums of three products of numbers below 1.
-            assert_abs_diff_eq!(from_l, Vector2::from(x), epsilon = 1e-14);
-            sum += weight * f(x);
-        });
-        sum
-    }
-
-    #[test]
-    fn a_kink_inside_the_triangle_costs_nothing() {
-        let c = 0.35;
-        let kinked = |[x, y]: [f64; 2]| y * (x - c).abs();
-        let features = Features { kink: Some(c), singular: None };
-        let (coarse, fine) = (integral(features, 3, kinked), integral(features, 12, kinked));
-        // Both rules are exact on both sides of the kink; the integral is below 0.1.
-        assert_abs_diff_eq!(coarse, fine, epsilon = 1e-16);
-        assert!((integral(Features::default(), 12, kinked) - fine).abs() > 1e-7);
-    }
-
-    #[test]
-    fn a_singular_point_in_a_corner_on_an_edge_or_outside_is_integrated_to_rounding() {
-        for point in [[0.1, 0.0], [0.3, 0.0], [0.9, 0.0], [2.0, 0.0]] {
-            let features =
-                Features { kink: None, singular: Some(Singularity { point, edge_grading: 4.0 }) };
-            let f = |[x, y]: [f64; 2]| (x - point[0]).hypot(y).powf(-0.9);
-            let (coarse, fine) = (integral(features, 8, f), integral(features, 20, f));
-            // Graded, what is left of r^-0.9 is smooth: 8 points have some ten digits.
-            assert_relative_eq!(coarse, fine, max_relative = 1e-10);
-        }
-    }
-
-    #[test]
-    fn control_without_grading_a_singular_point_spoils_the_integral() {
-        let f = |[x, y]: [f64; 2]| (x - 0.3).hypot(y).powf(-0.9);
-        let (coarse, fine) =
-            (integral(Features::default(), 8, f), integral(Features::default(), 20, f));
-        assert!((coarse - fine).abs() > 1e-4 * fine);
-    }
 
     #[test]
     fn edges_are_graded_towards_a_singular_point_at_either_end_or_inside() {

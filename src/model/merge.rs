@@ -18,12 +18,12 @@ pub fn merge(
     let tree = Tree::new(vertices.iter().map(|&v| Bounds::around([v])).collect());
     let mut near = Vec::new();
     for (v, &[x, y]) in vertices.iter().enumerate() {
-        tree.meeting(Bounds::around([[x, y]]).widened(distance), |w| {
+        for w in tree.meeting(Bounds::around([[x, y]]).widened(distance)) {
             let [p, q] = vertices[w];
             if w > v && (x - p).hypot(y - q) <= distance && !are_apart(v, w) {
                 near.push([v, w]);
             }
-        });
+        }
     }
     let mut first = Vec::new();
     let of_group = |(v, group): (usize, usize)| {

@@ -355,12 +355,9 @@ impl Mesh {
             };
             Tree::new(self.topology.triangles.iter().map(corners).map(boxed).collect())
         });
-        let mut near = Vec::new();
-        boxes.meeting(Bounds::around([x]), |t| near.push(t));
-        near.retain(|&t| among(t));
-        near.sort_unstable();
+        let mut near = boxes.meeting(Bounds::around([x])).into_iter().filter(|&t| among(t));
         let x = Vector2::from(x);
-        near.into_iter().find_map(|t| {
+        near.find_map(|t| {
             let triangle = self.triangle(t);
             let gradients = triangle.barycentric_gradients();
             // Each coordinate is measured from a vertex where it is zero: a vertex of the mesh finds itself exactly.

@@ -6,8 +6,7 @@ pub mod constraints;
 #[doc(hidden)]
 pub mod data;
 pub mod element;
-#[doc(hidden)]
-pub mod embedding;
+mod embedding;
 pub(crate) mod function;
 #[doc(hidden)]
 pub mod graded_quadrature;

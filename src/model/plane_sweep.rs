@@ -4,7 +4,7 @@
 //! *column*; that order changes at the ends of edges only, as long as none cross, and two that cross are next to each other in
 //! the column before they do (Shamos and Hoey, *Geometric intersection problems*, 1976). The body lies on the left of each edge:
 //! from below, edges with the body above them and edges with the body below them must take turns, or some of it is covered twice.
-//! Time is proportional to N log N for N edges, whatever their shape.
+//! Time is proportional to N log N for N edges, but for moving those of the column up and down in its list.
 
 use nalgebra::Vector2;
 
@@ -48,7 +48,8 @@ struct Sweep<'a> {
     ranks: Vec<[usize; 2]>,
     /// The edges at each vertex, by ranks.
     at: Vec<Vec<usize>>,
-    column: Column,
+    /// The edges that the line meets, from below.
+    column: Vec<usize>,
 }
 
 impl<'a> Sweep<'a> {
@@ -70,7 +71,7 @@ impl<'a> Sweep<'a> {
             pair.sort_unstable();
             ranks.push(pair);
         }
-        Sweep { places, ends, vertices, ranks, at, column: Column::default() }
+        Sweep { places, ends, vertices, ranks, at, column: Vec::new() }
     }
 
     fn place(&self, rank: usize) -> Vector2<f64> {
@@ -91,17 +92,15 @@ impl<'a> Sweep<'a> {
     fn pass(&mut self, rank: usize) -> Result<(), Fault> {
         let p = self.place(rank);
         let is_below = |e: usize| !self.ranks[e].contains(&rank) && self.side(e, p) > 0.0;
-        let mut at = self.column.first_not(is_below);
-        let mut left = self.at[rank].iter().filter(|&&e| self.ranks[e][1] == rank).count();
-        while let Some(e) = self.column.get(at).filter(|&e| self.ranks[e][1] == rank) {
-            at = self.column.remove(at);
-            left -= usize::from(self.at[rank].contains(&e));
-        }
-        if left > 0 {
+        let mut at = self.column.partition_point(|&e| is_below(e));
+        let ends = |e: &usize| self.ranks[*e][1] == rank;
+        let ending = self.column[at..].iter().take_while(|e| ends(e)).count();
+        self.column.drain(at..at + ending);
+        if ending < self.at[rank].iter().filter(|e| ends(e)).count() {
             // Another edge touches the vertex, which is near it.
             let ranks = &self.ranks;
-            self.column.retain(|e| ranks[e][1] != rank);
-            at = self.column.first_not(|e| self.side(e, p) > 0.0);
+            self.column.retain(|&e| ranks[e][1] != rank);
+            at = self.column.partition_point(|&e| self.side(e, p) > 0.0);
         }
         let far = |e: usize| self.place(self.ranks[e][1]);
         // Sorted from below; few edges begin at a vertex.
@@ -116,9 +115,9 @@ impl<'a> Sweep<'a> {
             beginning.insert(below, e);
         }
         let mut chain = Vec::with_capacity(beginning.len() + 2);
-        chain.push(self.column.before(at));
+        chain.push(at.checked_sub(1).map(|below| self.column[below]));
         chain.extend(beginning.iter().map(|&e| Some(e)));
-        chain.push(self.column.get(at));
+        chain.push(self.column.get(at).copied());
         for pair in chain.windows(2) {
             let [Some(e), Some(f)] = [pair[0], pair[1]] else { continue };
             let [a, b] = [e, f].map(|e| self.ranks[e]);
@@ -135,103 +134,7 @@ impl<'a> Sweep<'a> {
             }
             below = Some(e);
         }
-        for &e in beginning.iter().rev() {
-            at = self.column.insert(at, e);
-        }
+        self.column.splice(at..at, beginning);
         Ok(())
-    }
-}
-
-/// A sorted list with insertion and removal, in pieces of at most [`MOST`] items, none empty.
-#[derive(Default)]
-struct Column {
-    pieces: Vec<Vec<usize>>,
-}
-
-/// The largest number of items in a piece: moving them costs about as much as finding the piece.
-const MOST: usize = 128;
-
-/// A place in a column: the piece, and the place in that.
-type At = [usize; 2];
-
-impl Column {
-    /// The place of the first item that is not below, where those below come first.
-    fn first_not(&self, is_below: impl Fn(usize) -> bool) -> At {
-        let is_piece_below = |piece: &Vec<usize>| piece.last().is_some_and(|&e| is_below(e));
-        let k = self.pieces.partition_point(is_piece_below);
-        [k, self.pieces.get(k).map_or(0, |piece| piece.partition_point(|&e| is_below(e)))]
-    }
-
-    fn get(&self, [k, i]: At) -> Option<usize> {
-        self.pieces.get(k)?.get(i).copied()
-    }
-
-    fn before(&self, [k, i]: At) -> Option<usize> {
-        match i.checked_sub(1) {
-            Some(i) => self.get([k, i]),
-            None => self.pieces.get(k.checked_sub(1)?)?.last().copied(),
-        }
-    }
-
-    /// Enters an item before a place, and returns the item's own.
-    fn insert(&mut self, [k, i]: At, item: usize) -> At {
-        let last = self.pieces.len().checked_sub(1);
-        let [k, i] = match (self.pieces.get(k), last) {
-            (Some(piece), _) => [k, i.min(piece.len())],
-            (None, Some(last)) => [last, self.pieces[last].len()],
-            (None, None) => {
-                self.pieces.push(Vec::new());
-                [0, 0]
-            }
-        };
-        let piece = &mut self.pieces[k];
-        piece.insert(i, item);
-        if piece.len() <= MOST {
-            return [k, i];
-        }
-        let rest = piece.split_off(MOST / 2);
-        self.pieces.insert(k + 1, rest);
-        if i < MOST / 2 { [k, i] } else { [k + 1, i - MOST / 2] }
-    }
-
-    /// Removes the item at a place, and returns the place of the next one.
-    fn remove(&mut self, [k, i]: At) -> At {
-        let piece = &mut self.pieces[k];
-        piece.remove(i);
-        if piece.is_empty() {
-            self.pieces.remove(k);
-            return [k, 0];
-        }
-        if i < piece.len() { [k, i] } else { [k + 1, 0] }
-    }
-
-    fn retain(&mut self, is_kept: impl Fn(usize) -> bool) {
-        self.pieces.iter_mut().for_each(|piece| piece.retain(|&e| is_kept(e)));
-        self.pieces.retain(|piece| !piece.is_empty());
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A stack of 300 bars, which takes several pieces of the column, the last one from this height on.
-    fn stack(last: f64) -> Result<(), Fault> {
-        let (mut places, mut ends) = (Vec::new(), Vec::new());
-        for low in (0..299).map(f64::from).chain([last]) {
-            let first = places.len();
-            let corners = [[0.0, low], [10.0, low], [10.0, low + 0.5], [0.0, low + 0.5]];
-            places.extend(corners.map(|[x, y]| Vector2::new(x + low / 1e3, y)));
-            ends.extend((0..4).map(|k| [first + k, first + (k + 1) % 4]));
-        }
-        sweep(&places, &ends)
-    }
-
-    #[test]
-    fn a_stack_of_many_bars_is_taken_and_one_that_overlaps_another_is_found() {
-        assert_eq!(stack(299.0), Ok(()));
-        for within in [0.25, 150.25, 298.25] {
-            assert!(stack(within).is_err(), "{within}");
-        }
     }
 }

@@ -52,29 +52,3 @@ pub(crate) fn collapsed(n: usize, grading: i32) -> Vec<([f64; 3], f64)> {
     }
     points
 }
-
-#[cfg(test)]
-mod tests {
-    use approx::abs_diff_eq;
-
-    use super::*;
-
-    /// A sum of at most 36 positive products that is at most 1.
-    const ROUNDING: f64 = 1e-15;
-
-    #[test]
-    fn triangle_rules_are_exact_to_degree_2n_minus_2() {
-        let factorial = |n: i32| (1..=n).map(f64::from).product::<f64>();
-        for n in 1..=6 {
-            for i in 0..=2 * n as i32 - 2 {
-                for j in 0..=2 * n as i32 - 2 - i {
-                    let moment: f64 =
-                        triangle(n).iter().map(|(l, w)| w * l[0].powi(i) * l[1].powi(j)).sum();
-                    let exact = 2.0 * factorial(i) * factorial(j) / factorial(i + j + 2);
-                    let near = abs_diff_eq!(moment, exact, epsilon = ROUNDING);
-                    assert!(near, "n = {n}, i = {i}, j = {j}");
-                }
-            }
-        }
-    }
-}

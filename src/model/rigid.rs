@@ -23,6 +23,7 @@ use crate::linear::dense::singular_vectors;
 use crate::model::element::Degree;
 use crate::model::mesh::Mesh;
 use crate::model::space::Space;
+use crate::model::tree::Bounds;
 
 /// The parts of a body.
 #[derive(Clone, Debug)]
@@ -177,20 +178,15 @@ impl Parts {
     pub(crate) fn new(mesh: &Mesh) -> Self {
         let of_triangle = mesh.parts().to_vec();
         let count = of_triangle.iter().max().map_or(0, |last| last + 1);
-        let mut boxes = vec![[[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]]; count];
+        let mut boxes = vec![Bounds::around([]); count];
         let mut places = vec![None; count];
         for (t, &part) in of_triangle.iter().enumerate() {
             let triangle = mesh.triangle(t);
             places[part].get_or_insert_with(|| triangle.point([1.0 / 3.0; 3]).into());
-            let [low, high] = &mut boxes[part];
-            for x in triangle.vertices {
-                for c in 0..2 {
-                    low[c] = low[c].min(x[c]);
-                    high[c] = high[c].max(x[c]);
-                }
-            }
+            let corners = Bounds::around(triangle.vertices.map(Into::into));
+            boxes[part] = boxes[part].with(corners);
         }
-        let frames = boxes.iter().zip(places).map(|([low, high], place)| {
+        let frames = boxes.iter().zip(places).map(|(Bounds { low, high }, place)| {
             let halves = [0, 1].map(|c| high[c] / 2.0 - low[c] / 2.0);
             let centre = [0, 1].map(|c| low[c] + halves[c]);
             PartFrame { centre, half: halves[0].max(halves[1]), place: place.unwrap_or(centre) }
@@ -423,45 +419,26 @@ mod tests {
     use approx::abs_diff_eq;
 
     use super::*;
+    use crate::model::{Diagonal, Rectangle};
 
     /// The remainder of a motion of size 1 where it is stopped: components below [`NEGLIGIBLE`] are set to zero, and slender
     /// parts have coordinates of up to 10 times their half box.
     const STOPPED: f64 = 1e-8;
 
-    /// The cells of an nx x ny grid for which `solid` says so, two triangles each; corner (i, j) lies at `place`.
-    fn sheet(
-        [nx, ny]: [usize; 2],
-        place: impl Fn([f64; 2]) -> [f64; 2],
-        solid: impl Fn(usize, usize) -> bool,
-    ) -> Mesh {
-        let mut number = BTreeMap::new();
-        let mut vertices = Vec::new();
-        let mut corner = |i: usize, j: usize| {
-            *number.entry((i, j)).or_insert_with(|| {
-                vertices.push(place([i as f64, j as f64]));
-                vertices.len() - 1
-            })
-        };
-        let mut triangles = Vec::new();
-        for (i, j) in (0..ny).flat_map(|j| (0..nx).map(move |i| (i, j))) {
-            if solid(i, j) {
-                let [a, b] = [corner(i, j), corner(i + 1, j)];
-                let [c, d] = [corner(i + 1, j + 1), corner(i, j + 1)];
-                triangles.extend([[a, b, c], [a, c, d]]);
-            }
-        }
-        Mesh::new(vertices, triangles, []).unwrap()
-    }
-
-    type Prescribed = dyn Fn([f64; 2]) -> [bool; 2];
-
-    fn free(mesh: &Mesh, degree: Degree, held: &Prescribed) -> Vec<FreeMotion> {
-        let space = Space::new(mesh, degree);
+    /// How many motions of a block of cells are free with elements of a degree; in each of them what is held stands still.
+    fn free(
+        (width, [nx, ny]): (f64, [usize; 2]),
+        degree: Degree,
+        held: impl Fn([f64; 2]) -> [bool; 2],
+    ) -> usize {
+        let cells = Rectangle { width, height: ny as f64, nx, ny, diagonal: Diagonal::Right };
+        let mesh = cells.mesh().unwrap();
+        let space = Space::new(&mesh, degree);
         let directions = |node: usize| {
             let axes = held(space.nodes()[node]).into_iter().zip([[1.0, 0.0], [0.0, 1.0]]);
             axes.filter(|(held, _)| *held).map(|(_, axis)| axis)
         };
-        let parts = Parts::new(mesh);
+        let parts = Parts::new(&mesh);
         let motions = free_motions(&parts, &space, directions, 0.0, false);
         for motion in &motions {
             let field = motion.field(&parts, &space);
@@ -473,63 +450,27 @@ mod tests {
             }
             assert!(field.iter().any(|u| u[0].hypot(u[1]) > 1e-3), "{motion} moves");
         }
-        motions
-    }
-
-    fn said(mesh: &Mesh, held: &Prescribed) -> Vec<String> {
-        let words = |m: &FreeMotion| format!("{m}: {}", m.remedy());
-        let [linear, quadratic] = [Degree::One, Degree::Two].map(|degree| free(mesh, degree, held));
-        assert_eq!(linear.len(), quadratic.len());
-        linear.iter().map(words).collect()
-    }
-
-    fn solid(_: usize, _: usize) -> bool {
-        true
-    }
-
-    #[test]
-    fn each_part_of_a_body_is_free_or_held_by_itself() {
-        let mesh = sheet([5, 2], |x| x, |i, _| i != 2);
-        assert_eq!(
-            said(&mesh, &|[x, y]| [x == 0.0, x == 0.0 || (x > 2.5 && y == 0.0)]),
-            [
-                "translation along (1, 0) of the part of the body at (3.66667, 0.33333): u_x would stop it"
-            ]
-        );
-        assert_eq!(said(&mesh, &|_| [false; 2]).len(), 6);
+        motions.len()
     }
 
     #[test]
     fn a_point_that_one_component_holds_leaves_two_motions_in_which_it_stays() {
-        let mesh = sheet([3, 2], |x| x, solid);
-        for held in [[true, false], [false, true]] {
-            let at_corner = move |[x, y]: [f64; 2]| held.map(|held| held && [x, y] == [3.0, 2.0]);
-            // That the corner stays is looked at in `free`, for each motion.
-            assert_eq!(said(&mesh, &at_corner).len(), 2);
-        }
-    }
-
-    #[test]
-    fn place_and_size_of_the_body_do_not_matter() {
-        let held: [(&Prescribed, usize); 3] =
-            [(&|_| [false; 2], 3), (&|_| [false, true], 1), (&|_| [true; 2], 0)];
-        for scale in [1e-150, 1e-3, 1.0, 1e150] {
-            for offset in [0.0, 1e10] {
-                let mesh = sheet([3, 2], |x| x.map(|c| scale * (c + offset)), solid);
-                for (held, count) in held {
-                    let found = said(&mesh, held);
-                    assert_eq!(found.len(), count, "{scale:e}, offset {offset:e}: {found:?}");
-                }
+        for degree in [Degree::One, Degree::Two] {
+            for held in [[true, false], [false, true]] {
+                let at_corner = |x: [f64; 2]| held.map(|held| held && x == [3.0, 2.0]);
+                assert_eq!(free((3.0, [3, 2]), degree, at_corner), 2);
             }
         }
     }
 
     #[test]
     fn slender_parts_held_at_one_end_are_held() {
-        for slenderness in [1e2, 1e4, 1e6] {
-            let mesh = sheet([8, 1], |[x, y]| [x * slenderness, y], solid);
-            assert!(said(&mesh, &|[x, _]| [x == 0.0; 2]).is_empty());
-            assert_eq!(said(&mesh, &|[x, y]| [x == 0.0 && y == 0.0; 2]).len(), 1);
+        for degree in [Degree::One, Degree::Two] {
+            for slenderness in [1e2, 1e4, 1e6] {
+                let strip = (8.0 * slenderness, [8, 1]);
+                assert_eq!(free(strip, degree, |[x, _]| [x == 0.0; 2]), 0);
+                assert_eq!(free(strip, degree, |[x, y]| [x == 0.0 && y == 0.0; 2]), 1);
+            }
         }
     }
 }

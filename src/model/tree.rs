@@ -22,7 +22,8 @@ impl Bounds {
         Bounds { low: self.low.map(|c| c - margin), high: self.high.map(|c| c + margin) }
     }
 
-    fn with(self, other: Bounds) -> Self {
+    /// Around both.
+    pub(crate) fn with(self, other: Bounds) -> Self {
         let both =
             |f: fn(f64, f64) -> f64, a: [f64; 2], b: [f64; 2]| [f(a[0], b[0]), f(a[1], b[1])];
         Bounds {
@@ -61,21 +62,24 @@ impl Tree {
         Tree { items, boxes, nodes }
     }
 
-    /// Calls `f` with the number of each box that meets `bounds`.
-    pub(crate) fn meeting(&self, bounds: Bounds, mut f: impl FnMut(usize)) {
+    /// The numbers of the boxes that meet `bounds`, in order.
+    pub(crate) fn meeting(&self, bounds: Bounds) -> Vec<usize> {
+        let mut found = Vec::new();
         let mut waiting = vec![(0, 0, self.items.len())];
         while let Some((node, start, end)) = waiting.pop() {
             if start == end || !self.nodes[node].meets(bounds) {
                 continue;
             }
             if end - start <= LEAF {
-                let found = self.items[start..end].iter().filter(|&&i| self.boxes[i].meets(bounds));
-                found.for_each(|&i| f(i));
+                let items = self.items[start..end].iter();
+                found.extend(items.filter(|&&i| self.boxes[i].meets(bounds)));
             } else {
                 let middle = start.midpoint(end);
                 waiting.extend([(2 * node + 2, middle, end), (2 * node + 1, start, middle)]);
             }
         }
+        found.sort_unstable();
+        found
     }
 }
 
@@ -119,11 +123,8 @@ mod tests {
             let tree = Tree::new(boxes.clone());
             for _ in 0..50 {
                 let asked = Bounds::around([[random(), random()], [random(), random()]]);
-                let mut found = Vec::new();
-                tree.meeting(asked, |i| found.push(i));
-                found.sort_unstable();
                 let expected: Vec<usize> = (0..count).filter(|&i| boxes[i].meets(asked)).collect();
-                assert_eq!(found, expected);
+                assert_eq!(tree.meeting(asked), expected);
             }
         }
     }

@@ -1,47 +1,88 @@
-//! The results of a body of revolution: energies, forces along the axis and contact forces are those of the whole revolution, 2
-//! pi times those of a radian. Radial forces, which cancel all round, stay those of a radian.
+//! The results of the whole body: forces, moments and energies of a slice one unit thick times the thickness; in a body of revolution
+//! energies, forces along the axis and contact forces of a radian times 2 pi. Radial forces, which cancel all round, stay those of a
+//! radian.
 
 use std::f64::consts::TAU;
 
-use super::solution::Solution;
+use super::solution::{Quantities, Solution};
+use super::{ContactBoundary, EnergyBalance};
 use crate::kernel::ball::up;
 use crate::proof::intervals::{Intervals, Range};
 
+/// By what the results of the whole are larger.
+pub(crate) struct Times {
+    /// Energies, moments, contact forces and friction.
+    pub(crate) all: f64,
+    /// The components of forces.
+    pub(crate) force: [f64; 2],
+}
+
+impl Times {
+    /// The factors of a body of this thickness.
+    pub(crate) fn thickness(thickness: f64) -> Times {
+        Times { all: thickness, force: [thickness; 2] }
+    }
+
+    fn force<'f>(&self, forces: impl IntoIterator<Item = &'f mut [f64; 2]>) {
+        for force in forces {
+            (0..2).for_each(|c| force[c] *= self.force[c]);
+        }
+    }
+
+    pub(crate) fn quantities(&self, q: &mut Quantities) {
+        let numbers = [&mut q.energy, &mut q.elastic_energy, &mut q.work, &mut q.contact_force];
+        numbers.into_iter().for_each(|number| *number *= self.all);
+        self.force(q.reactions.values_mut().chain([&mut q.contact_resultant]));
+    }
+
+    pub(crate) fn boundaries(&self, boundaries: &mut [ContactBoundary]) {
+        for part in boundaries {
+            [&mut part.force, &mut part.moment].into_iter().for_each(|number| *number *= self.all);
+            self.force([&mut part.resultant]);
+            if let Some(friction) = &mut part.friction {
+                friction.shear *= self.all;
+                friction.dissipated *= self.all;
+            }
+        }
+    }
+
+    pub(crate) fn balance(&self, b: &mut EnergyBalance) {
+        let energies = [&mut b.strain, &mut b.loads, &mut b.supports, &mut b.contact];
+        energies.into_iter().for_each(|energy| *energy *= self.all);
+    }
+
+    /// The same of intervals, by a product that is rounded outwards.
+    pub(crate) fn intervals(&self, of: &mut Intervals, product: impl Fn(Range, f64) -> Range) {
+        of.energy = product(of.energy, self.all);
+        for part in &mut of.contact {
+            part.force = product(part.force, self.all);
+        }
+        let resultants = of.contact.iter_mut().map(|part| &mut part.resultant);
+        for force in resultants.chain(of.reactions.values_mut()) {
+            (0..2).for_each(|c| force[c] = product(force[c], self.force[c]));
+        }
+    }
+}
+
 /// A solution with the results of a radian as one with those of the whole revolution.
 pub(super) fn of_the_whole(mut s: Solution) -> Solution {
-    let q = &mut s.quantities;
-    for number in [&mut q.energy, &mut q.elastic_energy, &mut q.work, &mut q.contact_force] {
-        *number *= TAU;
-    }
-    q.contact_resultant[1] *= TAU;
-    q.reactions.values_mut().for_each(|force| force[1] *= TAU);
+    let whole = Times { all: TAU, force: [1.0, TAU] };
+    whole.quantities(&mut s.quantities);
+    whole.boundaries(&mut s.boundaries);
+    whole.balance(&mut s.balance);
     // Moments about the origin of the meridian have no meaning for the body.
-    q.reaction_moments.values_mut().for_each(|moment| *moment = 0.0);
-    for part in &mut s.boundaries {
-        part.force *= TAU;
-        part.resultant[1] *= TAU;
-        part.moment = 0.0;
-    }
-    let b = &mut s.balance;
-    for number in [&mut b.strain, &mut b.loads, &mut b.supports, &mut b.contact] {
-        *number *= TAU;
-    }
+    s.quantities.reaction_moments.values_mut().for_each(|moment| *moment = 0.0);
+    s.boundaries.iter_mut().for_each(|part| part.moment = 0.0);
     if let Ok(enclosure) = &mut s.enclosure {
         // Both are roots of energies.
         for norm in [&mut enclosure.radius, &mut enclosure.pressure] {
             *norm = up(*norm * TAU.sqrt());
         }
         enclosure.if_strained *= TAU.sqrt();
-        whole(&mut enclosure.intervals);
+        let product = |range, factor: f64| if factor == 1.0 { range } else { times(range) };
+        whole.intervals(&mut enclosure.intervals, product);
     }
     s
-}
-
-fn whole(of: &mut Intervals) {
-    let Intervals { energy, contact, reactions, .. } = of;
-    let forces = contact.iter_mut().flat_map(|part| [&mut part.force, &mut part.resultant[1]]);
-    let reactions = reactions.values_mut().map(|reaction| &mut reaction[1]);
-    forces.chain(reactions).chain([energy]).for_each(|range| *range = times(*range));
 }
 
 /// 2 pi times an interval, rounded outwards: the double is off by less than half a unit.

@@ -278,7 +278,7 @@ fn boundaries_by_place_are_refused_where_they_mean_nothing() {
         ),
         (
             "y == 0",
-            "[boundary.bottom] where = \"y == 0\": column 3: found '==', expected a comparison: <, <=, > or >=, such as abs(y) < 1e-9",
+            "[boundary.bottom] where = \"y == 0\": column 3: found '=', expected a comparison: <, <=, > or >=, such as abs(y) < 1e-9",
         ),
     ] {
         assert_eq!(with(place), expected);

@@ -11,8 +11,8 @@
 
 use std::str::FromStr;
 
+use super::parser::{Parser, Token};
 use super::{Expression, ExpressionError};
-use crate::quote::quoted;
 
 /// A condition on a place; made by [`str::parse`].
 #[derive(Clone, Debug, PartialEq)]
@@ -43,78 +43,54 @@ impl Comparison {
 
 const RELATION: &str = "a comparison: <, <=, > or >=, such as abs(y) < 1e-9";
 
+const GOES_ON: &str =
+    "an operator (+ - * / ^), a comparison (<, <=, >, >=), \"and\", \"or\" or the end";
+
 impl FromStr for PlaceCondition {
     type Err = ExpressionError;
 
     fn from_str(text: &str) -> Result<PlaceCondition, ExpressionError> {
-        let mut alternatives = Vec::new();
-        for alternative in split(text, 0, "or") {
-            let mut all = Vec::new();
-            for (start, part) in split(alternative.1, alternative.0, "and") {
-                all.extend(comparisons(text, start, part)?);
+        let mut parser = Parser::new(text)?;
+        let (mut alternatives, mut all) = (Vec::new(), Vec::new());
+        loop {
+            all.extend(comparisons(&mut parser)?);
+            match parser.token {
+                Token::Name("and") => {}
+                Token::Name("or") => alternatives.push(std::mem::take(&mut all)),
+                Token::End => break,
+                _ => return Err(parser.wrong(GOES_ON)),
             }
-            alternatives.push(all);
+            parser.advance()?;
         }
+        alternatives.push(all);
         Ok(PlaceCondition { alternatives })
     }
 }
 
-/// The parts of a text between a word, each with the byte where it starts in the whole.
-fn split<'t>(text: &'t str, from: usize, word: &str) -> Vec<(usize, &'t str)> {
-    let mut parts = Vec::new();
-    let mut start = 0;
-    let is_letter = |c: char| c.is_alphanumeric() || c == '_';
-    for (at, _) in text.match_indices(word) {
-        let after = at + word.len();
-        if !text[..at].ends_with(is_letter) && !text[after..].starts_with(is_letter) && at >= start
-        {
-            parts.push((from + start, &text[start..at]));
-            start = after;
-        }
-    }
-    parts.push((from + start, &text[start..]));
-    parts
-}
-
-/// The one or two comparisons of a part of `text` that starts at this byte.
-fn comparisons(text: &str, start: usize, part: &str) -> Result<Vec<Comparison>, ExpressionError> {
-    let column = |byte: usize| text[..byte].chars().count() + 1;
-    let wrong = |byte: usize, found: &str, expected: &str| ExpressionError {
-        column: column(byte),
-        found: found.to_owned(),
-        expected: expected.to_owned(),
+/// Reads one or two comparisons that follow each other, as in `0 <= x <= 2`.
+fn comparisons(parser: &mut Parser) -> Result<Vec<Comparison>, ExpressionError> {
+    let too_many = ExpressionError {
+        found: "more than two comparisons".to_owned(),
+        ..parser.wrong("\"and\" between them")
     };
-    let mut sides: Vec<Expression> = Vec::new();
-    let mut relations = Vec::new();
-    let mut rest = (start, part);
-    loop {
-        let end = rest.1.find(['<', '>', '=']).unwrap_or(rest.1.len());
-        let (side, after) = rest.1.split_at(end);
-        let side = side.parse().map_err(|error: ExpressionError| ExpressionError {
-            column: column(rest.0) + error.column - 1,
-            ..error
-        })?;
-        sides.push(side);
-        let relation = &after[..after.len() - after.trim_start_matches(['<', '>', '=', '!']).len()];
-        match relation {
-            "" => break,
-            "<" | "<=" | ">" | ">=" => relations.push(relation),
-            other => return Err(wrong(rest.0 + end, &quoted(other, '\''), RELATION)),
+    let mut comparisons = Vec::new();
+    let mut last = parser.whole()?;
+    while let Token::Symbol(relation @ ('<' | '>')) = parser.token {
+        let or_equal = parser.is_followed_by('=');
+        parser.advance()?;
+        if or_equal {
+            parser.advance()?;
         }
-        rest = (rest.0 + end + relation.len(), &after[relation.len()..]);
+        let next = parser.whole()?;
+        let sides = if relation == '<' { [last, next.clone()] } else { [next.clone(), last] };
+        comparisons.push(Comparison { sides, or_equal });
+        last = next;
     }
-    if relations.is_empty() {
-        return Err(wrong(start + part.len(), "the end", RELATION));
+    match comparisons.len() {
+        0 => Err(parser.wrong(RELATION)),
+        1 | 2 => Ok(comparisons),
+        _ => Err(too_many),
     }
-    if relations.len() > 2 {
-        return Err(wrong(start, "more than two comparisons", "\"and\" between them"));
-    }
-    let comparison = |(pair, relation): (&[Expression], &&str)| {
-        let [first, second] = [&pair[0], &pair[1]].map(Expression::clone);
-        let sides = if relation.starts_with('<') { [first, second] } else { [second, first] };
-        Comparison { sides, or_equal: relation.ends_with('=') }
-    };
-    Ok(sides.windows(2).zip(&relations).map(comparison).collect())
 }
 
 #[cfg(test)]

@@ -12,9 +12,9 @@ impl FromStr for Expression {
 
     fn from_str(text: &str) -> Result<Expression, ExpressionError> {
         let mut parser = Parser::new(text)?;
-        parser.expression(1)?;
+        let expression = parser.whole()?;
         match parser.token {
-            Token::End => Ok(Expression { instructions: parser.instructions }),
+            Token::End => Ok(expression),
             Token::Symbol(',') => {
                 Err(parser.wrong("an operator (+ - * / ^) or the end (decimals have a point: 0.5)"))
             }
@@ -38,7 +38,7 @@ const FUNCTIONS: [(&str, Instruction); 7] = [
 const MOST_FACTORS: f64 = 16.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Token<'t> {
+pub(super) enum Token<'t> {
     Number(f64),
     Name(&'t str),
     Symbol(char),
@@ -46,10 +46,10 @@ enum Token<'t> {
 }
 
 /// The state of the descent: each function appends the instructions of what it reads. `level` counts the nesting, from 1.
-struct Parser<'t> {
+pub(super) struct Parser<'t> {
     text: &'t str,
     /// The token under consideration, and the bytes it takes.
-    token: Token<'t>,
+    pub(super) token: Token<'t>,
     start: usize,
     end: usize,
     instructions: Vec<Instruction>,
@@ -58,12 +58,24 @@ struct Parser<'t> {
 }
 
 impl<'t> Parser<'t> {
-    fn new(text: &'t str) -> Result<Self, ExpressionError> {
+    pub(super) fn new(text: &'t str) -> Result<Self, ExpressionError> {
         let (instructions, operations) = (Vec::new(), 0);
         let mut parser =
             Parser { text, token: Token::End, start: 0, end: 0, instructions, operations };
         parser.advance()?;
         Ok(parser)
+    }
+
+    /// Reads an expression as far as it goes.
+    pub(super) fn whole(&mut self) -> Result<Expression, ExpressionError> {
+        self.operations = 0;
+        self.expression(1)?;
+        Ok(Expression { instructions: std::mem::take(&mut self.instructions) })
+    }
+
+    /// Returns whether the token and this symbol have nothing between them.
+    pub(super) fn is_followed_by(&self, symbol: char) -> bool {
+        self.text[self.end..].starts_with(symbol)
     }
 
     fn operation(&mut self, step: Instruction) -> Result<(), ExpressionError> {
@@ -172,7 +184,7 @@ impl<'t> Parser<'t> {
     }
 
     /// Reads the next token.
-    fn advance(&mut self) -> Result<(), ExpressionError> {
+    pub(super) fn advance(&mut self) -> Result<(), ExpressionError> {
         let rest = self.text[self.end..].trim_start();
         self.start = self.text.len() - rest.len();
         let (token, length) = match rest.chars().next() {
@@ -227,7 +239,7 @@ impl<'t> Parser<'t> {
         self.wrong(&format!("a number, x, y, pi, a function or '('{remedy}"))
     }
 
-    fn wrong(&self, expected: &str) -> ExpressionError {
+    pub(super) fn wrong(&self, expected: &str) -> ExpressionError {
         let found = &self.text[self.start..self.end];
         self.wrong_at(self.start, Some(found).filter(|f| !f.is_empty()), expected)
     }

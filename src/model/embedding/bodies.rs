@@ -166,11 +166,9 @@ fn check_between(mesh: &Mesh, parts: &[usize], zones: &[Zone]) -> Result<(), Mes
     let edges = Tree::new(places.iter().map(around).collect());
     for (e, ends) in places.iter().enumerate() {
         let own = length(ends[1] - ends[0]);
-        let mut near = Vec::new();
-        edges.meeting(around(ends).widened(TOUCHING * own), |f| near.push(f));
-        near.retain(|&f| f > e && parts[outline[f].triangle] != parts[outline[e].triangle]);
-        near.sort_unstable();
-        for f in near {
+        let is_other = |f: &usize| parts[outline[*f].triangle] != parts[outline[e].triangle];
+        let near = edges.meeting(around(ends).widened(TOUCHING * own)).into_iter();
+        for f in near.filter(|f| *f > e && is_other(f)) {
             let triangles = [e, f].map(|e| outline[e].triangle);
             if cross(*ends, places[f]) {
                 refused(crossing(*ends, places[f]).into(), triangles, true)?;
@@ -189,11 +187,8 @@ fn check_between(mesh: &Mesh, parts: &[usize], zones: &[Zone]) -> Result<(), Mes
     let inside = Tree::new(boxes.collect());
     for (edge, [a, b]) in outline.iter().zip(&places) {
         let middle = a / 2.0 + b / 2.0;
-        let mut near = Vec::new();
-        inside.meeting(Bounds::around([middle.into()]), |t| near.push(t));
-        near.retain(|&t| parts[t] != parts[edge.triangle]);
-        near.sort_unstable();
-        for t in near {
+        let near = inside.meeting(Bounds::around([middle.into()])).into_iter();
+        for t in near.filter(|&t| parts[t] != parts[edge.triangle]) {
             let corners = corners(t);
             if (0..3).all(|i| turn(corners[i], corners[(i + 1) % 3], middle) >= 0.0) {
                 refused(middle, [edge.triangle, t], true)?;

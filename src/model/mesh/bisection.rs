@@ -152,7 +152,7 @@ impl Mesh {
     ///
     /// # Errors
     /// As [`Mesh::bisected`].
-    pub fn bisected_along(
+    pub(crate) fn bisected_along(
         &self,
         newest: &[usize],
         marked: &[usize],
@@ -259,31 +259,6 @@ mod tests {
     }
 
     #[test]
-    fn all_descendants_of_a_triangle_belong_to_four_classes_of_similar_triangles() {
-        for mesh in meshes() {
-            let newest = mesh.opposite_longest();
-            for t in 0..mesh.triangles().len() {
-                // One triangle alone, cut into all parts eight times over.
-                let corners = mesh.triangles()[t].map(|v| mesh.vertices()[v]).to_vec();
-                let mut alone = Mesh::new(corners, vec![[0, 1, 2]], []).unwrap();
-                let mut first = vec![newest[t]];
-                let mut classes = std::collections::BTreeSet::from([class(&alone, 0)]);
-                for _ in 0..4 {
-                    // Only one of them is marked, so that there are halves as well as quarters.
-                    alone = alone.bisected(&first, &[alone.triangles().len() / 2]).unwrap().mesh;
-                    first = vec![0; alone.triangles().len()];
-                    classes.extend((0..first.len()).map(|t| class(&alone, t)));
-                    let all: Vec<usize> = (0..first.len()).collect();
-                    alone = alone.bisected(&first, &all).unwrap().mesh;
-                    first = vec![0; alone.triangles().len()];
-                    classes.extend((0..first.len()).map(|t| class(&alone, t)));
-                }
-                assert!(alone.triangles().len() > 500 && classes.len() <= 4, "{classes:?}");
-            }
-        }
-    }
-
-    #[test]
     fn meshes_refined_towards_a_point_keep_their_area_their_names_and_their_smallest_angle() {
         for coarse in meshes() {
             let area = |mesh: &Mesh| -> f64 {
@@ -357,16 +332,5 @@ mod tests {
         assert!(matches!(fine.mesh.edges_of("seam"), Err(MeshError::InnerEdge { .. })));
         assert_eq!(fine.mesh.triangles().len(), 6);
         assert_eq!(fine.mesh.edges_of("floor").unwrap().len(), 1, "its triangle is only halved");
-    }
-
-    #[test]
-    fn control_without_the_closure_a_vertex_would_hang() {
-        let coarse = meshes()[0].clone();
-        let newest = coarse.opposite_longest();
-        let mut halved = Halved::none(&coarse);
-        (0..3).for_each(|local| halved.halve(&coarse, 0, local));
-        let alone = halved.parents.len();
-        halved.close(&coarse, &newest);
-        assert!(halved.parents.len() > alone, "a neighbour is cut too");
     }
 }

@@ -169,32 +169,31 @@ impl Boundary {
 
     /// The nearest partner of a point of the other boundary.
     fn partner(&self, of: &Point, reach: f64) -> Option<Point> {
-        let mut radius = self.curves.first()?.length().min(reach);
-        loop {
-            let mut best: Option<(f64, Point)> = None;
-            self.near(of.place, radius, |e| {
-                let Some(point) = self.partner_on(e, of) else { return };
-                let distance = length(point.place - of.place);
-                let nearer = best.as_ref().is_none_or(|(least, _)| distance < *least);
-                if distance <= reach && nearer {
-                    best = Some((distance, point));
-                }
-            });
-            match best {
-                Some((distance, point)) if distance <= radius => return Some(point),
-                best if radius >= reach => return best.map(|(_, point)| point),
-                _ => radius = (2.0 * radius).min(reach),
-            }
-        }
+        let on = |e: usize| {
+            let point = self.partner_on(e, of)?;
+            Some((length(point.place - of.place), point))
+        };
+        self.nearest(of.place, reach, on).map(|(_, point)| point)
     }
 
-    /// Calls `f` with each edge that may come closer to a place than `radius`.
-    fn near(&self, place: Vector2<f64>, radius: f64, mut f: impl FnMut(usize)) {
-        // In the order of the edges, for the first of several equally near points counts.
-        let mut edges = Vec::new();
-        self.tree.meeting(Bounds::around([place.into()]).widened(radius), |e| edges.push(e));
-        edges.sort_unstable();
-        edges.into_iter().for_each(&mut f);
+    /// The nearest of what the edges have for a place, each by its distance, of which there is `most`; of several equally near
+    /// ones that of the first edge.
+    fn nearest<T>(
+        &self,
+        from: Vector2<f64>,
+        most: f64,
+        on: impl Fn(usize) -> Option<(f64, T)>,
+    ) -> Option<(f64, T)> {
+        let mut radius = self.curves.first()?.length().min(most);
+        loop {
+            let edges = self.tree.meeting(Bounds::around([from.into()]).widened(radius));
+            let near = edges.into_iter().filter_map(&on).filter(|(distance, _)| *distance <= most);
+            let best = near.min_by(|a, b| a.0.total_cmp(&b.0));
+            if radius >= most || best.as_ref().is_some_and(|(distance, _)| *distance <= radius) {
+                return best;
+            }
+            radius = (2.0 * radius).min(most);
+        }
     }
 
     /// The partner on edge `e`.
@@ -219,25 +218,13 @@ impl Boundary {
 
     /// The least distance of a place from the chords, and where.
     pub(crate) fn closest(&self, from: Vector2<f64>, most: f64) -> Option<(f64, Vector2<f64>)> {
-        let mut radius = self.curves.first()?.length().min(most);
-        loop {
-            let mut best: Option<(f64, Vector2<f64>)> = None;
-            self.near(from, radius, |e| {
-                let [a, b] = self.curves[e].ends;
-                let chord = b - a;
-                let s = ((from - a).dot(&chord) / chord.dot(&chord)).clamp(0.0, 1.0);
-                let place = self.curves[e].on_chord(s);
-                let distance = length(place - from);
-                if best.is_none_or(|(least, _)| distance < least) {
-                    best = Some((distance, place));
-                }
-            });
-            match best {
-                Some((distance, _)) if distance <= radius => return best,
-                _ if radius >= most => return best.filter(|(distance, _)| *distance <= most),
-                _ => radius = (2.0 * radius).min(most),
-            }
-        }
+        self.nearest(from, most, |e| {
+            let [a, b] = self.curves[e].ends;
+            let chord = b - a;
+            let s = ((from - a).dot(&chord) / chord.dot(&chord)).clamp(0.0, 1.0);
+            let place = self.curves[e].on_chord(s);
+            Some((length(place - from), place))
+        })
     }
 }
 
