@@ -5,7 +5,7 @@
 //! that is twice, some edge of the outline has the body on either side. So it is enough to look at the outline:
 //!
 //! - no two edges of the outline cross, and on each upright line edges with the body above them and edges with the body below
-//!   them take turns (`plane_sweep`, in time proportional to N log N for N edges);
+//!   them take turns (`plane_sweep`);
 //! - no vertex of the outline lies on an edge that is not its own, or beside it across a void narrower than
 //!   `TOUCHING` times the local edge, and no two vertices are that close across a void.
 //!
