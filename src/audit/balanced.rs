@@ -68,47 +68,28 @@ impl Certificate {
         let triangles = self.triangles(&points)?;
         let v = self.shape();
         self.check_displacement()?;
-        let mut forces = Vec::with_capacity(self.edges.len());
         let mut on_contact = vec![S::from(0); self.pieces.len()];
         for (e, edge) in self.edges.iter().enumerate() {
-            let [start, end] = edge.ends.map(|vertex| points[vertex]);
-            let along = end - start;
-            let length = || along.dot(&along).sqrt();
-            forces.push(match edge.role {
-                Role::Inner(force) | Role::Held(_, force) => force.map(exactly),
-                Role::Supported { along, force, traction } => {
-                    support(along, force, traction, length)
+            let Role::Contact { pressure, law, .. } = edge.role else { continue };
+            if law.is_tied() {
+                continue;
+            }
+            if let Some(&value) = pressure.iter().find(|p| !p.is_at_most(0.0)) {
+                return Err(Rejection::Tension { edge: e, value });
+            }
+            let contact = self.on_contact(e, &v, &points, pressure.map(S::exactly))?;
+            if let Some(value) = contact.beyond.into_iter().find(|b| !b.is_at_most(0.0)) {
+                return Err(Rejection::Penetration { edge: e, value: value.upper() });
+            }
+            if let Some(owner) = topology.owners[e][0] {
+                on_contact[owner.piece] += contact.term;
+                if let Law::Friction { shear, bound } = law {
+                    let slip = self.across(e, self.jump(e, &v), &points);
+                    on_contact[owner.piece] += friction(slip, shear, bound);
                 }
-                Role::Loaded(traction) if traction == [[0.0; 2]; 2] => [Vector2::zeros(); 2],
-                Role::Loaded(traction) => {
-                    let length = length();
-                    traction.map(|t| exactly(t) * length)
-                }
-                Role::Pressed(p) => {
-                    let normal = Vector2::new(along[1], -along[0]);
-                    p.map(|p| -(normal * S::exactly(p)))
-                }
-                Role::Contact { law, .. } if law.is_tied() => self.traction(e, &points),
-                Role::Contact { pressure, law, .. } => {
-                    if let Some(&value) = pressure.iter().find(|p| !p.is_at_most(0.0)) {
-                        return Err(Rejection::Tension { edge: e, value });
-                    }
-                    let contact = self.on_contact(e, &v, &points, pressure.map(S::exactly))?;
-                    if let Some(value) = contact.beyond.into_iter().find(|b| !b.is_at_most(0.0)) {
-                        return Err(Rejection::Penetration { edge: e, value: value.upper() });
-                    }
-                    if let Some(owner) = topology.owners[e][0] {
-                        on_contact[owner.piece] += contact.term;
-                        if let Law::Friction { shear, bound } = law {
-                            let slip = self.across(e, self.jump(e, &v), &points);
-                            on_contact[owner.piece] += friction(slip, shear, bound);
-                        }
-                    }
-                    self.traction(e, &points)
-                }
-                Role::Facing => [Vector2::zeros(); 2],
-            });
+            }
         }
+        let mut forces: Vec<_> = (0..self.edges.len()).map(|e| self.force(e, &points)).collect();
         self.face(&mut forces);
         let (resultants, in_balance) = (Vec::new(), Vec::new());
         let closed = Closed { added: Vec::new(), changes: Vec::new(), stops: Vec::new() };
@@ -137,6 +118,28 @@ impl Certificate {
             }
         }
         Ok(state)
+    }
+
+    /// tau N at both ends of edge `e`, as the certificate has it; of the second body of a pair see `face`.
+    pub(super) fn force<S: Enclosing>(&self, e: usize, points: &[Vector2<S>]) -> [Vector2<S>; 2] {
+        let edge = &self.edges[e];
+        let [start, end] = edge.ends.map(|p| points[p]);
+        let along = end - start;
+        let length = || along.dot(&along).sqrt();
+        match edge.role {
+            Role::Inner(force) | Role::Held(_, force) => force.map(exactly),
+            Role::Supported { along, force, traction } => support(along, force, traction, length),
+            Role::Loaded([[0.0, 0.0], [0.0, 0.0]]) | Role::Facing => [Vector2::zeros(); 2],
+            Role::Loaded(traction) => {
+                let length = length();
+                traction.map(|t| exactly(t) * length)
+            }
+            Role::Pressed(p) => {
+                let normal = Vector2::new(along[1], -along[0]);
+                p.map(|p| -(normal * S::exactly(p)))
+            }
+            Role::Contact { .. } => self.traction(e, points),
+        }
     }
 
     /// The forces on the second bodies of pairs.
@@ -386,17 +389,12 @@ impl Balanced<f64> {
     /// Takes over the forces that the certificate has now on edges between triangles and of Gamma_D.
     pub fn rebalance(&mut self, certificate: &Certificate) -> Result<(), Unbalanced> {
         for (e, (force, edge)) in self.forces.iter_mut().zip(&certificate.edges).enumerate() {
-            match edge.role {
-                Role::Contact { law, .. } if law.is_tied() => {
-                    *force = certificate.traction(e, &self.points);
-                }
-                Role::Inner(now) | Role::Held(_, now) => *force = now.map(Into::into),
-                Role::Supported { along, force: now, traction } => {
-                    let [start, end] = edge.ends.map(|p| self.points[p]);
-                    let edge = end - start;
-                    *force = support(along, now, traction, || edge.x.hypot(edge.y));
-                }
-                Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } | Role::Facing => {}
+            let is_given = match edge.role {
+                Role::Contact { law, .. } => !law.is_tied(),
+                role => matches!(role, Role::Loaded(_) | Role::Pressed(_) | Role::Facing),
+            };
+            if !is_given {
+                *force = certificate.force(e, &self.points);
             }
         }
         for &Change { edge, factors } in &self.closed.changes {

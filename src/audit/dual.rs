@@ -11,15 +11,15 @@
 //! The pair is itself a certificate on the same triangles, of the linear problem whose contact edges are held along the
 //! direction of contact, an axis, or free.
 
-use std::collections::BTreeMap;
-
 use nalgebra::Vector2;
 
 use super::balance::{OnEdges, Stop};
-use super::balanced::{Balanced, Topology, outward};
-use super::certificate::{Certificate, Curved, Edge, Law, Piece, Role, Shape, exactly, is_oblique};
+use super::balanced::{Topology, outward};
+use super::certificate::{Certificate, Curved, Edge, Law, Piece, Role, Shape, exactly};
 use super::checks::Rejection;
-use super::forces::{Cover, ForceTarget, Forces, WrongLifting, component, energy, ratio, reach};
+use super::forces::{
+    Cover, ForceTarget, Forces, Lifting, WrongLifting, component, energy, ratio, reach,
+};
 use crate::kernel::composite::{Composite, Frame, Loads, Wrench};
 use crate::kernel::{Ball, Enclosing, PreciseBall, Triangle};
 
@@ -36,58 +36,13 @@ pub enum WrongPair {
     Differs { what: &'static str, index: usize },
 }
 
-impl Certificate {
-    /// A dual pair on the same triangles: `w` at the vertices and, where v is quadratic, at the cuts and by its bulges; and
-    /// the roles of the edges with the tractions of rho. What holds the body holds w at 0, and contact edges that are held
-    /// have what w is there.
-    pub fn with_dual(
-        &self,
-        w: Vec<[f64; 2]>,
-        beyond: Option<[Vec<[f64; 2]>; 2]>,
-        roles: Vec<Role>,
-    ) -> Certificate {
-        let at_rest = |data: &[Option<f64>; 2]| data.map(|u| u.map(|_| 0.0));
-        let mut prescribed: Vec<_> = self.prescribed.iter().map(at_rest).collect();
-        let mut at_cuts = match &self.curved {
-            Some(curved) => curved.prescribed.iter().map(at_rest).collect(),
-            None => vec![[None; 2]; self.cuts.len()],
-        };
-        for (edge, role) in self.edges.iter().zip(&roles) {
-            let (Role::Contact { .. }, Role::Held(held, _)) = (edge.role, *role) else { continue };
-            for p in edge.ends {
-                let (data, values, k) = match (p.checked_sub(self.vertices.len()), &beyond) {
-                    (None, _) => (&mut prescribed, &w, p),
-                    (Some(cut), Some([values, _])) => (&mut at_cuts, values, cut),
-                    (Some(_), None) => continue,
-                };
-                let (Some(data), Some(value)) = (data.get_mut(k), values.get(k)) else { continue };
-                for c in (0..2).filter(|&c| held[c]) {
-                    data[c].get_or_insert(value[c]);
-                }
-            }
-        }
-        let unloaded = |&piece: &Piece| Piece { body: [[0.0; 2]; 3], oscillation: 0.0, ..piece };
-        let edges = self.edges.iter().zip(roles);
-        let edges: Vec<Edge> = edges.map(|(edge, role)| Edge { ends: edge.ends, role }).collect();
-        Certificate {
-            vertices: self.vertices.clone(),
-            cuts: self.cuts.clone(),
-            displacement: w,
-            curved: beyond.map(|[values, bulges]| Curved {
-                at_cuts: values,
-                prescribed: at_cuts,
-                data: vec![[0.0; 2]; bulges.len()],
-                bulges,
-            }),
-            prescribed,
-            frames: self.frames.clone(),
-            pieces: self.pieces.iter().map(unloaded).collect(),
-            edges,
-            lifts: Vec::new(),
-            polygon: self.polygon.clone(),
-            facing: BTreeMap::new(),
-        }
-    }
+/// A dual pair on the triangles of a certificate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dual {
+    /// w
+    pub w: Lifting,
+    /// The roles of the edges in the linear problem, with the tractions of rho.
+    pub roles: Vec<Role>,
 }
 
 /// A contact force by a dual pair.
@@ -101,90 +56,85 @@ pub struct ByPair {
     pub factors: [f64; 2],
 }
 
-impl ByPair {
-    /// Gives the share of each triangle in the distance of one end from the middle, k M^2 + eta^2 / (4 k) with the k >= eta / (2
-    /// M) that makes it that distance; `shares` are those in M^2. The upper end counts k M^2 alone: its eta comes from where w
-    /// and rho end, not from the triangles.
-    pub fn limits(&self, side: usize, shares: &[f64]) -> Vec<f64> {
-        let [of_mean, of_pair] = [shares, &self.shares].map(|all| all.iter().sum::<f64>());
-        let k = self.factors[side].max((of_pair / of_mean).sqrt() / 2.0);
-        let per_pair = if side == 0 { 1.0 / (4.0 * k) } else { 0.0 };
-        let all = shares.iter().zip(&self.shares);
-        all.map(|(mean, pair)| k * mean + pair * per_pair).collect()
-    }
-}
-
 impl Certificate {
-    /// The pair has the triangles of the certificate, no loads, and w = 0 on Gamma_D.
-    fn check_pair<S: Enclosing>(
+    /// The certificate of the linear problem of a dual pair, on the same triangles and without loads. What holds the body holds w
+    /// at 0, and contact edges that are held have what w is there.
+    fn of_pair<S: Enclosing>(
         &self,
-        pair: &Certificate,
-        state: &Balanced<S>,
-    ) -> Result<(), WrongPair> {
-        let (zero, one) = (S::from(0), S::from(1));
-        let differs = |what, index| Err(WrongPair::Differs { what, index });
-        let same_points = (&pair.vertices, &pair.cuts, &pair.frames)
-            == (&self.vertices, &self.cuts, &self.frames);
-        if !same_points || !pair.lifts.is_empty() {
-            return differs("a point", 0);
+        Dual { w, roles }: &Dual,
+        points: &[Vector2<S>],
+    ) -> Result<Certificate, WrongPair> {
+        if roles.len() != self.edges.len() {
+            return Err(WrongPair::Differs { what: "the number of edges", index: roles.len() });
         }
-        if pair.pieces.len() != self.pieces.len() || pair.edges.len() != self.edges.len() {
-            return differs("the number of triangles or edges", pair.pieces.len());
-        }
-        for (t, (own, other)) in self.pieces.iter().zip(&pair.pieces).enumerate() {
-            let same = (own.vertices, own.edges, own.material)
-                == (other.vertices, other.edges, other.material);
-            if !same || other.body != [[0.0; 2]; 3] || other.oscillation != 0.0 {
-                return differs("triangle", t);
-            }
-        }
-        for (e, (own, other)) in self.edges.iter().zip(&pair.edges).enumerate() {
-            let is_zero = |p: usize, c: usize| pair.at_own(p).is_none_or(|(w, _)| w[c] == 0.0);
-            let straight =
-                |c: usize| pair.curved.as_ref().is_none_or(|curved| curved.bulges[e][c] == 0.0);
-            let at_rest = |held: [bool; 2]| {
-                let still = |c: usize| straight(c) && other.ends.iter().all(|&p| is_zero(p, c));
-                (0..2).all(|c| !held[c] || still(c))
+        let is_free = |t: [[f64; 2]; 2]| t == [[0.0; 2]; 2];
+        for (e, (own, &role)) in self.edges.iter().zip(roles).enumerate() {
+            let right = match (own.role, role) {
+                (Role::Inner(_), Role::Inner(_)) => true,
+                (Role::Held(held, _), Role::Held(same, _)) => held == same,
+                (
+                    Role::Supported { along, .. },
+                    Role::Supported { along: same, traction: [0.0, 0.0], .. },
+                ) => along == same,
+                // Of friction and of tied bodies there are none.
+                (
+                    Role::Loaded(_) | Role::Pressed(_) | Role::Contact { law: Law::Contact, .. },
+                    Role::Loaded(t),
+                ) => is_free(t),
+                // Along an axis, in which contact acts.
+                (Role::Contact { law: Law::Contact, .. }, Role::Held(held, _)) => {
+                    let [d, end] = self.directions::<S>(e, points);
+                    let (zero, one) = (S::from(0), S::from(1));
+                    let is = |c: usize| held[c] && !held[1 - c] && component(d, d) == one;
+                    d == end && (0..2).any(|c| is(c) && d[1 - c] == zero)
+                }
+                _ => false,
             };
-            let right = own.ends == other.ends
-                && match (own.role, other.role) {
-                    (Role::Inner(_), Role::Inner(_)) => true,
-                    (Role::Held(held, _), Role::Held(same, _)) => held == same && at_rest(held),
-                    (
-                        Role::Supported { along, .. },
-                        Role::Supported { along: same, traction, .. },
-                    ) => {
-                        let framed = |p: &usize| match (pair.frames.get(p), pair.at_own(*p)) {
-                            (Some(_), Some((_, [w, _]))) => w == Some(0.0),
-                            _ => at_rest([true; 2]),
-                        };
-                        let data = pair.curved.as_ref().is_none_or(|c| c.data[e] == [0.0; 2]);
-                        along == same
-                            && traction == [0.0; 2]
-                            && if is_oblique(along) {
-                                data && other.ends.iter().all(framed)
-                            } else {
-                                at_rest(along.map(|d| d != 0.0))
-                            }
-                    }
-                    (Role::Loaded(_) | Role::Pressed(_), Role::Loaded(t)) => t == [[0.0; 2]; 2],
-                    // Of friction and of tied bodies there are none.
-                    (Role::Contact { law: Law::Contact, .. }, Role::Loaded(t)) => {
-                        t == [[0.0; 2]; 2]
-                    }
-                    // Along an axis, in which contact acts.
-                    (Role::Contact { law: Law::Contact, .. }, Role::Held(held, _)) => {
-                        let [d, end] = self.directions::<S>(e, &state.points);
-                        let is = |c: usize| held[c] && !held[1 - c] && component(d, d) == one;
-                        d == end && (0..2).any(|c| is(c) && d[1 - c] == zero)
-                    }
-                    _ => false,
-                };
             if !right {
-                return differs("edge", e);
+                return Err(WrongPair::Differs { what: "edge", index: e });
             }
         }
-        Ok(())
+        let at_rest = |data: &[Option<f64>; 2]| data.map(|u| u.map(|_| 0.0));
+        let mut prescribed: Vec<_> = self.prescribed.iter().map(at_rest).collect();
+        let mut at_cuts = match &self.curved {
+            Some(curved) => curved.prescribed.iter().map(at_rest).collect(),
+            None => vec![[None; 2]; self.cuts.len()],
+        };
+        for (edge, role) in self.edges.iter().zip(roles) {
+            let (Role::Contact { .. }, Role::Held(held, _)) = (edge.role, *role) else { continue };
+            for p in edge.ends {
+                let (data, values, k) = match (p.checked_sub(self.vertices.len()), &w.beyond) {
+                    (None, _) => (&mut prescribed, &w.vertices, p),
+                    (Some(cut), Some([values, _])) => (&mut at_cuts, values, cut),
+                    (Some(_), None) => continue,
+                };
+                let (Some(data), Some(value)) = (data.get_mut(k), values.get(k)) else { continue };
+                for c in (0..2).filter(|&c| held[c]) {
+                    data[c].get_or_insert(value[c]);
+                }
+            }
+        }
+        let unloaded = |&piece: &Piece| Piece { body: [[0.0; 2]; 3], oscillation: 0.0, ..piece };
+        let edges = self.edges.iter().zip(roles);
+        let pair = Certificate {
+            vertices: self.vertices.clone(),
+            cuts: self.cuts.clone(),
+            displacement: w.vertices.clone(),
+            curved: w.beyond.clone().map(|[values, bulges]| Curved {
+                at_cuts: values,
+                prescribed: at_cuts,
+                data: vec![[0.0; 2]; bulges.len()],
+                bulges,
+            }),
+            prescribed,
+            frames: self.frames.clone(),
+            pieces: self.pieces.iter().map(unloaded).collect(),
+            edges: edges.map(|(edge, &role)| Edge { ends: edge.ends, role }).collect(),
+            ..Certificate::default()
+        };
+        pair.check_fields()?;
+        pair.check_displacement()?;
+        Ok(pair)
     }
 }
 
@@ -246,7 +196,7 @@ impl<S: Enclosing> Forces<'_, S> {
     /// A pair that is none; one whose w is not what it should be on Gamma_C.
     pub fn by_pairs(
         &self,
-        pairs: &[(ForceTarget, Certificate)],
+        pairs: &[(ForceTarget, Dual)],
         cover: Option<&Cover>,
     ) -> Result<Vec<ByPair>, WrongPair> {
         let sums = self.sums(pairs)?;
@@ -256,22 +206,11 @@ impl<S: Enclosing> Forces<'_, S> {
 
     /// Verifies that this is a pair, whose tractions balance on every triangle to the rounding of doubles, and bounds those that
     /// make up for the rest.
-    fn pair(&self, pair: &Certificate) -> Result<Pair<S>, WrongPair> {
-        let (certificate, state) = (self.certificate, self.state);
-        pair.check_fields()?;
-        certificate.check_pair(pair, state)?;
-        pair.check_displacement()?;
-        let on_edge = |edge: &Edge| match edge.role {
-            Role::Inner(force) | Role::Held(_, force) => force.map(exactly),
-            Role::Supported { along, force, .. } => {
-                force.map(|p| exactly::<Ball>(along) * Ball::point(p))
-            }
-            Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } | Role::Facing => {
-                [Vector2::zeros(); 2]
-            }
-        };
-        let forces: Vec<[Vector2<Ball>; 2]> = pair.edges.iter().map(on_edge).collect();
+    fn pair(&self, pair: &Dual) -> Result<Pair<S>, WrongPair> {
+        let state = self.state;
+        let pair = self.certificate.of_pair(pair, &state.points)?;
         let points = pair.places::<Ball>();
+        let forces: Vec<_> = (0..pair.edges.len()).map(|e| pair.force(e, &points)).collect();
         let Topology { owners, tree } = &state.topology;
         let of_piece = |(t, piece): (usize, &Piece)| {
             let triangle = Triangle { vertices: piece.vertices.map(|p| points[p]) };
@@ -279,7 +218,7 @@ impl<S: Enclosing> Forces<'_, S> {
         };
         let resultants: Vec<Wrench<Ball>> = pair.pieces.iter().enumerate().map(of_piece).collect();
         let given = |e: usize| forces[e];
-        let on_edges = OnEdges { certificate: pair, owners, points: &points, forces: &given };
+        let on_edges = OnEdges { certificate: &pair, owners, points: &points, forces: &given };
         let closed = on_edges.close(tree, &mut resultants.clone()).map_err(Rejection::from)?;
         pair.check_balance((&forces, &resultants), |_| Ball::from(0), &closed)?;
         let in_balance = forces
@@ -314,12 +253,12 @@ impl<S: Enclosing> Forces<'_, S> {
     }
 
     /// Verifies that these are pairs and sums over the triangles.
-    fn sums(&self, pairs: &[(ForceTarget, Certificate)]) -> Result<Vec<Summed<S>>, WrongPair> {
+    fn sums(&self, pairs: &[(ForceTarget, Dual)]) -> Result<Vec<Summed<S>>, WrongPair> {
         if pairs.is_empty() {
             return Ok(Vec::new());
         }
         let (state, pieces) = (self.state, &self.certificate.pieces);
-        let start = |(_, pair): &(ForceTarget, Certificate)| {
+        let start = |(_, pair): &(ForceTarget, Dual)| {
             let (zero, shares) = (Ball::from(0), Vec::with_capacity(pieces.len()));
             Ok((self.pair(pair)?, [zero; 4], shares))
         };
@@ -354,7 +293,7 @@ impl<S: Enclosing> Forces<'_, S> {
 
     fn by_sums(
         &self,
-        roles: &Certificate,
+        Dual { roles, .. }: &Dual,
         target: ForceTarget,
         sums: Summed<S>,
         cover: Option<&Cover>,
@@ -367,7 +306,7 @@ impl<S: Enclosing> Forces<'_, S> {
         let (mut beside, mut most) = (Ball::from(0), [0.0_f64; 2]);
         for e in self.contact() {
             let Role::Contact { pressure, .. } = certificate.edges[e].role else { continue };
-            if matches!(roles.edges[e].role, Role::Loaded(_)) {
+            if matches!(roles[e], Role::Loaded(_)) {
                 continue;
             }
             let d = certificate.directions(e, &state.points);

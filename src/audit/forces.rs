@@ -19,9 +19,8 @@ use nalgebra::Vector2;
 use super::balanced::{Balanced, friction};
 use super::certificate::{Certificate, Edge, Law, Piece, Role, Shape, Tied, exactly, is_oblique};
 use super::checks::Rejection;
-use super::dual::WrongPair;
+use super::dual::{Dual, WrongPair};
 use super::proof::Proof;
-use crate::kernel::composite::Affine;
 use crate::kernel::{Ball, Enclosing, Scalar, Triangle};
 
 /// M and G, from above.
@@ -218,7 +217,7 @@ pub struct Evidence {
     /// The displacements with what they are to do.
     pub liftings: Vec<(ForceTarget, Lifting)>,
     /// Dual pairs for contact forces (`signorini_audit::dual`).
-    pub pairs: Vec<(ForceTarget, Certificate)>,
+    pub pairs: Vec<(ForceTarget, Dual)>,
     /// The intervals that they are said to prove.
     pub between: Option<Between>,
 }
@@ -235,35 +234,6 @@ pub struct Between {
 }
 
 impl Evidence {
-    /// Tells whether there is a displacement.
-    fn has_forces(&self) -> bool {
-        self.cover.is_some() || !self.liftings.is_empty() || !self.pairs.is_empty()
-    }
-
-    /// Tells whether a displacement has bulges on edges.
-    fn has_bulges(&self) -> bool {
-        let mut liftings = self.cover.iter().chain(self.liftings.iter().map(|(_, w)| w));
-        liftings.any(|w| w.beyond.is_some())
-            || self.pairs.iter().any(|(_, pair)| pair.curved.is_some())
-    }
-
-    /// Without what proves nothing, and with what is `found` of the rest.
-    #[must_use]
-    pub fn proving<E>(
-        mut self,
-        cover: Option<&Cover>,
-        found: &[Result<[f64; 2], E>],
-        pairs: Vec<[f64; 2]>,
-    ) -> Evidence {
-        let mut proved = found.iter().map(Result::is_ok);
-        self.liftings.retain(|_| proved.next() == Some(true));
-        self.cover = self.cover.filter(|_| cover.is_some());
-        let cover = cover.map_or([0.0; 2], |cover| cover.between);
-        let liftings = found.iter().flatten().copied().collect();
-        self.between = Some(Between { cover, liftings, pairs });
-        self
-    }
-
     /// Intersects the intervals of a force by its lifting and by its dual pairs.
     pub fn nearest(
         &self,
@@ -306,10 +276,11 @@ struct LiftingValue<S> {
     norm: f64,
 }
 
-/// w0 of the module's head: its Bernstein coefficients on the edges of Gamma_C, and what R(w0) lies between.
+/// w0 of the module's head: its Bernstein coefficients on the edges of Gamma_C.
 pub struct Cover {
     along: Vec<Option<[f64; 4]>>,
-    between: [f64; 2],
+    /// What R(w0) lies between.
+    pub between: [f64; 2],
 }
 
 impl Cover {
@@ -339,52 +310,39 @@ pub struct Forces<'a, S> {
     pub mean: Mean,
     /// The error of L(w) and a(v, w) for each unit of |w|_a, as data oscillate.
     pub loose: f64,
-    unbalanced: Imbalance<S>,
+    unbalanced: Shape<S>,
 }
 
 /// int f . w - a(v, w) for w with a component 1 at a point, and for such a bulge on an edge: grad l_i is minus the scaled normal
 /// N_i over J = 2 |T|, so of sigma = C eps(v), affine with the values s_i and the sum S, l_i has the work -1/6 S N_i and 4 l_j l_k
 /// -1/6 ((S + s_j) N_k + (S + s_k) N_j); of f, with the sum F, J/24 (F + f_i) and J/30 (2 F - f_i).
-pub(crate) struct Imbalance<S> {
-    points: Vec<Vector2<S>>,
-    /// Empty where no w has bulges.
-    bulges: Vec<Vector2<S>>,
-}
-
-impl<S: Enclosing> Imbalance<S> {
-    fn new(points: usize, bulges: usize) -> Self {
-        let zeros = |count| vec![Vector2::zeros(); count];
-        Imbalance { points: zeros(points), bulges: zeros(bulges) }
-    }
-
-    /// Adds a triangle, with C eps(v) there.
-    fn add(&mut self, piece: &Piece, triangle: &Triangle<S>, sigma: &Affine<S>) {
-        let sixth = S::from(1) / S::from(6);
-        let (has_bulges, is_loaded) = (!self.bulges.is_empty(), piece.body != [[0.0; 2]; 3]);
+fn unbalanced<S: Enclosing>(certificate: &Certificate, state: &Balanced<S>) -> Shape<S> {
+    let sixth = S::from(1) / S::from(6);
+    let mut points = vec![Vector2::zeros(); state.points.len()];
+    let mut bulges = vec![Vector2::zeros(); certificate.edges.len()];
+    for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
+        let sigma = state.v.stress(piece, triangle);
+        let is_loaded = piece.body != [[0.0; 2]; 3];
         let normals = [0, 1, 2].map(|i| triangle.scaled_normal(i));
         let stresses = [0, 1, 2].map(|i| sigma.at_corner(i));
         let sum = stresses[0] + stresses[1] + stresses[2];
         let body = piece.body.map(exactly::<S>);
         let loads = body[0] + body[1] + body[2];
         for i in 0..3 {
-            let mut force = sum.traction(normals[i]) * sixth;
-            if is_loaded {
-                force += (loads + body[i]) * (triangle.double_area() / S::from(24));
-            }
-            self.points[piece.vertices[i]] += force;
-            if !has_bulges {
-                continue;
-            }
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             let [of_j, of_k] =
                 [(j, k), (k, j)].map(|(j, k)| (sum + stresses[j]).traction(normals[k]));
-            let mut force = (of_j + of_k) * sixth;
+            let mut force = [sum.traction(normals[i]) * sixth, (of_j + of_k) * sixth];
             if is_loaded {
-                force += (loads * S::from(2) - body[i]) * (triangle.double_area() / S::from(30));
+                let area = triangle.double_area();
+                force[0] += (loads + body[i]) * (area / S::from(24));
+                force[1] += (loads * S::from(2) - body[i]) * (area / S::from(30));
             }
-            self.bulges[piece.edges[i]] += force;
+            points[piece.vertices[i]] += force[0];
+            bulges[piece.edges[i]] += force[1];
         }
     }
+    Shape { points, bulges: Some(bulges) }
 }
 
 impl Certificate {
@@ -398,32 +356,13 @@ impl Certificate {
         evidence: &Evidence,
     ) -> Result<Vec<Result<[f64; 2], WrongLifting>>, WrongPair> {
         let state = self.balanced::<S>(self.topology()?)?;
-        let (proof, unbalanced) = self.sum_for(&state, evidence)?;
-        let (_, found, pairs) = self.forces_near(&state, &proof, evidence, unbalanced)?;
+        let proof = self.sum(&state)?;
+        let (_, found, pairs) = self.forces_near(&state, &proof, evidence)?;
         let targets = evidence.liftings.iter().map(|(target, _)| *target);
         let nearest = |(target, ends): (ForceTarget, Result<[f64; 2], WrongLifting>)| {
             ends.map(|ends| evidence.nearest(target, ends, &pairs))
         };
         Ok(targets.zip(found).map(nearest).collect())
-    }
-
-    /// [`Certificate::sum`], with what the evidence needs of it.
-    pub(crate) fn sum_for<S: Enclosing>(
-        &self,
-        state: &Balanced<S>,
-        evidence: &Evidence,
-    ) -> Result<(Proof, Imbalance<S>), Rejection> {
-        let has_forces = evidence.has_forces();
-        let points = if has_forces { state.points.len() } else { 0 };
-        let bent = evidence.has_bulges() || self.tied().any(|Tied { d, .. }| d[0] != d[1]);
-        let bulges = if bent { self.edges.len() } else { 0 };
-        let mut unbalanced = Imbalance::new(points, bulges);
-        let proof = self.sum_beside(state, |t, sigma| {
-            if has_forces {
-                unbalanced.add(&self.pieces[t], &state.triangles[t], sigma);
-            }
-        })?;
-        Ok((proof, unbalanced))
     }
 
     /// Verifies that what is said of forces is what their data give.
@@ -432,13 +371,12 @@ impl Certificate {
         state: &Balanced<Ball>,
         proof: &Proof,
         evidence: &Evidence,
-        unbalanced: Imbalance<Ball>,
     ) -> Result<(), Rejection> {
         let Some(claimed) = &evidence.between else { return Ok(()) };
         let wrong = |force: usize, problem: &dyn Display| {
             Err(Rejection::Force { force, problem: problem.to_string() })
         };
-        let (cover, found, pairs) = match self.forces_near(state, proof, evidence, unbalanced) {
+        let (cover, found, pairs) = match self.forces_near(state, proof, evidence) {
             Ok(found) => found,
             Err(WrongPair::Rejected(rejection)) => return Err(rejection),
             Err(error) => return wrong(0, &error),
@@ -474,14 +412,13 @@ impl Certificate {
         state: &Balanced<S>,
         proof: &Proof,
         evidence: &Evidence,
-        unbalanced: Imbalance<S>,
     ) -> Result<Enclosed, WrongPair> {
         let mean = Mean::new(state, proof, self.lift());
         if evidence.of.len() != self.edges.len() {
             let (what, found) = ("boundaries of edges", evidence.of.len());
             return Err(Rejection::Length { what, found, expected: self.edges.len() }.into());
         }
-        let forces = Forces::with(unbalanced, self, state, &evidence.of, mean);
+        let forces = Forces::new(self, state, &evidence.of, mean);
         let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
         let found = forces.between(&evidence.liftings, cover.as_ref());
         let pairs = forces.by_pairs(&evidence.pairs, cover.as_ref())?;
@@ -500,22 +437,7 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         of: &'a [Option<usize>],
         mean: Mean,
     ) -> Self {
-        let mut unbalanced = Imbalance::new(state.points.len(), certificate.edges.len());
-        for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
-            unbalanced.add(piece, triangle, &state.v.stress(piece, triangle));
-        }
-        Forces::with(unbalanced, certificate, state, of, mean)
-    }
-
-    /// With the sum over the triangles at hand.
-    fn with(
-        unbalanced: Imbalance<S>,
-        certificate: &'a Certificate,
-        state: &'a Balanced<S>,
-        of: &'a [Option<usize>],
-        mean: Mean,
-    ) -> Self {
-        let loose = certificate.loose();
+        let (loose, unbalanced) = (certificate.loose(), unbalanced(certificate, state));
         Forces { certificate, state, of, mean, loose, unbalanced }
     }
 
@@ -524,9 +446,11 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         let sum = |forces: &[Vector2<S>], w: &[Vector2<S>]| {
             forces.iter().zip(w).fold(S::from(0), |sum, (f, w)| sum + f.dot(w))
         };
-        let Imbalance { points, bulges } = &self.unbalanced;
-        let at_points = sum(points, &w.points);
-        w.bulges.as_ref().map_or(at_points, |of_w| at_points + sum(bulges, of_w))
+        let at_points = sum(&self.unbalanced.points, &w.points);
+        match (&self.unbalanced.bulges, &w.bulges) {
+            (Some(own), Some(of_w)) => at_points + sum(own, of_w),
+            _ => at_points,
+        }
     }
 
     /// The displacement of a lifting on the triangles of the certificate.

@@ -11,6 +11,7 @@ use thiserror::Error;
 
 use super::certificate::{Certificate, Curved, Cut, Edge, Law, Lift, Piece, Reservations, Role};
 use super::checks::Rejection;
+use super::dual::Dual;
 use super::forces::{Between, Evidence, ForceTarget, Lifting, Motion, Ramp};
 use super::proof::{Claim, Proof};
 use crate::kernel::{Material, Plane};
@@ -343,8 +344,7 @@ fn forces(
     if !named || targets[0].motion != Motion::Along(None) {
         return Err("a force or an edge is that of no boundary".to_owned());
     }
-    let mut all = displacements("w", targets.len(), certificate, arrays)?
-        .map(|(vertices, beyond)| Lifting { vertices, beyond });
+    let mut all = displacements("w", targets.len(), certificate, arrays)?;
     let is_zero = |w: &Lifting| {
         let beyond = w.beyond.iter().flatten().flatten();
         w.vertices.iter().chain(beyond).all(|&w| w == [0.0; 2])
@@ -412,15 +412,12 @@ fn targets(
     Ok((targets, between))
 }
 
-/// The values of a displacement at vertices; where it is quadratic, at cuts, with its bulges on edges, too.
-type Values = (Vec<[f64; 2]>, Option<[Vec<[f64; 2]>; 2]>);
-
 fn displacements(
     prefix: &str,
     count: usize,
     certificate: &Certificate,
     arrays: &mut ArrayReader,
-) -> Result<impl Iterator<Item = Values> + use<>, String> {
+) -> Result<impl Iterator<Item = Lifting> + use<>, String> {
     let [of_cuts, of_bulges] = ["at cuts", "bulges"].map(|what| format!("{prefix} {what}"));
     let at_vertices = arrays.lists(prefix, count, certificate.vertices.len())?;
     let beyond = if arrays.has(&of_bulges) {
@@ -430,11 +427,12 @@ fn displacements(
     } else {
         vec![None; count]
     };
-    Ok(at_vertices.into_iter().zip(beyond))
+    let all = at_vertices.into_iter().zip(beyond);
+    Ok(all.map(|(vertices, beyond)| Lifting { vertices, beyond }))
 }
 
 /// Dual pairs of forces, and what each is said to prove.
-type DualPairs = (Vec<(ForceTarget, Certificate)>, Vec<[f64; 2]>);
+type DualPairs = (Vec<(ForceTarget, Dual)>, Vec<[f64; 2]>);
 
 /// Dual pairs for some of the forces.
 fn dual_pairs(
@@ -447,7 +445,7 @@ fn dual_pairs(
     let duals = displacements("dual w", forces.len(), certificate, arrays)?;
     let roles = arrays.lists("dual edges", forces.len(), certificate.edges.len())?;
     let mut pairs = Vec::with_capacity(forces.len());
-    for ((force, (w, beyond)), roles) in forces.into_iter().zip(duals).zip(roles) {
+    for ((force, w), roles) in forces.into_iter().zip(duals).zip(roles) {
         let target = targets.get(force).ok_or("a dual pair is for no force")?;
         let along = |(e, (number, numbers)): (usize, RoleEntry)| {
             Ok(match (role(e, number, numbers)?, certificate.edges[e].role) {
@@ -458,7 +456,7 @@ fn dual_pairs(
             })
         };
         let roles = roles.into_iter().enumerate().map(along).collect::<Result<_, String>>()?;
-        pairs.push((*target, certificate.with_dual(w, beyond, roles)));
+        pairs.push((*target, Dual { w, roles }));
     }
     Ok((pairs, between))
 }
@@ -502,21 +500,27 @@ fn add_forces(
     };
     let cover = cover.clone().unwrap_or_else(none);
     let all = || std::iter::once(&cover).chain(liftings.iter().map(|(_, w)| w));
-    out.add("w", all().flat_map(|w| &w.vertices).copied());
-    for (k, name) in ["w at cuts", "w bulges"].into_iter().enumerate() {
-        out.add(name, all().flat_map(|w| &w.beyond).flat_map(|both| &both[k]).copied());
-    }
+    write_displacements("w", all, out);
     let place = |target: &ForceTarget| liftings.iter().position(|(other, _)| other == target);
     let served = pairs.iter().zip(&between.pairs);
     let served = served.filter_map(|((target, pair), &ends)| Some((place(target)?, pair, ends)));
-    let served: Vec<(usize, &Certificate, [f64; 2])> = served.collect();
+    let served: Vec<(usize, &Dual, [f64; 2])> = served.collect();
     out.add("dual forces", served.iter().map(|&(force, _, ends)| (force, ends)));
     let pairs = || served.iter().map(|&(_, pair, _)| pair);
-    out.add("dual w", pairs().flat_map(|pair| &pair.displacement).copied());
-    let curved = || pairs().flat_map(|pair| &pair.curved);
-    out.add("dual w at cuts", curved().flat_map(|curved| &curved.at_cuts).copied());
-    out.add("dual w bulges", curved().flat_map(|curved| &curved.bulges).copied());
-    out.add("dual edges", pairs().flat_map(|pair| &pair.edges).map(|edge| role_entry(&edge.role)));
+    write_displacements("dual w", || pairs().map(|pair| &pair.w), out);
+    out.add("dual edges", pairs().flat_map(|pair| &pair.roles).map(role_entry));
+}
+
+fn write_displacements<'a, W: Iterator<Item = &'a Lifting>>(
+    prefix: &str,
+    all: impl Fn() -> W,
+    out: &mut ArrayWriter,
+) {
+    out.add(prefix, all().flat_map(|w| &w.vertices).copied());
+    for (k, what) in ["at cuts", "bulges"].into_iter().enumerate() {
+        let beyond = all().flat_map(|w| &w.beyond).flat_map(|both| &both[k]);
+        out.add(&format!("{prefix} {what}"), beyond.copied());
+    }
 }
 
 fn arrays(certificate: &Certificate, shares: &[f64]) -> ArrayWriter {

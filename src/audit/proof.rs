@@ -35,7 +35,7 @@ use super::balance::Closed;
 use super::balanced::Balanced;
 use super::certificate::{Shape, exactly, place};
 use super::forces::Evidence;
-use crate::kernel::composite::{Affine, Composite, Wrench};
+use crate::kernel::composite::{Composite, Wrench};
 use crate::kernel::{Ball, Enclosing};
 
 /// The bound that a certificate proves.
@@ -68,9 +68,6 @@ pub struct Claim {
 /// A triangle may be out of balance by this, in units of the forces on it: the tractions and the sums of a dozen terms,
 /// rounded.
 const IMBALANCE: f64 = 128.0 * f64::EPSILON;
-
-/// Fields whose distance on a triangle is below this part of the bound, shared out equally, differ by rounding.
-const NEGLIGIBLE: f64 = 1e-9;
 
 impl Certificate {
     /// The difference between the problem that `proof` bounds and the one that is meant, if there is one: its body, and supports
@@ -107,7 +104,7 @@ impl Certificate {
         let state = self.balanced::<Ball>(self.topology()?)?;
         let double_area = |t: usize| state.triangles[t].double_area();
         self.check_balance((&state.forces, &state.resultants), double_area, &state.closed)?;
-        let (proof, unbalanced) = self.sum_for(&state, &claim.forces)?;
+        let proof = self.sum(&state)?;
         if claim.shares.len() != proof.shares.len() {
             let (found, expected) = (claim.shares.len(), proof.shares.len());
             return Err(Rejection::Length { what: "claimed shares", found, expected });
@@ -122,7 +119,7 @@ impl Certificate {
         if !bound.is_at_most(claim.bound) {
             return Err(Rejection::Bound { claimed: claim.bound, found: bound });
         }
-        self.check_forces(&state, &proof, &claim.forces, unbalanced)?;
+        self.check_forces(&state, &proof, &claim.forces)?;
         Ok(proof)
     }
 
@@ -162,34 +159,9 @@ impl Certificate {
         Ok(())
     }
 
-    /// The root of the right side of the theorem with the strain of another displacement w; what contact adds stays that of v.
-    /// `distances` are upper bounds of |v - w|_a on the triangles. Where that is the rounding of their data, the root of the
-    /// share grows by it at most, by the triangle inequality, since what contact adds is not negative.
-    #[doc(hidden)]
-    pub fn bound_at<S: Enclosing>(
-        &self,
-        state: Balanced<S>,
-        proof: &Proof,
-        (field, distances): (Shape<S>, &[f64]),
-    ) -> f64 {
-        let state = Balanced { v: field, ..state };
-        let zero = S::from(0);
-        let negligible = NEGLIGIBLE * proof.bound / (self.pieces.len() as f64).sqrt();
-        let mut sum = zero;
-        for (t, (&share, &distance)) in proof.shares.iter().zip(distances).enumerate() {
-            sum += if distance <= negligible {
-                let root = S::exactly(share).split(|_| zero, |s| s).sqrt() + S::exactly(distance);
-                root * root
-            } else {
-                let (_, apart) = state.stresses(self, t);
-                self.share(&state, t, &apart)
-            };
-        }
-        sum.split(|_| zero, |sum| sum).sqrt().upper()
-    }
-
     /// The share of triangle `t` in the right side, C eps(v) being that far from tau.
-    fn share<S: Enclosing>(&self, state: &Balanced<S>, t: usize, apart: &Composite<S>) -> S {
+    #[doc(hidden)]
+    pub fn share<S: Enclosing>(&self, state: &Balanced<S>, t: usize, apart: &Composite<S>) -> S {
         let piece = &self.pieces[t];
         let distance = apart.energy(&piece.material(), state.triangles[t].double_area());
         let distance = if piece.oscillation == 0.0 {
@@ -228,15 +200,6 @@ impl Certificate {
     /// The right side of the theorem.
     #[doc(hidden)]
     pub fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
-        self.sum_beside(state, |_, _| ())
-    }
-
-    /// [`Certificate::sum`]; `also` gets each triangle with C eps(v) there.
-    pub(crate) fn sum_beside<S: Enclosing>(
-        &self,
-        state: &Balanced<S>,
-        mut also: impl FnMut(usize, &Affine<S>),
-    ) -> Result<Proof, Rejection> {
         let Balanced { triangles, v, forces, .. } = state;
         let zero = S::from(0);
         let (mut square, mut norm, mut energy) = (zero, zero, zero);
@@ -245,7 +208,6 @@ impl Certificate {
             let material = piece.material();
             let double_area = triangles[t].double_area();
             let (sigma, distance) = state.stresses(self, t);
-            also(t, &sigma);
             let share = self.share(state, t, &distance);
             shares.push(share.upper());
             square += share;

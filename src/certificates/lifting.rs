@@ -10,6 +10,7 @@ use nalgebra::{DMatrix, DVector, Vector2};
 use super::SWEEPS_FOR_FORCES;
 use super::build::{Built, build};
 use super::certificate::{Certificate, Cut, Role, Tied, is_oblique, turned};
+use super::dual::Dual;
 use super::field::Field;
 use super::forces::{ForceTarget, Lifting, Motion};
 use super::parts::{Boundary, OnLine, ProblemParts};
@@ -439,7 +440,7 @@ impl<'a> Lifter<'a> {
         (target, w): (ForceTarget, &[[f64; 2]]),
         built: &Built,
         open: &[bool],
-    ) -> Result<Certificate, String> {
+    ) -> Result<Dual, String> {
         let (parts, mesh) = (self.parts, self.parts.mesh);
         if parts.contact.iter().any(|contact| contact.has_friction() || contact.is_tied()) {
             return Err("friction acts, or bodies are tied".to_owned());
@@ -498,7 +499,9 @@ impl<'a> Lifter<'a> {
         // There is no load that could oscillate.
         pair.pieces.iter_mut().for_each(|piece| piece.oscillation = 0.0);
         improve(&mut pair, SWEEPS_FOR_FORCES, true).map_err(|error| error.to_string())?;
-        Ok(pair)
+        let beyond = pair.curved.map(|curved| [curved.at_cuts, curved.bulges]);
+        let w = Lifting { vertices: pair.displacement, beyond };
+        Ok(Dual { w, roles: pair.edges.iter().map(|edge| edge.role).collect() })
     }
 
     /// Gives w on the second of two tied bodies what it must be where it is prescribed on the first one.

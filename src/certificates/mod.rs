@@ -42,6 +42,7 @@ mod tractions;
 pub use self::adapt::{AdaptError, Adapted, Target, adapt, adapt_to};
 use nalgebra::Vector2;
 
+use self::balanced::Balanced;
 use self::build::Built;
 use self::certificate::Shape;
 pub use self::errors::CertifyError;
@@ -223,7 +224,7 @@ fn certify_near(
         bound
     } else {
         let shape = built.shape(mesh, field);
-        let as_it_is = certificate.bound_at(state, &proof, (shape, &distances));
+        let as_it_is = bound_at(&built.certificate, state, &proof, (shape, &distances));
         let beside = (clipping + certificate.lift()).next_up();
         let [as_it_is, beside] = [as_it_is, beside].map(Ball::point);
         let together = (as_it_is * as_it_is + beside * beside).sqrt().upper();
@@ -249,6 +250,34 @@ fn certify_near(
         missed,
         quantities,
     })
+}
+
+/// Fields whose distance on a triangle is below this part of the bound, shared out equally, differ by rounding.
+const NEGLIGIBLE: f64 = 1e-9;
+
+/// The root of the right side of the theorem with the strain of another displacement w; what contact adds stays that of v.
+/// `distances` are upper bounds of |v - w|_a on the triangles. Where that is the rounding of their data, the root of the
+/// share grows by it at most, by the triangle inequality, since what contact adds is not negative.
+fn bound_at(
+    certificate: &Certificate,
+    mut state: Balanced<Ball>,
+    proof: &Proof,
+    (field, distances): (Shape<Ball>, &[f64]),
+) -> f64 {
+    state.v = field;
+    let positive = |x: Ball| x.split(|_| Ball::from(0), |x| x);
+    let negligible = NEGLIGIBLE * proof.bound / (proof.shares.len() as f64).sqrt();
+    let mut sum = Ball::from(0);
+    for (t, (&share, &distance)) in proof.shares.iter().zip(distances).enumerate() {
+        sum += if distance <= negligible {
+            let root = positive(Ball::point(share)).sqrt() + Ball::point(distance);
+            root * root
+        } else {
+            let (_, apart) = state.stresses(certificate, t);
+            certificate.share(&state, t, &apart)
+        };
+    }
+    positive(sum).sqrt().upper()
 }
 
 /// Refuses what no certificate is about, and what takes more memory than there is; returns whether v is quadratic beside a solution that is.

@@ -25,9 +25,11 @@ use super::balanced::Balanced;
 use super::build::{Built, Line, Station};
 use super::certificate::{self, Certificate, Role};
 use super::contact::Contact;
-use super::dual::ByPair;
+use super::dual::{ByPair, Dual};
 use super::field::Field;
-use super::forces::{Cover, Evidence, ForceTarget, Forces, Mean, Motion, Ramp, WrongLifting};
+use super::forces::{
+    Between, Cover, Evidence, ForceTarget, Forces, Mean, Motion, Ramp, WrongLifting,
+};
 use super::lifting::Lifter;
 use super::parts::{Boundary, ProblemParts};
 use super::proof::Proof;
@@ -437,7 +439,34 @@ impl<'a> Lifters<'a> {
 /// A dual pair with what it proves.
 struct Tried {
     found: ByPair,
-    pair: Certificate,
+    pair: Dual,
+}
+
+/// The evidence without what proves nothing, and with what is `found` of the rest.
+fn proving(
+    mut evidence: Evidence,
+    cover: Option<&Cover>,
+    found: &[Result<[f64; 2], WrongLifting>],
+    pairs: Vec<[f64; 2]>,
+) -> Evidence {
+    let mut proved = found.iter().map(Result::is_ok);
+    evidence.liftings.retain(|_| proved.next() == Some(true));
+    evidence.cover = evidence.cover.filter(|_| cover.is_some());
+    let cover = cover.map_or([0.0; 2], |cover| cover.between);
+    let liftings = found.iter().flatten().copied().collect();
+    evidence.between = Some(Between { cover, liftings, pairs });
+    evidence
+}
+
+/// The share of each triangle in the distance of one end from the middle, k M^2 + eta^2 / (4 k) with the k >= eta / (2 M) that makes
+/// it that distance; `shares` are those in M^2. The upper end counts k M^2 alone: its eta comes from where w and rho end, not from
+/// the triangles.
+fn limits_of(found: &ByPair, side: usize, shares: &[f64]) -> Vec<f64> {
+    let [of_mean, of_pair] = [shares, &found.shares].map(|all| all.iter().sum::<f64>());
+    let k = found.factors[side].max((of_pair / of_mean).sqrt() / 2.0);
+    let per_pair = if side == 0 { 1.0 / (4.0 * k) } else { 0.0 };
+    let all = shares.iter().zip(&found.shares);
+    all.map(|(mean, pair)| k * mean + pair * per_pair).collect()
 }
 
 /// rho ends at most this many edges before the last one that is pressed from end to end.
@@ -558,7 +587,7 @@ impl Prover<'_> {
         let found = questions.into_iter().zip(intervals);
         let found =
             found.flat_map(|(question, ends)| answers(question, acts[question.boundary], ends));
-        (found.collect(), evidence.proving(cover.as_ref(), &between, by_pairs), limits)
+        (found.collect(), proving(evidence, cover.as_ref(), &between, by_pairs), limits)
     }
 
     /// The numbers of a boundary that are asked for, and how contact acts there.
@@ -638,7 +667,7 @@ impl Prover<'_> {
                 sides.retain(|side| if *side == 0 { low > first[0] } else { high < first[1] });
                 for &side in &sides {
                     limits.resize(self.shares.len(), 0.0);
-                    let more = found.limits(side, self.shares);
+                    let more = limits_of(&found, side, self.shares);
                     limits.iter_mut().zip(more).for_each(|(limit, more)| *limit += more);
                 }
                 if !sides.is_empty() {

@@ -165,7 +165,7 @@ fn forces_that_are_not_what_their_data_give_are_refused() {
             e.liftings[k].1.vertices[40][1] += 1e-3;
         }),
         ("another rho", &|e| {
-            let inner = e.pairs[0].1.edges.iter_mut().find_map(|edge| match &mut edge.role {
+            let inner = e.pairs[0].1.roles.iter_mut().find_map(|role| match role {
                 Role::Inner(force) => Some(force),
                 _ => None,
             });
@@ -242,19 +242,20 @@ fn a_dual_stress_that_is_not_one_is_refused() {
     let c = by_a_dual_pair(&tilted_punch(8), Degree::One);
     // A traction on Gamma_N.
     let mut evidence = c.quantities.evidence.clone();
-    let edges = &mut evidence.pairs[0].1.edges;
-    let free = edges.iter_mut().find(|edge| matches!(edge.role, Role::Loaded(_))).unwrap();
-    free.role = Role::Loaded([[1e-9, 0.0]; 2]);
+    let roles = &mut evidence.pairs[0].1.roles;
+    let free = roles.iter_mut().find(|role| matches!(role, Role::Loaded(_))).unwrap();
+    *free = Role::Loaded([[1e-9, 0.0]; 2]);
     let found = c.certificate.forces::<Ball>(&evidence);
     assert!(matches!(found, Err(WrongPair::Differs { .. })), "{found:?}");
-    // A body force.
+    // An edge less.
     let mut evidence = c.quantities.evidence.clone();
-    evidence.pairs[0].1.pieces[0].body = [[0.0, 1e-9]; 3];
+    evidence.pairs[0].1.roles.pop();
     assert!(matches!(c.certificate.forces::<Ball>(&evidence), Err(WrongPair::Differs { .. })));
-    // A frame.
+    // A w that is not 0 where the body is held.
     let mut evidence = c.quantities.evidence.clone();
-    evidence.pairs[0].1.frames.insert(40, [0.6, 0.8]);
-    assert!(matches!(c.certificate.forces::<Ball>(&evidence), Err(WrongPair::Differs { .. })));
+    let held = c.certificate.edges.iter().find(|edge| matches!(edge.role, Role::Held(..))).unwrap();
+    evidence.pairs[0].1.w.vertices[held.ends[0]][1] = 1e-9;
+    assert!(matches!(c.certificate.forces::<Ball>(&evidence), Err(WrongPair::Rejected(_))));
 }
 
 #[test]

@@ -4,6 +4,7 @@
 //! x, without a traction on Gamma_N. Loads may oscillate, and prescribed values may need a lift.
 
 use proptest::prelude::*;
+use signorini::certificates::dual::Dual;
 use signorini::certificates::forces::{ForceTarget, Forces, Lifting, Mean, Motion};
 use signorini::certificates::proof::{Certificate, Lift, Role};
 use signorini::kernel::Ball;
@@ -156,7 +157,7 @@ impl Draw {
     }
 
     /// The dual pair with this w, which is the same at the ends of the edges where rho acts and straight between them.
-    fn pair(&self, certificate: &Certificate, w: &Shape) -> Certificate {
+    fn pair(&self, certificate: &Certificate, w: &Shape) -> Dual {
         let rho = |x: [f64; 2]| self.rho([x[0], x[1]]);
         let roles = certificate.edges.iter().map(|edge| {
             let [p, q] = edge.ends.map(|k| certificate.vertices[k]);
@@ -168,8 +169,7 @@ impl Draw {
                 _ => Role::Loaded([[0.0; 2]; 2]),
             }
         });
-        let beyond = w.bulges.clone().map(|bulges| [Vec::new(), bulges]);
-        certificate.with_dual(w.vertices.clone(), beyond, roles.collect())
+        Dual { w: w.lifting(), roles: roles.collect() }
     }
 
     /// rho_yy
