@@ -70,7 +70,7 @@ fn on_uniform_meshes(ladder: &Ladder) -> Vec<Point> {
         let error = error_of(&problem, &ladder.solution, v);
         Point { unknowns: 2.0 * v.len() as f64, error, bound }
     };
-    (1..=4).map(on).collect()
+    (1..=3).map(on).collect()
 }
 
 /// On adapted meshes error and bound fall as for smooth solutions, with the power -p/2 of the unknowns, but for what a fit over a
