@@ -22,7 +22,7 @@
 //! body without contact counts as a step where it takes one. A start that is given ([`super::course`]) needs no soft
 //! springs.
 //!
-//! **The end** is the rounding level of the residual, or of the decrease along a step.
+//! **The end** is the rounding level of the residual, or of the decrease along a step, or what [`Until`] says.
 
 use super::SolveError;
 use super::body::{Body, ContactEnergy, Derivatives, Step, derivatives};
