@@ -279,7 +279,7 @@ struct LiftingValue<S> {
 /// w0 of the module's head: its Bernstein coefficients on the edges of Gamma_C.
 pub struct Cover {
     along: Vec<Option<[f64; 4]>>,
-    /// What R(w0) lies between.
+    /// Numbers that R(w0) lies between.
     pub between: [f64; 2],
 }
 

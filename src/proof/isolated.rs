@@ -180,7 +180,7 @@ struct Reach {
 }
 
 impl Reach {
-    /// Of P0: the products are the entries of G.
+    /// The reach of P0: the products are the entries of G.
     fn new(piece: &Piece<PreciseBall>, of: &Compliance) -> Self {
         Reach::with(piece, [of.entry, 0.0], |i, j| of.g[(i, j)])
     }
@@ -209,7 +209,7 @@ impl Reach {
         reach
     }
 
-    /// Of a P0_n + b P0_t.
+    /// The reach of a P0_n + b P0_t.
     fn of(&self, a: f64, b: f64) -> f64 {
         let size = a.abs() + b.abs();
         let square = |&[n, t, nt]: &[f64; 3]| {
@@ -221,8 +221,8 @@ impl Reach {
         up(self.between * (most.sqrt() + size * self.slack) * (1.0 + 1e-12))
     }
 
-    /// What forces a P0_n(v) along and b P0_n(v) + c P0_t(v) across at a point do to a body whose answers to forces have this reach,
-    /// at most.
+    /// Bounds what forces a P0_n(v) along and b P0_n(v) + c P0_t(v) across at a point do to a body whose answers to forces have this
+    /// reach.
     fn through(&self, [a, b, c]: Terms, answer: &Reach) -> f64 {
         let by_forces = a.abs() * self.normal * answer.normal + self.of(b, c) * answer.across;
         let by_values = self.normal * answer.of(a, b) + c.abs() * self.across * answer.across;
@@ -386,7 +386,7 @@ impl<'a> OnPiece<'a> {
         OnPiece { piece, p, reach, weight: piece.weight().upper(), meant, block, magnitudes }
     }
 
-    /// What the body does, at most, under the forces by which the terms differ from those of H0, for P of any two fields within `r`: once
+    /// Bounds what the body does under the forces by which the terms differ from those of H0, for P of any two fields within `r`: once
     /// with the reach of its `answer` to forces, once with that of P0.
     fn uncertain(&self, d: &Discretization, r: f64, answer: &Reach) -> [f64; 2] {
         let law = self.piece.geometry.law;
@@ -441,7 +441,7 @@ impl<'a> OnPiece<'a> {
         sum.map(|sum| up(self.weight * sum * (1.0 + 1e-12)))
     }
 
-    /// What the body does, at most, under the forces by which the block of H0, and these `springs`, are rounded: entries are rounded
+    /// Bounds what the body does under the forces by which the block of H0, and these `springs`, are rounded: entries are rounded
     /// from balls, by some units in the last place. The functionals have the `norms`, and J0^-1 of them the norms `answers`.
     fn rounding(&self, springs: Option<&DMatrix<f64>>, [norms, answers]: [&[f64]; 2]) -> f64 {
         let [norms, answers] = [norms, answers].map(|of| &of[self.piece.functionals()]);
@@ -453,7 +453,7 @@ impl<'a> OnPiece<'a> {
             * (1.0 + 1e-12))
     }
 
-    /// What gamma^{1/2} times the change of pressure and shear is at most beside |v|, its square.
+    /// Bounds the square of gamma^{1/2} times the change of pressure and shear beside |v|.
     fn pressure(&self) -> f64 {
         let (n, t) = (self.reach.normal, self.reach.across);
         let mu = coefficient(self.piece).unwrap_or(0.0);
@@ -752,7 +752,7 @@ pub(super) struct Rest<'a> {
     /// A z with this z is that residual, up to a functional of at most this dual norm.
     pub(crate) z: &'a [PreciseBall],
     pub(crate) left: f64,
-    /// What the force of each functional is off, at most.
+    /// Bounds of what the force of each functional is off.
     pub(crate) spread: &'a [f64],
     /// The norm of the displacement.
     pub(crate) size: f64,
