@@ -13,6 +13,7 @@ use signorini::io::sweep::ParameterAxis;
 #[derive(Parser)]
 #[command(
     name = "signorini",
+    bin_name = "signorini",
     version,
     arg_required_else_help = true,
     after_help = format!("{SCOPE}\n\n{EXIT_CODES}")

@@ -1,12 +1,10 @@
 //! Certificates of bodies that contact alone holds, and of v pushed out of obstacles of every kind: what balances the loads is
 //! the pressure on Gamma_C, and v is as far outside as balls can see.
 
-use std::path::Path;
-
 use approx::assert_relative_eq;
 
 use crate::certify::accepts;
-use crate::common::{case_of, encoded};
+use crate::common::{case_of, encoded, root};
 use signorini::certificates::proof::{Certificate, Role};
 use signorini::certificates::quantities::Name;
 use signorini::certificates::{Continuous, Rejection, certify, certify_field};
@@ -25,7 +23,7 @@ fn certified(text: &str, settings: &[&str]) -> Continuous {
 
 /// The certificate of a case of the folder `cases`.
 fn of_the_cases(name: &str, settings: &[&str]) -> Continuous {
-    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    let cases = root().join("cases");
     certified(&Case::text(&cases.join(name)).unwrap(), settings)
 }
 

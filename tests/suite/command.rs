@@ -60,7 +60,7 @@ pub fn with_files(test: &str, files: &[(&str, &str)]) -> PathBuf {
 }
 
 pub fn signorini(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_signorini"))
+    Command::new(env!("CARGO_BIN_EXE_program"))
         .args(arguments)
         .current_dir(folder)
         .output()
@@ -261,7 +261,7 @@ fn new_writes_a_pair_for_bodies_that_touch_each_other() {
         ("reference/pairs/joined.msh", &[]),
     ] {
         let name = Path::new(mesh).file_name().unwrap().to_str().unwrap();
-        fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join(mesh), folder.join(name)).unwrap();
+        fs::copy(crate::common::root().join(mesh), folder.join(name)).unwrap();
         let output = signorini(&folder, &["new", name]);
         assert_eq!(output.status.code(), Some(0), "{mesh}: {output:?}");
         let case = name.replace(".msh", ".toml");
@@ -286,7 +286,7 @@ fn new_writes_a_case_that_can_be_solved_and_replaces_no_file() {
         "meshio_bare",
     ];
     let folder = with_files("new", &[]);
-    let variants = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/variants");
+    let variants = crate::common::root().join("tests/meshes/variants");
     for name in meshes {
         let mesh = format!("{name}.msh");
         fs::copy(variants.join(&mesh), folder.join(&mesh)).unwrap();

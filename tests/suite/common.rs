@@ -1,7 +1,7 @@
 //! Problems that the tests share.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use faer::Mat;
@@ -18,6 +18,11 @@ use signorini::solve::{ContactQuadrature, Gamma0, Method};
 pub const DEGREES: [Degree; 2] = [Degree::One, Degree::Two];
 pub const EXACT: ContactQuadrature = ContactQuadrature::Exact;
 pub const GAUSS: ContactQuadrature = ContactQuadrature::Gauss(4);
+
+/// The folder of the project, with its cases and pages.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap().to_owned()
+}
 
 pub fn function(f: impl Fn([f64; 2]) -> f64 + Send + Sync + 'static) -> SharedFunction {
     Arc::new(f)
@@ -43,14 +48,14 @@ pub fn unit_material() -> Material<f64> {
 
 /// A case from its text, as if it lay in the folder `cases`, with keys set.
 pub fn case_of(text: &str, settings: &[&str]) -> Case {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/in_a_test.toml");
+    let file = root().join("cases/in_a_test.toml");
     let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
     Case::parse(&file, text, &settings).unwrap()
 }
 
 /// A case of the folder `cases` with keys set.
 pub fn case(name: &str, settings: &[&str]) -> Case {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(name);
+    let file = root().join("cases").join(name);
     case_of(&std::fs::read_to_string(file).unwrap(), settings)
 }
 

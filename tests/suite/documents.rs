@@ -12,9 +12,10 @@ use signorini::io::outputs::{self, Extra};
 use signorini::io::run;
 
 use super::command::{signorini, text};
+use super::common::root;
 
 fn page(name: &str) -> String {
-    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).unwrap()
+    fs::read_to_string(root().join(name)).unwrap()
 }
 
 /// The words in backquotes of the first cell of each row.
@@ -104,7 +105,7 @@ fn the_page_on_result_json_lists_exactly_what_is_written() {
         ),
     ] {
         let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
-        let mut case = Case::parse(Path::new(file), &page(file), &settings).unwrap();
+        let mut case = Case::parse(&root().join(file), &page(file), &settings).unwrap();
         if let Some(step) = case.steps.pop() {
             case = step;
         }
@@ -127,7 +128,7 @@ fn known_to(file: &str, text: &str, settings: &[&str], table: &str) -> BTreeSet<
     let dot = if table.is_empty() { "" } else { "." };
     let nonsense = format!("{table}{dot}nonsense=1");
     let all = [settings, vec![nonsense]].concat();
-    let error = match Case::parse(Path::new(file), text, &all) {
+    let error = match Case::parse(&root().join(file), text, &all) {
         Ok(_) => panic!("{table}: nonsense is accepted"),
         Err(error) => error.to_string(),
     };
@@ -258,7 +259,7 @@ fn the_page_on_case_files_lists_exactly_the_parameters_of_the_exact_solutions() 
 fn output_and_picture_of_the_readme_are_those_of_its_command() {
     let folder = std::env::temp_dir().join(format!("signorini-{}-readme", std::process::id()));
     fs::create_dir_all(&folder).unwrap();
-    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/bracket.toml");
+    let case = root().join("cases/bracket.toml");
     let run = signorini(&folder, &["solve", case.to_str().unwrap()]);
     assert!(run.status.success(), "{run:?}");
     let drawn = fs::read_to_string(folder.join("out/bracket/picture.svg")).unwrap();
@@ -282,7 +283,7 @@ fn output_and_picture_of_the_readme_are_those_of_its_command() {
 }
 
 fn pages() -> Vec<String> {
-    let docs = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs")).unwrap();
+    let docs = fs::read_dir(root().join("docs")).unwrap();
     ["README.md", "VERIFY.md", "CONTRIBUTING.md", "CHANGELOG.md"]
         .map(str::to_owned)
         .into_iter()
@@ -293,7 +294,7 @@ fn pages() -> Vec<String> {
 
 #[test]
 fn every_link_of_the_readme_and_the_pages_leads_to_a_file_of_the_package() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = root();
     let manifest = page("Cargo.toml");
     let excluded = manifest.lines().find(|line| line.starts_with("exclude = ")).unwrap();
     let mut count = 0;
@@ -377,7 +378,7 @@ fn rust_files(folder: &Path, into: &mut Vec<PathBuf>) {
 
 #[test]
 fn every_section_of_the_theory_that_code_and_pages_name_is_there() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = root();
     let mut files: Vec<PathBuf> = pages().iter().map(|name| root.join(name)).collect();
     for folder in ["src", "tests", "props"].map(|name| root.join(name)) {
         // The package does without the folder of the claims.
@@ -421,7 +422,7 @@ fn words_of(picture: &str) -> Vec<&str> {
 
 #[test]
 fn pictures_of_the_gallery_have_the_words_and_numbers_of_their_commands() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = root();
     let folder = std::env::temp_dir().join(format!("signorini-{}-gallery", std::process::id()));
     fs::create_dir_all(&folder).unwrap();
     let gallery = page("docs/gallery.md");

@@ -17,7 +17,7 @@ fn folder(test: &str) -> PathBuf {
 }
 
 fn command(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_signorini"));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_program"));
     command.args(arguments).current_dir(folder).stdin(Stdio::null());
     command
 }
@@ -110,7 +110,7 @@ fn a_full_standard_error_leaves_the_exit_code_as_it_is() {
         let quiet = command(&folder, arguments).arg("--quiet").stderr(full()).spawn().unwrap();
         assert_eq!(output(quiet).status.code(), Some(code), "{arguments:?}");
         let mut closed = Command::new("sh");
-        closed.args(["-c", "exec \"$0\" \"$@\" <&- >&- 2>&-", env!("CARGO_BIN_EXE_signorini")]);
+        closed.args(["-c", "exec \"$0\" \"$@\" <&- >&- 2>&-", env!("CARGO_BIN_EXE_program")]);
         let closed = closed.args(arguments).current_dir(&folder).status().unwrap();
         assert_eq!(closed.code(), Some(code), "{arguments:?}");
     }
@@ -421,7 +421,7 @@ fn what_does_not_fit_into_memory_ends_with_exit_code_1_and_the_number_of_bytes()
 fn limited(limit: &str, folder: &Path, arguments: &str) -> Output {
     let script = format!("ulimit {limit}; exec \"$0\" {arguments}");
     let mut shell = Command::new("sh");
-    run(shell.args(["-c", &script, env!("CARGO_BIN_EXE_signorini")]).current_dir(folder))
+    run(shell.args(["-c", &script, env!("CARGO_BIN_EXE_program")]).current_dir(folder))
 }
 
 /// An audit, and forces that a certificate is to find, where memory ends: a word about how many bytes are needed, not an abort.

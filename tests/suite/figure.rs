@@ -1,7 +1,6 @@
 //! The figure of Theorem 7.2 in docs/a-posteriori.md: three points of a plane for which the theorem holds.
 
 use approx::assert_abs_diff_eq;
-use std::path::Path;
 
 /// Centre and radius of each circle of a drawing.
 fn circles(drawing: &str) -> Vec<([f64; 2], f64)> {
@@ -19,7 +18,7 @@ fn distance([a, b]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
 
 #[test]
 fn the_figure_of_theorem_7_2_is_of_points_for_which_it_holds() {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figures/hypercircle.svg");
+    let page = crate::common::root().join("docs/figures/hypercircle.svg");
     let circles = circles(&std::fs::read_to_string(page).unwrap());
     // The ball and the sphere without contact; then C eps(v), tau, their mean and sigma(u).
     let [(ball, radius), (sphere, half), (v, _), (tau, _), (mean, _), (sigma, _)] = circles[..]

@@ -621,7 +621,7 @@ fn a_leaning_strip_has_three_solutions_each_isolated_and_with_a_smaller_coeffici
 
 /// The numbers of a row of the table in docs/theory.md, 13.8.
 fn row_of(name: &str) -> Vec<f64> {
-    let page = std::fs::read_to_string("docs/theory.md").unwrap();
+    let page = std::fs::read_to_string(root().join("docs/theory.md")).unwrap();
     let (_, section) = page.split_once("### 13.8").unwrap();
     let row = section.lines().find_map(|line| line.strip_prefix(&format!("| {name} |"))).unwrap();
     row.split('|')
@@ -633,7 +633,7 @@ fn row_of(name: &str) -> Vec<f64> {
 
 /// The corners of the meshes in docs/figures/three-solutions.svg, as they are and as they move, in units of the drawing from the origin of each.
 fn drawn_strips() -> Vec<Vec<([f64; 2], [f64; 2])>> {
-    let drawing = std::fs::read_to_string("docs/figures/three-solutions.svg").unwrap();
+    let drawing = std::fs::read_to_string(root().join("docs/figures/three-solutions.svg")).unwrap();
     let points = |class: &str| -> Vec<Vec<[f64; 2]>> {
         let opening = format!("<polygon class=\"{class}\" points=\"");
         let all = drawing.split(&opening).skip(1);

@@ -15,7 +15,7 @@ use signorini::io::gmsh;
 use signorini::io::raw_mesh::Made;
 use signorini::model::Function;
 
-use crate::common::Random;
+use crate::common::{Random, root};
 
 /// One of the seeds with a few changes: bytes, words of the format, parts of it or of another seed, an end too soon.
 fn mutated(dice: &mut Random, seeds: &[Vec<u8>], words: &[&[u8]]) -> Vec<u8> {
@@ -119,7 +119,7 @@ fn check_message(message: &str) {
 }
 
 fn files(folder: &str, ending: &str) -> Vec<Vec<u8>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let folder = root().join(folder);
     let mut paths: Vec<PathBuf> =
         fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|e| e == ending));
@@ -213,7 +213,6 @@ fn a_mesh_that_is_read_has_areas_and_a_closed_boundary() {
     });
 }
 
-#[cfg(feature = "files")]
 mod cases {
     use signorini::io::Case;
     use signorini::io::outputs::{self, Extra};
@@ -268,7 +267,7 @@ mod cases {
             return None;
         }
         // Beside the meshes that the cases name.
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/fuzzed.toml");
+        let file = root().join("cases/fuzzed.toml");
         match Case::parse(&file, &text, &[]) {
             Ok(case) => Some(case),
             Err(error) => {

@@ -10,8 +10,6 @@ use signorini::io::{Case, gmsh};
 use signorini::model::Mesh;
 use signorini::solve::solve;
 
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
-
 /// Runs `gmsh -2 -format msh41` with more arguments on a file of the project.
 fn mesh(geometry: &str, output: &str, more: &[&str]) -> PathBuf {
     let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gmsh_live");
@@ -21,7 +19,7 @@ fn mesh(geometry: &str, output: &str, more: &[&str]) -> PathBuf {
         .args(["-2", "-format", "msh41", "-o"])
         .arg(&file)
         .args(more)
-        .arg(Path::new(ROOT).join(geometry))
+        .arg(crate::common::root().join(geometry))
         .output()
         .unwrap_or_else(|e| panic!("gmsh can't be run ({e}): install it, in Debian as `gmsh`"));
     assert!(run.status.success(), "gmsh failed:\n{}", String::from_utf8_lossy(&run.stderr));
@@ -115,7 +113,7 @@ fn older_files_and_straight_elements_of_second_order_give_the_same_mesh() {
 #[test]
 #[ignore = "needs gmsh: run by .ci/run"]
 fn every_fresh_variant_of_the_bracket_gives_the_same_result() {
-    let text = fs::read_to_string(Path::new(ROOT).join("cases/bracket.toml")).unwrap();
+    let text = fs::read_to_string(crate::common::root().join("cases/bracket.toml")).unwrap();
     let mut answers: Vec<(&str, Vec<f64>)> = Vec::new();
     for (output, more) in [
         ("bracket.msh", &[][..]),

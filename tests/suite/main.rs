@@ -10,13 +10,11 @@ mod bodies;
 mod certified_contact;
 mod certified_supports;
 mod certify;
-#[cfg(feature = "cli")]
 mod command;
 mod convergence;
-#[cfg(feature = "cli")]
 mod course;
 mod documents;
-#[cfg(all(feature = "cli", unix))]
+#[cfg(unix)]
 mod doors;
 mod enclosure;
 mod exact;
@@ -38,11 +36,9 @@ mod quantities;
 mod recovered;
 mod reference;
 mod remarks;
-#[cfg(feature = "cli")]
 mod reported;
 mod revolution;
 mod routes;
-#[cfg(feature = "cli")]
 mod set_and_sweep;
 mod tensor;
 mod units;

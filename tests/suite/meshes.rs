@@ -92,7 +92,7 @@ const REFUSED: [(&str, &str); 7] = [
 ];
 
 fn file(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/variants").join(format!("{name}.msh"))
+    crate::common::root().join("tests/meshes/variants").join(format!("{name}.msh"))
 }
 
 /// A block on this mesh, pushed onto a floor.

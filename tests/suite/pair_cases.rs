@@ -182,7 +182,7 @@ fn keys_of_a_pair_are_read_and_set_by_its_number() {
 #[test]
 fn in_the_cases_with_pairs_points_of_both_boundaries_face_each_other() {
     // The whole length of the shorter boundary, or what the reach leaves of it.
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = crate::common::root();
     for (name, lengths) in [
         ("pin_lug", &[std::f64::consts::PI * 10.025][..]),
         ("press_fit", &[std::f64::consts::FRAC_PI_2 * 30.0]),

@@ -3,7 +3,6 @@
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
-use std::path::Path;
 
 use approx::{assert_abs_diff_eq, assert_relative_eq, relative_eq};
 use signorini::io::{Case, gmsh};
@@ -191,7 +190,7 @@ fn a_bimaterial_bar_is_exact() {
 /// Every variant of the format gives the same body and the same answer.
 #[test]
 fn every_variant_of_the_bracket_gives_the_same_result() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = root();
     let mut answers = Vec::new();
     for name in [
         "cases/bracket.msh",

@@ -23,12 +23,14 @@ use signorini::io::outputs::{self, Extra};
 use signorini::io::result::result_json;
 use signorini::solve::solve;
 
+use crate::common::root;
+
 const TOLERANCE: f64 = 1e-10;
 const TOLERANCE_OF_ERRORS: f64 = 1e-8;
 const ROUNDING: f64 = 1000.0 * f64::EPSILON;
 
 fn stored_in(folder: &str) -> Vec<PathBuf> {
-    let mut files: Vec<PathBuf> = fs::read_dir(folder)
+    let mut files: Vec<PathBuf> = fs::read_dir(root().join(folder))
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .filter(|path| path.extension().is_some_and(|e| e == "json"))
@@ -134,7 +136,7 @@ fn our_results_agree_with_the_stored_ones_of_fenicsx() {
     for file in stored_in("reference/results") {
         let stored: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
         let provenance = &stored["provenance"];
-        let case = Path::new(provenance["case"].as_str().unwrap());
+        let case = &root().join(provenance["case"].as_str().unwrap());
         let hash = sha256(case);
         if provenance["case_sha256"] != Value::String(hash) {
             bad.push(format!("{}: {} has changed since", file.display(), case.display()));
@@ -173,9 +175,10 @@ fn the_stored_results_notice_another_friction() {
         ("friction-journal-p2-exact", "arc", "coulomb", "0.3001"),
         ("friction-tresca-p2-exact", "bottom", "tresca", "\"0.02001 + 0.03*x\""),
     ] {
-        let text = fs::read_to_string(format!("reference/results/{name}.json")).unwrap();
+        let text =
+            fs::read_to_string(root().join(format!("reference/results/{name}.json"))).unwrap();
         let stored: Value = serde_json::from_str(&text).unwrap();
-        let case = Path::new(stored["provenance"]["case"].as_str().unwrap());
+        let case = &root().join(stored["provenance"]["case"].as_str().unwrap());
         let setting = format!("boundary.{boundary}.contact.friction.{law}={other}");
         let theirs = compared(&stored);
         let ours = compared(&ours(case, &[setting]));
@@ -199,7 +202,7 @@ fn gauss_points_come_close_to_the_exact_integrals_of_friction() {
             let [exact, gauss] = ["exact", "gauss11"].map(|rule| {
                 let name = format!("reference/results/friction-{case}-p{degree}-{rule}.json");
                 let stored: Value =
-                    serde_json::from_str(&fs::read_to_string(name).unwrap()).unwrap();
+                    serde_json::from_str(&fs::read_to_string(root().join(name)).unwrap()).unwrap();
                 stored["contact"][0]["friction"]["shear"].as_f64().unwrap()
             });
             let off = (gauss / exact - 1.0).abs();
@@ -212,7 +215,7 @@ fn gauss_points_come_close_to_the_exact_integrals_of_friction() {
 /// The largest difference of a stored result of two bodies from ours, as the case is or with another setting: forces relative to the
 /// largest force, energies to a(u, u), displacements to the largest one, lengths that stick or slide to their sum.
 fn difference_of_pair(stored: &Value, setting: Option<&str>) -> f64 {
-    let path = Path::new(stored["provenance"]["case"].as_str().unwrap());
+    let path = &root().join(stored["provenance"]["case"].as_str().unwrap());
     let settings: Vec<String> = setting.map(str::to_owned).into_iter().collect();
     let text = fs::read_to_string(path).unwrap();
     let case = Case::parse(path, &text, &settings).unwrap();
@@ -268,7 +271,7 @@ fn pairs_agree_with_those_of_fenicsx_whether_their_meshes_match_or_not() {
     assert_eq!(files.len(), 13, "{files:?}");
     for file in files {
         let stored: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
-        let case = Path::new(stored["provenance"]["case"].as_str().unwrap());
+        let case = &root().join(stored["provenance"]["case"].as_str().unwrap());
         assert_eq!(stored["provenance"]["case_sha256"], sha256(case), "{}", file.display());
         let off = difference_of_pair(&stored, None);
         println!("{}: {off:.1e}", file.display());
@@ -290,11 +293,11 @@ fn pairs_agree_with_those_of_fenicsx_whether_their_meshes_match_or_not() {
 /// displacement, beside a corner, by 0.5 %, the force by 0.04 %.
 #[test]
 fn a_pair_agrees_with_getfem_to_the_error_of_the_mesh() {
-    let text = fs::read_to_string("reference/results/getfem/apart.json").unwrap();
+    let text = fs::read_to_string(root().join("reference/results/getfem/apart.json")).unwrap();
     let stored: Value = serde_json::from_str(&text).unwrap();
-    let mesh = Path::new(stored["provenance"]["mesh"].as_str().unwrap());
+    let mesh = &root().join(stored["provenance"]["mesh"].as_str().unwrap());
     assert_eq!(stored["provenance"]["mesh_sha256"], sha256(mesh));
-    let path = Path::new("reference/pairs/apart-p2.toml");
+    let path = &root().join("reference/pairs/apart-p2.toml");
     let text = fs::read_to_string(path).unwrap();
     let off = |clearance: &str| {
         let settings = [format!("pair.0.clearance=\"{clearance}\"")];
@@ -322,9 +325,9 @@ fn a_pair_agrees_with_getfem_to_the_error_of_the_mesh() {
 /// some 1e-6 of the forces.
 #[test]
 fn a_dragged_pad_agrees_with_getfem() {
-    let text = fs::read_to_string("reference/results/getfem/drag.json").unwrap();
+    let text = fs::read_to_string(root().join("reference/results/getfem/drag.json")).unwrap();
     let stored: Value = serde_json::from_str(&text).unwrap();
-    let path = Path::new(stored["provenance"]["case"].as_str().unwrap());
+    let path = &root().join(stored["provenance"]["case"].as_str().unwrap());
     assert_eq!(stored["provenance"]["case_sha256"], sha256(path));
     let off = |settings: &[String]| {
         let ours = ours(path, settings);

@@ -1,13 +1,11 @@
 //! Remarks: each is given where it is true, with its place and both numbers, and not where it is not.
 
-use std::path::Path;
-
 use signorini::io::Case;
 use signorini::kernel::{Material, Plane};
 use signorini::model::{Condition, Diagonal, Mesh, Obstacle, Problem, Rectangle, Side};
 use signorini::solve::{Method, Settings, SolveError, solve};
 
-use super::common::{DEGREES, case, case_of, named_edges};
+use super::common::{DEGREES, case, case_of, named_edges, root};
 
 /// The remarks on the solution of a case.
 fn of(case: &Case) -> Vec<String> {
@@ -359,7 +357,7 @@ fn the_shipped_cases_have_no_other_remarks_than_these() {
         ("smooth", &["contact of 'bottom'", "the largest strain", "the largest displacement"]),
         ("wood", &["the peak pressure"]),
     ];
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    let folder = root().join("cases");
     let mut names: Vec<String> = std::fs::read_dir(folder)
         .unwrap()
         .filter_map(|entry| {

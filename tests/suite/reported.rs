@@ -6,6 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::command::{shoe, signorini, with_files};
+use super::common::root;
 
 /// What the command prints, with this exit code.
 fn said(folder: &Path, arguments: &[&str], code: i32) -> String {
@@ -279,7 +280,7 @@ fn a_picture_that_doubles_cannot_hold_costs_nothing_else() {
 fn steps_that_run_out_on_a_finer_level_of_adapt_lose_nothing() {
     let target = ["adapt.target=\"0.01 %\"", "adapt.max_unknowns=2500"];
     let coarse = ["method.degree=1", "method.gamma0=auto"];
-    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    let cases = root().join("cases");
     let folder = with_files("steps", &[]);
     let adapted = |cells: usize, steps: usize| {
         let steps = format!("solver.max_iterations={steps}");

@@ -147,7 +147,7 @@ fn a_sliver_spoils_itself_only_where_gamma_is_local() {
 #[test]
 fn hard_bodies_are_proved_in_a_bounded_number_of_steps() {
     for (name, most) in [("parts234", 40), ("parts344", 40), ("poly370", 50), ("shaft7012", 25)] {
-        let case = Case::read(format!("tests/newton/{name}.toml").as_ref()).unwrap();
+        let case = Case::read(&root().join(format!("tests/newton/{name}.toml"))).unwrap();
         let (solution, _) = solve(&case.problem, &case.method, &Settings::default()).unwrap();
         let (steps, reason) = (solution.newton.iterations(), solution.verdict.reason());
         assert!(steps <= most && reason.is_none(), "{name}: {steps} steps, {reason:?}");

@@ -8,7 +8,7 @@ use std::process::{Command, Output, Stdio};
 use super::command::{ended, folder, names, signorini, text};
 
 fn with_standard_input(folder: &Path, arguments: &[&str], input: &[u8]) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_signorini"))
+    let mut child = Command::new(env!("CARGO_BIN_EXE_program"))
         .args(arguments)
         .current_dir(folder)
         .stdin(Stdio::piped())

@@ -17,7 +17,11 @@ contact.obstacle = "it"
 const FLOOR: &str = "[obstacle.it]\nplane = { point = [0, 0], normal = [0, 1] }\n";
 
 fn signorini(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_signorini")).args(arguments).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_program"))
+        .args(arguments)
+        .current_dir(crate::common::root())
+        .output()
+        .unwrap()
 }
 
 fn folder(name: &str) -> std::path::PathBuf {
