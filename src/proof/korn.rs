@@ -266,15 +266,18 @@ fn hoops(mesh: &Mesh, materials: &Materials, part: &[usize], count: usize) -> Ve
     best.iter().flatten().filter(|(_, t)| *t != NONE).map(|(_, t)| hold(*t)).collect()
 }
 
+/// The area of a triangle, rounded down: each of the products is off by three halves of EPSILON at most, their difference by half of it.
+fn area(triangle: &Triangle<f64>) -> f64 {
+    let [a, b] = [1, 2].map(|i| triangle.edge(i));
+    let products = (a[0] * b[1]).abs() + (a[1] * b[0]).abs();
+    (a.perp(&b) - 4.0 * f64::EPSILON * products) / 2.0
+}
+
 /// c_T^2
 fn squared_remainder(mesh: &Mesh, degree: Degree, materials: &Materials, t: usize) -> Option<f64> {
     let doubles = mesh.triangle(t);
-    let edges = [0, 1, 2].map(|i| doubles.edge(i));
-    // Each of the products is off by three halves of EPSILON, their difference by one.
-    let [a, b] = [edges[1], edges[2]];
-    let products = (a[0] * b[1]).abs() + (a[1] * b[0]).abs();
-    let area = (a.perp(&b) - 4.0 * f64::EPSILON * products) / 2.0;
-    let squares = edges.map(|edge| edge.dot(&edge));
+    let area = area(&doubles);
+    let squares = [0, 1, 2].map(|i| doubles.edge(i)).map(|edge| edge.dot(&edge));
     let square = squares.into_iter().fold(0.0, f64::max);
     let material = materials.of(t);
     let stiffness = least_eigenvalue(material) / 2.0;
@@ -386,9 +389,29 @@ fn independent(mut rest: Vec<f64>, count: usize) -> Option<Vec<usize>> {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector2;
+
     use super::*;
-    use crate::kernel::{Material, Plane};
+    use crate::contact::residual::exactly;
+    use crate::kernel::{Material, Plane, PreciseBall};
     use crate::model::{Condition, Problem};
+
+    #[test]
+    fn an_area_is_rounded_down_by_next_to_nothing() {
+        let mut larger = 0;
+        for k in 1..200 {
+            let (s, c) = (0.37 * f64::from(k)).sin_cos();
+            let vertices = [[s, c], [s + 0.3 * c, c + 0.1], [s - 0.2 / f64::from(k), c + 0.7 * s]];
+            let doubles = Triangle { vertices: vertices.map(Vector2::from) };
+            let exact = exactly::<PreciseBall>(doubles).double_area();
+            // The order of the vertices decides the sign.
+            let [found, near] =
+                [2.0 * area(&doubles), doubles.double_area()].map(PreciseBall::from);
+            assert!((found - exact).upper() <= 0.0 && (exact - found).upper() < 1e-14);
+            larger += usize::from((near - exact).lower() > 0.0);
+        }
+        assert!(larger > 20, "control: as it is in doubles it may be too large, {larger}");
+    }
 
     #[test]
     fn a_body_with_a_part_that_supports_leave_free_has_no_bound() {
