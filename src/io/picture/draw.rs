@@ -79,32 +79,20 @@ fn push_rounded(to: &mut String, x: f64) {
         return;
     }
     let hundredths = (x * 100.0).round() as i64;
-    let mut text = [0; 24];
-    let mut start = text.len();
-    let mut put = |c: u8| {
-        start -= 1;
-        text[start] = c;
-    };
-    let digit = |left: u64| b'0' + (left % 10) as u8;
-    let (mut left, part) = (hundredths.unsigned_abs() / 100, hundredths.unsigned_abs() % 100);
-    if part % 10 > 0 {
-        put(digit(part));
-    }
-    if part > 0 {
-        put(digit(part / 10));
-        put(b'.');
-    }
-    loop {
-        put(digit(left));
-        left /= 10;
-        if left == 0 {
-            break;
-        }
-    }
     if hundredths < 0 {
-        put(b'-');
+        to.push('-');
     }
-    to.push_str(str::from_utf8(&text[start..]).unwrap_or_default());
+    let (mut left, mut place) = (hundredths.unsigned_abs(), 100);
+    while left / place >= 10 {
+        place *= 10;
+    }
+    while place >= 100 || left > 0 {
+        if place == 10 {
+            to.push('.');
+        }
+        to.push(char::from(b'0' + (left / place) as u8));
+        (left, place) = (left % place, place / 10);
+    }
 }
 
 /// The width of a text, roughly: no font is at hand, and the reader's may be another.
