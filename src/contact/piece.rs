@@ -421,7 +421,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     /// Appends the entries that a side has in the rows of component `k`; its stress has a share in that of the piece.
     fn append(&mut self, k: usize, [p0, mut sigma_n]: Rows<S>, share: Option<S>) {
         if let Some(share) = share {
-            sigma_n.iter_mut().flatten().for_each(|f| *f = *f * share);
+            sigma_n.iter_mut().flatten().for_each(|f| *f *= share);
         }
         let count = self.degree.nodes_per_edge();
         let p0 = self.p0[k * count..].iter_mut().zip(p0);
