@@ -105,7 +105,7 @@ impl Default for Integrals {
 
 impl<const M: usize> From<EdgeIntegrals<f64, M>> for Integrals {
     fn from(of: EdgeIntegrals<f64, M>) -> Self {
-        let hessian = DMatrix::from_fn(M, M, |a, b| of.hessian[a][b]);
+        let hessian = DMatrix::from_row_slice(M, M, of.hessian.as_flattened());
         let (gradient, friction) = (of.gradient.into(), [0.0; 2]);
         Integrals { energy: of.energy, gradient, hessian, active: of.active, friction }
     }
@@ -233,11 +233,11 @@ impl EdgeRule {
 
 /// Returns whether P with these values at the nodes is positive nowhere on an edge, certainly: none of its Bernstein coefficients is.
 /// There every integral is zero, whatever the rule.
-fn is_open<const M: usize>(p: &[DoubleDouble; M]) -> bool {
-    let heads = p.map(DoubleDouble::head);
-    let size: f64 = heads.iter().map(|p| p.abs()).sum();
-    let middle = |p: &f64| 2.0 * p - (heads[0] + heads[1]) / 2.0 + 4.0 * f64::EPSILON * size;
-    heads[..2].iter().all(|p| *p <= 0.0) && heads[2..].iter().all(|p| middle(p) <= 0.0)
+pub(super) fn is_open(p: &[DoubleDouble]) -> bool {
+    let size: f64 = p.iter().map(|p| p.head().abs()).sum();
+    let ends = p[0].head() + p[1].head();
+    let middle = |p: &DoubleDouble| 2.0 * p.head() - ends / 2.0 + 4.0 * f64::EPSILON * size;
+    p[..2].iter().all(|p| p.head() <= 0.0) && p[2..].iter().all(|p| middle(p) <= 0.0)
 }
 
 fn fine(radii: Option<[f64; 2]>) -> Option<[DoubleDouble; 2]> {

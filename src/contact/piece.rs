@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
-use super::law::{EdgeRule, Integrals, Law};
+use super::law::{EdgeRule, Integrals, Law, is_open};
 use super::stress_points::Nodal;
 use crate::kernel::axial::{HoopStress, edge_mass};
 use crate::kernel::contact_edge::integral_of_product;
@@ -386,8 +386,9 @@ impl<S: Scalar + From<f64>> Piece<S> {
                     let d = if k == 0 { d } else { across(d) };
                     if i == 0 { d } else { -d }
                 };
-                let along: Vec<Vector2<S>> = geometry.nodes.iter().map(toward).collect();
-                let along = (k > 0 || !geometry.along_normal).then_some(&along[..]);
+                let along: Option<Vec<Vector2<S>>> = (k > 0 || !geometry.along_normal)
+                    .then(|| geometry.nodes.iter().map(toward).collect());
+                let along = along.as_deref();
                 let [mut p0, mut sigma_n] = with_element!(degree, E => {
                     rows::<E, _, _, _>(data, place, along, own_gamma)
                 });
@@ -418,15 +419,17 @@ impl<S: Scalar + From<f64>> Piece<S> {
     }
 
     /// Appends the entries that a side has in the rows of component `k`; its stress has a share in that of the piece.
-    fn append(&mut self, k: usize, [p0, sigma_n]: Rows<S>, share: Option<S>) {
-        let count = self.degree.nodes_per_edge();
-        for (all, own) in self.p0[k * count..].iter_mut().zip(p0) {
-            all.extend(own);
+    fn append(&mut self, k: usize, [p0, mut sigma_n]: Rows<S>, share: Option<S>) {
+        if let Some(share) = share {
+            sigma_n.iter_mut().flatten().for_each(|f| *f *= share);
         }
-        for (all, own) in self.sigma_n[2 * k..].iter_mut().zip(sigma_n) {
-            match share {
-                Some(share) => all.extend(own.into_iter().map(|f| f * share)),
-                None => all.extend(own),
+        let count = self.degree.nodes_per_edge();
+        let p0 = self.p0[k * count..].iter_mut().zip(p0);
+        for (all, own) in p0.chain(self.sigma_n[2 * k..].iter_mut().zip(sigma_n)) {
+            if all.is_empty() {
+                *all = own;
+            } else {
+                all.extend(own);
             }
         }
     }
@@ -543,8 +546,13 @@ impl<S: Scalar + From<f64>> Piece<S> {
 
     /// P0(u) at the nodes of the piece. P0 of a translation is its jump along n~.
     pub fn p0(&self, u: &[[S; 2]]) -> Vec<S> {
+        self.each_p0(u).collect()
+    }
+
+    /// [`Piece::p0`], one after the other.
+    pub(crate) fn each_p0<'u>(&'u self, u: &'u [[S; 2]]) -> impl Iterator<Item = S> + 'u {
         let count = self.degree.nodes_per_edge();
-        let value = |(i, row): (usize, &Vec<Vector2<S>>)| {
+        let value = move |(i, row): (usize, &Vec<Vector2<S>>)| {
             let near = |side: &Side<S>| u[self.nodes[side.nearest[i % count]]];
             let mut jump = near(&self.sides[0]);
             for side in &self.sides[1..] {
@@ -559,7 +567,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
                 side.rings.as_ref().map_or(sum, |[p0, _]| sum + p0[i] * from[0])
             })
         };
-        self.p0.iter().enumerate().map(value).collect()
+        self.p0.iter().enumerate().map(value)
     }
 
     /// g of functional `i`, or g_t across n~.
@@ -573,8 +581,13 @@ impl<S: Scalar + From<f64>> Piece<S> {
 
     /// P(u) = P0(u) - g there.
     pub fn p(&self, u: &[[S; 2]]) -> Vec<S> {
+        self.each_p(u).collect()
+    }
+
+    /// [`Piece::p`], one after the other.
+    pub(crate) fn each_p<'u>(&'u self, u: &'u [[S; 2]]) -> impl Iterator<Item = S> + 'u {
         let less = |(i, p0): (usize, S)| p0 - <S as From<f64>>::from(self.gap_of(i));
-        self.p0(u).into_iter().enumerate().map(less).collect()
+        self.each_p0(u).enumerate().map(less)
     }
 
     /// The stress of each component at the start and at the end.
@@ -738,6 +751,11 @@ impl Piece {
         self.softened(rule, 1.0, p)
     }
 
+    /// Returns whether the piece adds nothing where P has these values at its nodes, as far as these tell.
+    pub(crate) fn is_open(&self, p: &[DoubleDouble]) -> bool {
+        self.geometry.law == Law::Contact && is_open(p)
+    }
+
     /// [`Piece::contribution`] on springs that are `stiffness` times as stiff. The law is the same: what friction bears at most does not
     /// depend on them.
     pub(crate) fn softened<T: Copy + Into<DoubleDouble>>(
@@ -788,9 +806,9 @@ impl Piece {
     }
 
     /// The sums of the magnitudes of the products that P0(u) is added up from at the nodes.
-    pub(crate) fn p0_magnitudes(&self, u: &[[f64; 2]]) -> Vec<f64> {
+    pub(crate) fn p0_magnitudes<'u>(&'u self, u: &'u [[f64; 2]]) -> impl Iterator<Item = f64> + 'u {
         let count = self.degree.nodes_per_edge();
-        let value = |(i, row): (usize, &Vec<Vector2<f64>>)| {
+        let value = move |(i, row): (usize, &Vec<Vector2<f64>>)| {
             let size = |f: Vector2<f64>, x: f64, y: f64| (f[0] * x).abs() + (f[1] * y).abs();
             let n = self.direction_of(i);
             let of = |side: &Side| {
@@ -803,6 +821,6 @@ impl Piece {
             };
             self.sides.iter().map(of).sum()
         };
-        self.p0.iter().enumerate().map(value).collect()
+        self.p0.iter().enumerate().map(value)
     }
 }

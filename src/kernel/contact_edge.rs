@@ -32,11 +32,13 @@ impl<S: Scalar, const N: usize, const M: usize> ContactEdge<S, N, M> {
         let sigma_n_at = |s: S| {
             E::gradients(on_edge(i, s), barycentric).map(|g| material.normal_stress_of_shape(g, n))
         };
-        let mut p0 = E::edge_positions().map(|s| sigma_n_at(s).map(|v| -(v * gamma)));
+        // The first two nodes are the start and the end.
+        let at_nodes = E::edge_positions().map(sigma_n_at);
+        let mut p0 = at_nodes.map(|row| row.map(|v| -(v * gamma)));
         for (row, node) in p0.iter_mut().zip(E::edge_nodes(i)) {
             row[node] += n;
         }
-        ContactEdge { p0, sigma_n: [sigma_n_at(S::from(0)), sigma_n_at(S::from(1))] }
+        ContactEdge { p0, sigma_n: [at_nodes[0], at_nodes[1]] }
     }
 
     /// [`ContactEdge::new`] where the direction of contact is a field n~: P0(v) = n~ . v - gamma s(v), s(v) = n~ . sigma(v)

@@ -182,15 +182,20 @@ impl<'a> Compliance<'a> {
             let c = r.functionals.len();
             let mut update = Mat::zeros(below.nrows(), c);
             matmul(update.as_mut(), Accum::Replace, below, x[place].as_ref(), 1.0, Par::Seq);
-            for (i, &row) in structure.rows_below(r.supernode).iter().enumerate() {
+            let mut done = 0;
+            let follow = |a: &usize, b: &usize| *b == a + 1 && place_of_row[*a] == place_of_row[*b];
+            for rows in structure.rows_below(r.supernode).chunk_by(follow) {
                 // An ancestor of a supernode that is reached is reached, by all of its functionals.
-                let outside = OutsidePattern { row, column: r.functionals.start };
-                let target = place_of_row[row].ok_or(outside)?;
+                let outside = OutsidePattern { row: rows[0], column: r.functionals.start };
+                let target = place_of_row[rows[0]].ok_or(outside)?;
                 let (start, first) = start_of(target);
                 let offset = r.functionals.start.checked_sub(first).ok_or(outside)?;
                 for j in 0..c {
-                    x[target][(row - start, offset + j)] -= update[(i, j)];
+                    let sums = &mut x[target].col_as_slice_mut(offset + j)[rows[0] - start..];
+                    let update = &update.col_as_slice(j)[done..done + rows.len()];
+                    sums.iter_mut().zip(update).for_each(|(sum, by)| *sum -= by);
                 }
+                done += rows.len();
             }
             let range = r.functionals.clone();
             let all = MatMut::from_column_major_slice_mut(&mut walked, q, q);

@@ -284,7 +284,11 @@ impl EnclosedResidual {
                 }
                 let by_body = self.arithmetic.energy_norm(d, &test);
                 let by_contact = lines.iter().fold(PreciseBall::from(0), |sum, line| {
-                    let most = line.p0(&test).iter().fold(0.0, |sum, p| up(sum + p.magnitude()));
+                    let is_still = |node: &usize| test[*node].iter().all(|c| c.magnitude() == 0.0);
+                    if line.nodes.iter().all(is_still) {
+                        return sum;
+                    }
+                    let most = line.each_p0(&test).fold(0.0, |sum, p| up(sum + p.magnitude()));
                     sum + line.whole_weight() * PreciseBall::from(most) * PreciseBall::from(most)
                 });
                 let by_contact = root(by_contact);

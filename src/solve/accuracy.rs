@@ -207,7 +207,7 @@ impl<'a, 'd, 'p> IterativeRefinement<'a, 'd, 'p> {
             system,
             settings,
             reference,
-            residual: TrueResidual::new(system, &at, reference),
+            residual: TrueResidual::UNKNOWN,
             iterate,
             at,
             residuals: Vec::new(),
@@ -328,6 +328,10 @@ struct TrueResidual {
 }
 
 impl TrueResidual {
+    /// Before the first pass.
+    const UNKNOWN: TrueResidual =
+        TrueResidual { norm: f64::INFINITY, unbalanced: f64::INFINITY, forces: f64::INFINITY };
+
     fn new(system: &System, at: &Evaluation, reference: f64) -> Self {
         let d = system.d;
         let mut r = at.linear.clone();

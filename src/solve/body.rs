@@ -20,6 +20,10 @@ pub trait ContactEnergy {
     /// The gradient and the Hessian of Psi on piece `e`, with springs of this `stiffness`, where P has the values `p`.
     fn derivatives(&self, e: usize, stiffness: f64, p: &[DoubleDouble])
     -> (Vec<f64>, DMatrix<f64>);
+    /// Returns whether piece `e` has neither gradient nor Hessian where P has the values `p`, as far as these tell.
+    fn is_open(&self, _e: usize, _p: &[DoubleDouble]) -> bool {
+        false
+    }
     /// The Bregman distance of this Psi on piece `e` from `p` to `q`.
     fn bregman(&self, e: usize, stiffness: f64, p: &[DoubleDouble], q: &[DoubleDouble]) -> f64;
     /// Values of P on piece `e` at which all of its springs act.
@@ -53,6 +57,10 @@ impl ContactEnergy for Discretization<'_> {
         }
         let contribution = self.contact[e].softened(&self.rule, stiffness, p);
         (contribution.force, contribution.tangent)
+    }
+
+    fn is_open(&self, e: usize, p: &[DoubleDouble]) -> bool {
+        self.is_idle(e) || self.contact[e].is_open(p)
     }
 
     fn bregman(&self, e: usize, stiffness: f64, p: &[DoubleDouble], q: &[DoubleDouble]) -> f64 {
@@ -126,9 +134,15 @@ pub fn derivatives(
 ) -> Derivatives {
     let mut gradient = Vec::with_capacity(y.len());
     let mut hessian = Vec::with_capacity(edges.count());
+    let y: Vec<DoubleDouble> = y.iter().map(|&p| p.into()).collect();
     for e in 0..edges.count() {
-        let p: Vec<DoubleDouble> = y[edges.values(e)].iter().map(|&p| p.into()).collect();
-        let (g, h) = edges.derivatives(e, stiffness, &p);
+        let p = &y[edges.values(e)];
+        if edges.is_open(e, p) {
+            gradient.resize(gradient.len() + p.len(), 0.0);
+            hessian.push(DMatrix::zeros(p.len(), p.len()));
+            continue;
+        }
+        let (g, h) = edges.derivatives(e, stiffness, p);
         gradient.extend(g);
         hessian.push(h);
     }

@@ -282,6 +282,10 @@ impl ContactEnergy for SomePieces<'_, '_> {
         (gradient, hessian * EVERY as f64)
     }
 
+    fn is_open(&self, e: usize, p: &[DoubleDouble]) -> bool {
+        self.d.is_open(self.pieces[e], p)
+    }
+
     fn bregman(&self, e: usize, stiffness: f64, p: &[DoubleDouble], q: &[DoubleDouble]) -> f64 {
         EVERY as f64 * self.d.bregman(self.pieces[e], stiffness, p, q)
     }
@@ -348,7 +352,11 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
     fn roots(&self, hessian: &[DMatrix<f64>]) -> Roots {
         let (mut columns, mut negative) = (Vec::new(), Vec::new());
         for (e, (values, h)) in blocks(hessian).enumerate() {
-            let (signed, rest, of) = match self.of.shift.0.get(&e) {
+            let springs = self.of.shift.0.get(&e);
+            if springs.is_none() && h.iter().all(|h| *h == 0.0) {
+                continue;
+            }
+            let (signed, rest, of) = match springs {
                 Some(springs) => (&mut negative, springs - h, springs),
                 None => (&mut columns, h.clone(), h),
             };

@@ -121,7 +121,7 @@ impl Iterate {
         let mut p = Vec::with_capacity(system.functionals());
         let mut p_magnitudes = Vec::with_capacity(system.functionals());
         for piece in &d.contact {
-            let with_tails = piece.p(&heads).into_iter().zip(piece.p0(&tails));
+            let with_tails = piece.each_p(&heads).zip(piece.each_p0(&tails));
             p.extend(with_tails.map(|(p, of_tail)| DoubleDouble::from(p + of_tail)));
             p_magnitudes.extend(piece.p0_magnitudes(&heads));
         }

@@ -165,6 +165,9 @@ fn line_search(
             let values = edges.values(e);
             let (d, before) = (&step.dy[values.clone()], &at.gradient[values]);
             put(e, t, &mut point);
+            if edges.is_open(e, &point) && before.iter().all(|g| *g == 0.0) {
+                continue;
+            }
             let (g, h) = edges.derivatives(e, stiffness, &point);
             for a in 0..d.len() {
                 first += (g[a] - before[a]) * d[a];
