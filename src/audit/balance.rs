@@ -10,7 +10,7 @@
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::certificate::{Certificate, Edge, Law, Owner, Role, exactly, opposite, place};
+use super::certificate::{Certificate, Edge, Law, Role, exactly, opposite, place};
 use crate::kernel::Enclosing;
 use crate::kernel::composite::Wrench;
 
@@ -89,7 +89,7 @@ pub(crate) struct SpanningTree {
 impl SpanningTree {
     /// Breadth first, from all held roots at once; edges inside a triangle that was cut, elsewhere than in the middle of an
     /// edge, come before all others.
-    pub(crate) fn new(certificate: &Certificate, owners: &[[Option<Owner>; 2]]) -> SpanningTree {
+    pub(crate) fn new(certificate: &Certificate, owners: &[[Option<usize>; 2]]) -> SpanningTree {
         let count = certificate.pieces.len();
         let (mut found, mut parts) = (Vec::with_capacity(count), 0);
         let mut part_of = vec![usize::MAX; count];
@@ -115,9 +115,8 @@ impl SpanningTree {
                         if from != t && !is_cut(certificate, e) {
                             continue;
                         }
-                        let other =
-                            owners[e].into_iter().flatten().find(|owner| owner.piece != from);
-                        if let Some(Owner { piece: to, .. }) = other
+                        let other = owners[e].into_iter().flatten().find(|&owner| owner != from);
+                        if let Some(to) = other
                             && part_of[to] == usize::MAX
                         {
                             part_of[to] = part_of[t];
@@ -165,7 +164,7 @@ fn is_cut(certificate: &Certificate, e: usize) -> bool {
 
 /// The triangles at the edges that are held in both components and no shorter than half of the longest: over a short one a
 /// moment would be a large force.
-fn held_roots(certificate: &Certificate, owners: &[[Option<Owner>; 2]]) -> Vec<usize> {
+fn held_roots(certificate: &Certificate, owners: &[[Option<usize>; 2]]) -> Vec<usize> {
     let length = |edge: &Edge| {
         let [start, end] = edge.ends.map(|p| place(certificate, p));
         (end - start).dot(&(end - start))
@@ -174,13 +173,13 @@ fn held_roots(certificate: &Certificate, owners: &[[Option<Owner>; 2]]) -> Vec<u
     let held = certificate.edges.iter().zip(owners).filter(|(edge, _)| is_held(edge));
     let longest = held.clone().map(|(edge, _)| length(edge)).fold(0.0, f64::max);
     let long = held.filter(|(edge, _)| length(edge) >= longest / 4.0);
-    long.filter_map(|(_, [owner, _])| Some(owner.as_ref()?.piece)).collect()
+    long.filter_map(|(_, [owner, _])| *owner).collect()
 }
 
 /// The edges of a certificate with the forces that it has on them.
 pub(crate) struct OnEdges<'a, S> {
     pub(crate) certificate: &'a Certificate,
-    pub(crate) owners: &'a [[Option<Owner>; 2]],
+    pub(crate) owners: &'a [[Option<usize>; 2]],
     pub(crate) points: &'a [Vector2<S>],
     /// tau N at both ends.
     pub(crate) forces: &'a dyn Fn(usize) -> [Vector2<S>; 2],
@@ -223,7 +222,7 @@ impl<S: Enclosing> OnEdges<'_, S> {
                     let Some(owner) = self.owners[edge][0] else { continue };
                     add(&mut closed.added[edge], force);
                     let wrench = self.wrench(edge, force);
-                    wrenches[owner.piece] = wrenches[owner.piece].plus(wrench);
+                    wrenches[owner] = wrenches[owner].plus(wrench);
                 }
                 let Variation::Pressure(ends) = hold.profile else { continue };
                 let [a, b] = ends.map(|end| if end { factor } else { S::from(0) });
@@ -242,9 +241,9 @@ impl<S: Enclosing> OnEdges<'_, S> {
                 let force = wrench.on_edge(start, end);
                 // The triangle behind the edge gets minus its resultant, the one before it the resultant.
                 let (before, force) =
-                    if left.piece == t { (right, force.map(|f| -f)) } else { (left, force) };
+                    if left == t { (right, force.map(|f| -f)) } else { (left, force) };
                 add(&mut closed.added[e], force);
-                wrenches[before.piece] = wrenches[before.piece].plus(wrench);
+                wrenches[before] = wrenches[before].plus(wrench);
             }
         }
         Ok(closed)
@@ -387,11 +386,11 @@ impl<S: Enclosing> OnEdges<'_, S> {
         let mut size = 0.0_f64;
         for &t in part {
             for e in self.certificate.pieces[t].edges {
-                if self.owners[e][0].is_none_or(|owner| owner.piece != t) {
+                if self.owners[e][0] != Some(t) {
                     continue;
                 }
                 let faced = self.certificate.facing.get(&e).map(|&other| self.owners[other][0]);
-                if faced.is_some_and(|owner| owner.is_none_or(|owner| !is_settled[owner.piece])) {
+                if faced.is_some_and(|owner| owner.is_none_or(|owner| !is_settled[owner])) {
                     continue;
                 }
                 for hold in self.candidates(e) {

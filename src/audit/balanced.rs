@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 
 use super::balance::{Change, Closed, OnEdges, SpanningTree, Unbalanced};
 use super::certificate::{
-    Certificate, Edge, Law, Owner, Piece, Role, Shape, exactly, opposite, support, turned,
+    Certificate, Edge, Law, Owners, Piece, Role, Shape, exactly, opposite, support, turned,
 };
 use super::checks::{Rejection, VARIES, wrong};
 use super::forces::along;
@@ -17,7 +17,7 @@ use crate::kernel::{Ball, Enclosing, Triangle};
 #[derive(Clone)]
 pub struct Topology {
     /// The triangles of each edge.
-    pub owners: Vec<[Option<Owner>; 2]>,
+    pub owners: Owners,
     pub(crate) tree: SpanningTree,
 }
 
@@ -82,10 +82,10 @@ impl Certificate {
                 return Err(Rejection::Penetration { edge: e, value: value.upper() });
             }
             if let Some(owner) = topology.owners[e][0] {
-                on_contact[owner.piece] += contact.term;
+                on_contact[owner] += contact.term;
                 if let Law::Friction { shear, bound } = law {
                     let slip = self.across(e, self.jump(e, &v), &points);
-                    on_contact[owner.piece] += friction(slip, shear, bound);
+                    on_contact[owner] += friction(slip, shear, bound);
                 }
             }
         }
@@ -114,7 +114,7 @@ impl Certificate {
             let added = [0, 1].map(|k| S::exactly(pressure[k]) * factors[k]);
             let contact = self.on_contact(edge, &state.v, &state.points, added)?;
             if let Some(owner) = state.topology.owners[edge][0] {
-                state.on_contact[owner.piece] += contact.term;
+                state.on_contact[owner] += contact.term;
             }
         }
         Ok(state)
@@ -342,10 +342,7 @@ pub(crate) fn outward<S: Enclosing>(
 ) -> [[Vector2<S>; 2]; 3] {
     edges.map(|e| {
         let [a, b] = forces[e];
-        match topology.owners[e][0] {
-            Some(owner) if owner.piece == t => [a, b],
-            _ => [-b, -a],
-        }
+        if topology.owners[e][0] == Some(t) { [a, b] } else { [-b, -a] }
     })
 }
 

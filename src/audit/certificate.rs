@@ -541,14 +541,8 @@ impl<S: Enclosing> Shape<S> {
     }
 }
 
-/// A triangle at an edge, by the place of the edge in it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Owner {
-    /// The triangle.
-    pub piece: usize,
-    /// Which of its edges this is.
-    pub local: usize,
-}
+/// The triangles of each edge, the one on its left first: inner edges have two, the others one.
+pub type Owners = Vec<[Option<usize>; 2]>;
 
 impl Piece {
     /// f is not constant.

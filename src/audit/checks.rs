@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use thiserror::Error;
 
 use super::balance::Unbalanced;
-use super::certificate::{Certificate, Curved, Edge, Law, Lift, Owner, Role, axis, is_oblique};
+use super::certificate::{Certificate, Curved, Edge, Law, Lift, Owners, Role, axis, is_oblique};
 use crate::kernel::{Ball, Material};
 
 /// Why a certificate proves nothing.
@@ -431,8 +431,8 @@ impl Certificate {
         Ok(())
     }
 
-    /// The triangles of each edge, the one on its left first: inner edges have two, the others one.
-    pub(super) fn owners(&self) -> Result<Vec<[Option<Owner>; 2]>, Rejection> {
+    /// The triangles of each edge.
+    pub(super) fn owners(&self) -> Result<Owners, Rejection> {
         let mut owners = vec![[None; 2]; self.edges.len()];
         for (t, piece) in self.pieces.iter().enumerate() {
             for local in 0..3 {
@@ -446,7 +446,7 @@ impl Certificate {
                 } else {
                     return Err(wrong("triangle", t, "one of its edges joins other vertices"));
                 };
-                if owners[e][side].replace(Owner { piece: t, local }).is_some() {
+                if owners[e][side].replace(t).is_some() {
                     return Err(wrong("edge", e, "two triangles on the same side"));
                 }
             }

@@ -25,7 +25,7 @@
 
 pub use super::balance::Unbalanced;
 pub use super::certificate::{
-    Certificate, Curved, Cut, Edge, Law, Lift, Owner, Piece, Reservations, Role,
+    Certificate, Curved, Cut, Edge, Law, Lift, Piece, Reservations, Role,
 };
 pub use super::checks::Rejection;
 

@@ -140,7 +140,7 @@ impl Sweeps {
                     if seen.is_none() {
                         edges.push(e);
                     }
-                    let is_left = state.topology.owners[e][0].is_some_and(|o| o.piece == triangle);
+                    let is_left = state.topology.owners[e][0] == Some(triangle);
                     let sign = if is_left { 1.0 } else { -1.0 };
                     places.push(StarUnknown { triangle, unknown: 9 + side, in_star, sign });
                 }
