@@ -341,7 +341,7 @@ impl Certificate {
 
     /// An upper bound of |z|_a for the sum z of the lifts, which meet on edges only.
     pub fn lift(&self) -> f64 {
-        if self.lifts.is_empty() { 0.0 } else { self.with_lifts(0.0) }
+        self.with_lifts(0.0)
     }
 
     /// (bound^2 + |z|_a^2)^(1/2), rounded upwards: the bound of |u - v|_a that is left of one for the v that has z, too.

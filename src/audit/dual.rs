@@ -14,7 +14,7 @@
 use nalgebra::Vector2;
 
 use super::balance::{OnEdges, Stop};
-use super::balanced::{Topology, outward};
+use super::balanced::outward;
 use super::certificate::{Certificate, Curved, Edge, Law, Piece, Role, Shape, exactly};
 use super::checks::Rejection;
 use super::forces::{
@@ -210,23 +210,17 @@ impl<S: Enclosing> Forces<'_, S> {
         let state = self.state;
         let pair = self.certificate.of_pair(pair, &state.points)?;
         let points = pair.places::<Ball>();
-        let forces: Vec<_> = (0..pair.edges.len()).map(|e| pair.force(e, &points)).collect();
-        let Topology { owners, tree } = &state.topology;
+        let (topology, forces) = (&state.topology, pair.tractions(&points));
         let of_piece = |(t, piece): (usize, &Piece)| {
             let triangle = Triangle { vertices: piece.vertices.map(|p| points[p]) };
-            resultant(&triangle, outward(piece.edges, t, &state.topology, &forces))
+            resultant(&triangle, outward(piece.edges, t, topology, &forces))
         };
-        let resultants: Vec<Wrench<Ball>> = pair.pieces.iter().enumerate().map(of_piece).collect();
-        let given = |e: usize| forces[e];
-        let on_edges = OnEdges { certificate: &pair, owners, points: &points, forces: &given };
-        let closed = on_edges.close(tree, &mut resultants.clone()).map_err(Rejection::from)?;
-        pair.check_balance((&forces, &resultants), |_| Ball::from(0), &closed)?;
-        let in_balance = forces
-            .iter()
-            .zip(&closed.added)
-            .map(|(given, added)| in_doubles([given[0] + added[0], given[1] + added[1]]));
-        let (forces, off) = in_balance.unzip();
-        Ok(Pair { w: pair.shape(), forces, off, stops: closed.stops })
+        let resultants = pair.pieces.iter().enumerate().map(of_piece).collect();
+        let on_edges = OnEdges { certificate: &pair, topology, points: &points, forces: &forces };
+        let balance = on_edges.close(resultants).map_err(Rejection::from)?;
+        pair.check_balance(&forces, |_| Ball::from(0), &balance)?;
+        let (forces, off) = balance.forces.into_iter().map(in_doubles).unzip();
+        Ok(Pair { w: pair.shape(), forces, off, stops: balance.stops })
     }
 
     /// C eps(w) - rho on triangle `t` for the tractions in doubles, and the energy at most of what is to be added to those.
