@@ -179,7 +179,7 @@ impl EdgeRule {
             }
             (EdgeRule::Gauss(rule), radii) => {
                 let (points, radii) = (in_double_doubles(rule), fine(radii));
-                let fine = edge_integral::gauss_in_revolution::<E, _, _, _>(p, radii, points);
+                let fine = edge_integral::gauss::<E, _, _, _>(p, radii, points);
                 EdgeIntegrals {
                     energy: fine.energy.head(),
                     gradient: fine.gradient.map(DoubleDouble::head),

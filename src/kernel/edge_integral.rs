@@ -158,12 +158,21 @@ fn each_positive_point(p: [f64; 3], mut add: impl FnMut(f64, f64)) {
     for [start, end] in cuts.pieces() {
         // By the sign of Simpson's sum, which is the integral of P: the value in the middle alone would take
         // (s - 1/2)^2 for zero. A NaN is not <= 0: the piece counts as positive and the integrals become NaN.
-        let [first, middle, last] =
-            [start, (start + end) / 2.0, end].map(|s| value_at::<P2, f64, 6, 3>(p, s));
-        if !(first + 4.0 * middle + last <= 0.0) {
+        if !(simpson::<P2, 6, 3>(p, [start, end]) <= 0.0) {
             gauss3(start, end).into_iter().for_each(|(s, weight)| add(s, weight));
         }
     }
+}
+
+/// The integral over \[start, end\] of the quadratic with the values `p` at the nodes, but for the factor (end - start) / 6: what
+/// has one sign there has that of the integral.
+pub(super) fn simpson<E: Element<N, M>, const N: usize, const M: usize>(
+    p: [f64; M],
+    [start, end]: [f64; 2],
+) -> f64 {
+    let [first, middle, last] =
+        [start, (start + end) / 2.0, end].map(|s| value_at::<E, f64, N, M>(p, s));
+    first + 4.0 * middle + last
 }
 
 /// r at `s` from its values at the two ends.
@@ -176,20 +185,9 @@ pub fn times_radius<S: Scalar>(weight: S, radii: Option<[S; 2]>, s: S) -> S {
     radii.map_or(weight, |radii| weight * radius(radii, s))
 }
 
-/// The integrals by a rule on the whole edge: `rule` yields points in \[0, 1\] with their weights.
+/// The integrals by a rule on the whole edge: `rule` yields points in \[0, 1\] with their weights. With the weight r where r has
+/// these `radii` at the two ends.
 pub fn gauss<E, S, const N: usize, const M: usize>(
-    p: [S; M],
-    rule: impl IntoIterator<Item = (S, S)>,
-) -> EdgeIntegrals<S, M>
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
-    gauss_in_revolution::<E, S, N, M>(p, None, rule)
-}
-
-/// [`gauss`] with the weight r, where r has these `radii` at the two ends.
-pub fn gauss_in_revolution<E, S, const N: usize, const M: usize>(
     p: [S; M],
     radii: Option<[S; 2]>,
     rule: impl IntoIterator<Item = (S, S)>,
@@ -385,7 +383,7 @@ mod tests {
         assert!(P1::exact([f64::NAN, -1.0]).energy.is_nan());
         assert!(P1::exact([-1.0, f64::NAN]).energy.is_nan());
         assert!(P2::exact([-1.0, f64::NAN, -1.0]).energy.is_nan());
-        assert!(gauss::<P1, f64, 3, 2>([f64::NAN, -1.0], [(0.5, 1.0)]).energy.is_nan());
+        assert!(gauss::<P1, f64, 3, 2>([f64::NAN, -1.0], None, [(0.5, 1.0)]).energy.is_nan());
         assert!(maximum::<P1, 3, 2>([f64::NAN, -1.0]).is_nan());
         assert!(maximum::<P1, 3, 2>([-1.0, f64::NAN]).is_nan());
     }

@@ -9,7 +9,7 @@
 //! the integrand is P, m, -m or nothing. (\[P + m\]+ - \[P - m\]+ - m would be the same, but for large m nothing of it is left.)
 
 use super::contact_edge::integral_of_product;
-use super::edge_integral::{Cuts, gauss3, positive_interval, value_at};
+use super::edge_integral::{Cuts, gauss3, positive_interval, simpson, value_at};
 use super::{Element, P1, P2, Scalar, positive_part};
 
 /// The point of \[-m, m\] nearest to x, for m >= 0. A NaN of x stays a NaN.
@@ -39,12 +39,6 @@ pub fn clip_bregman<S: Scalar>(a: S, b: S, m: S) -> S {
     let q = clip(b, m);
     let d = q - clip(a, m);
     d * d / S::from(2) + d * (b - q)
-}
-
-/// Fenchel's gap s |v| + tau v of a slip v and a traction tau: zero exactly where Tresca's law holds, if |tau| <= s; else it may be
-/// negative.
-pub fn fenchel_gap<S: Scalar>(v: S, tau: S, s: S) -> S {
-    v.split(|v| (s - tau) * -v, |v| (s + tau) * v)
 }
 
 /// The integrals over s in \[0, 1\] of F = clip(P; \[m\]+); multiply all but the measures by |E| / gamma, and these by |E|.
@@ -153,17 +147,6 @@ impl<S: Scalar> ExactFriction<S, 3, 2> for P1 {
         }
         sum
     }
-}
-
-/// The integral over \[start, end\] of the quadratic with the values `p` at the nodes, but for the factor (end - start) / 6: what
-/// has one sign there has that of the integral.
-fn simpson<E: Element<N, M>, const N: usize, const M: usize>(
-    p: [f64; M],
-    [start, end]: [f64; 2],
-) -> f64 {
-    let [first, middle, last] =
-        [start, (start + end) / 2.0, end].map(|s| value_at::<E, f64, N, M>(p, s));
-    first + 4.0 * middle + last
 }
 
 impl ExactFriction<f64, 6, 3> for P2 {
