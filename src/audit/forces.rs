@@ -407,8 +407,10 @@ impl Certificate {
         let forces = Forces::new(self, state, &evidence.of, mean);
         let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
         let found = forces.between(&evidence.liftings, cover.as_ref());
-        let pairs = forces.by_pairs(&evidence.pairs, cover.as_ref())?;
-        Ok((cover, found, pairs.into_iter().map(|pair| pair.between).collect()))
+        let pairs = evidence.pairs.iter();
+        let pairs = pairs.map(|(target, dual)| forces.by_pair(*target, dual, cover.as_ref()));
+        let pairs = pairs.map(|found| Ok(found?.between)).collect::<Result<_, WrongPair>>()?;
+        Ok((cover, found, pairs))
     }
 }
 

@@ -320,7 +320,7 @@ mod tests {
     fn with_the_weight_of_revolution_too_and_without_it_the_kernel_is_outside() {
         let radii = [0.0, 1.5];
         for p in values().into_iter().skip(9) {
-            let exact = P2::exact_in_revolution(p, radii).gradient;
+            let exact = P2::exact_with(p, Some(radii)).gradient;
             let [with, without] = [Some(radii.map(PreciseBall::from)), None].map(|radii| {
                 moments(&EdgeRule::Exact, Degree::Two, radii, &p.map(PreciseBall::from))
             });

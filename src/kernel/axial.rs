@@ -10,6 +10,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
+use super::edge_integral::edge_mass;
 use super::{Element, Material, Scalar, Stress, Triangle};
 
 /// int r f g over a triangle for functions of degree p - 1 in terms of their values at the points: entry (a, b) is that of f at a
@@ -181,13 +182,6 @@ pub fn weighted<S: Scalar>(
     (1..points).fold(states[0].0 * mass[0][b], |sum, a| sum + states[a].0 * mass[a][b])
 }
 
-/// int r f g over an edge for affine functions in terms of their values at its ends.
-pub fn edge_mass<S: Scalar>([a, b]: [S; 2]) -> [[S; 2]; 2] {
-    let (three, twelve) = (S::from(3), S::from(12));
-    let across = (a + b) / twelve;
-    [[(three * a + b) / twelve, across], [across, (a + three * b) / twelve]]
-}
-
 /// The sharp constant R |T| / |E| of int_E r w^2 <= R int_T r w^2 for w of degree p - 1, with r at the two ends of E and at the
 /// corner opposite: r_E / r_c for P1, with the means of r on the edge and the triangle; for P2 a root of a quadratic, at most 4 and 3
 /// where r is constant.
@@ -250,7 +244,7 @@ where
 }
 
 /// The amount by which an edge counts more in kappa where both components of the traction act, whatever the angle:
-/// (1 + rho) / (1 - rho). With the values at the ends multiplied by the roots of the diagonal of [`edge_mass`] the integral is between 1 - rho and 1 + rho times the sum of their squares.
+/// (1 + rho) / (1 - rho). With the values at the ends multiplied by the roots of the diagonal of [`edge_mass`](super::edge_integral::edge_mass) the integral is between 1 - rho and 1 + rho times the sum of their squares.
 pub fn turning_factor_of_both<E, S, const N: usize, const M: usize>(
     [a, b]: [S; 2],
     root: impl Fn(S) -> S,

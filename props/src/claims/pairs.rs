@@ -88,7 +88,6 @@ pub fn identity_c_holds_at_a_point<S: Ordered>([y_u, y_v, sigma, tau]: [S; 4]) -
 pub fn control_identity_c_without_the_law_of_the_solution<S: Ordered>(
     [y_u, y_v, sigma, tau]: [S; 4],
 ) -> Verdict {
-    let law = Response::Bilateral;
     let [g, a, b] = [fenchel_gap(y_v, tau), fenchel_gap(y_v, sigma), fenchel_gap(y_u, tau)];
     ensure!(g - a - b == (sigma - tau) * (y_u - y_v));
     Verdict::Holds("always")
