@@ -32,8 +32,11 @@ pub(super) fn friction<S: Enclosing>(across: [S; 4], shear: [f64; 2], bound: [f6
 pub struct Balanced<S> {
     /// Vertices and cuts.
     pub points: Vec<Vector2<S>>,
+    /// The triangles.
     pub triangles: Vec<Triangle<S>>,
+    /// v
     pub v: Shape<S>,
+    /// How triangles and edges hang together.
     pub topology: Topology,
     /// tau N on the edges as the certificate has it.
     pub forces: Vec<[Vector2<S>; 2]>,

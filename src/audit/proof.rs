@@ -157,7 +157,6 @@ impl Certificate {
     }
 
     /// The share of triangle `t` in the right side, C eps(v) being that far from tau.
-    #[doc(hidden)]
     pub fn share<S: Enclosing>(&self, state: &Balanced<S>, t: usize, apart: &Composite<S>) -> S {
         let piece = &self.pieces[t];
         let distance = apart.energy(&piece.material(), state.triangles[t].double_area());
@@ -195,7 +194,6 @@ impl Certificate {
     }
 
     /// The right side of the theorem.
-    #[doc(hidden)]
     pub fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
         let Balanced { triangles, v, forces, .. } = state;
         let zero = S::from(0);

@@ -17,10 +17,8 @@
 //! | `quantities`, `lifting` | forces between two numbers, and where contact can act, by `signorini_audit::forces`; the displacements that prove them |
 //! | `adapt` | meshes that are refined until the bound meets a target |
 
-#[doc(hidden)]
 pub mod adapt;
 mod admissible;
-#[doc(hidden)]
 pub mod binding;
 mod bubbles;
 mod build;
@@ -35,7 +33,6 @@ mod lifting;
 mod oscillation;
 mod parts;
 mod pressed;
-#[doc(hidden)]
 pub mod quantities;
 mod quarters;
 mod sweeps;
