@@ -18,6 +18,17 @@ pub struct ContactPoint<S> {
     pub gamma: S,
 }
 
+/// How far conditions (2) are from holding, each kept apart; all three are zero exactly when (2)(i)-(iii) hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Violation<S> {
+    /// \[u_n - g\]+: the violation of (i).
+    pub penetration: S,
+    /// \[sigma_n\]+: the violation of (ii).
+    pub tension: S,
+    /// sigma_n (u_n - g): the violation of (iii).
+    pub product: S,
+}
+
 impl<S: Scalar> ContactPoint<S> {
     /// P(u) = u_n - g - gamma sigma_n: P_gamma of the paper, with the gap.
     pub fn p(&self) -> S {
@@ -32,6 +43,16 @@ impl<S: Scalar> ContactPoint<S> {
     /// lambda^h = -(1/gamma) \[P(u)\]+ of section 2.3: never positive. Equation (5) says that it is sigma_n.
     pub fn pressure(&self) -> S {
         pressure(self.p(), self.gamma)
+    }
+
+    /// How far (2) is from holding.
+    pub fn violation(&self) -> Violation<S> {
+        let opening = self.u_n - self.gap;
+        Violation {
+            penetration: positive_part(opening),
+            tension: positive_part(self.sigma_n),
+            product: self.sigma_n * opening,
+        }
     }
 }
 

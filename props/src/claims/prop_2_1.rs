@@ -3,7 +3,7 @@
 //!
 //! In doubles (5) as written is false (the division rounds) and even the scaled form, s = gamma sigma_n,
 //! s = -\[u - s\]+, gives u <= 0 only up to rounding: u = 3.9e-121, s = -8.3e-25 satisfies it. What survives is stated and
-//! checked apart. The predicates write (2) out from the paper and take P and lambda^h from the kernel.
+//! checked apart. The predicates write (2) out from the paper and take P, lambda^h and the violation from the kernel.
 
 use signorini::kernel::contact::{self, ContactPoint};
 use signorini::kernel::positive_part;
@@ -72,15 +72,16 @@ pub fn contact_functions_are_their_definitions<S: Ordered>(v: [S; 4]) -> Verdict
     Verdict::Holds(if p > zero { "pressed" } else { "open" })
 }
 
-/// The violation of (2) by positive parts is zero exactly where (2) holds, and each part is what its name says.
+/// The violation of (2) is zero exactly where (2) holds, and each part is what its name says.
 pub fn violation_is_zero_exactly_where_2_holds<S: Ordered>(v: [S; 4]) -> Verdict {
     let (zero, point) = (S::from(0), point(v));
     let opening = point.u_n - point.gap;
-    let (penetration, tension) = (positive_part(opening), positive_part(point.sigma_n));
-    let product = point.sigma_n * opening;
-    ensure!(penetration == if opening > zero { opening } else { zero });
-    ensure!(tension == if point.sigma_n > zero { point.sigma_n } else { zero });
-    let none = penetration == zero && tension == zero && product == zero;
+    let violation = point.violation();
+    ensure!(violation.penetration == if opening > zero { opening } else { zero });
+    ensure!(violation.tension == if point.sigma_n > zero { point.sigma_n } else { zero });
+    ensure!(violation.product == point.sigma_n * opening);
+    let none =
+        violation.penetration == zero && violation.tension == zero && violation.product == zero;
     let conditions_2 = conditions_2(&point);
     ensure!(conditions_2 == none);
     Verdict::Holds(class(&point, conditions_2))
