@@ -244,7 +244,7 @@ where
 }
 
 /// The amount by which an edge counts more in kappa where both components of the traction act, whatever the angle:
-/// (1 + rho) / (1 - rho). With the values at the ends multiplied by the roots of the diagonal of [`edge_mass`](super::edge_integral::edge_mass) the integral is between 1 - rho and 1 + rho times the sum of their squares.
+/// (1 + rho) / (1 - rho). With the values at the ends multiplied by the roots of the diagonal of [`edge_mass`] the integral is between 1 - rho and 1 + rho times the sum of their squares.
 pub fn turning_factor_of_both<E, S, const N: usize, const M: usize>(
     [a, b]: [S; 2],
     root: impl Fn(S) -> S,
