@@ -177,10 +177,12 @@ impl<'a> Discrete<'a> {
         let points = self.rule.iter().flatten().map(|&[s, weight]| (s, weight));
         match self.d.space.degree() {
             Degree::One if self.rule.is_none() => lists(P1::exact([p[0], p[1]])),
-            Degree::One => lists(edge_integral::gauss::<P1, Exact, 3, 2>([p[0], p[1]], points)),
+            Degree::One => {
+                lists(edge_integral::gauss::<P1, Exact, 3, 2>([p[0], p[1]], None, points))
+            }
             Degree::Two => {
                 assert!(self.rule.is_some(), "the roots of a quadratic P are no rational numbers");
-                lists(edge_integral::gauss::<P2, Exact, 6, 3>([p[0], p[1], p[2]], points))
+                lists(edge_integral::gauss::<P2, Exact, 6, 3>([p[0], p[1], p[2]], None, points))
             }
         }
     }

@@ -10,7 +10,7 @@
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::certificate::{Certificate, Edge, Law, Owner, Role, exactly, opposite, place};
+use super::certificate::{Certificate, Edge, Law, Owners, Role, exactly, opposite, place};
 use crate::kernel::Enclosing;
 use crate::kernel::composite::Wrench;
 
@@ -50,17 +50,22 @@ type Chosen = ([FreeForce; 3], f64);
 
 /// The change of the pressures at both ends of edge `edge` of Gamma_C by equilibrium, in units of themselves.
 #[derive(Clone, Copy)]
-pub(crate) struct Change<S> {
-    pub(crate) edge: usize,
-    pub(crate) factors: [S; 2],
+pub struct Change<S> {
+    /// The edge.
+    pub edge: usize,
+    /// The change at both ends.
+    pub factors: [S; 2],
 }
 
-/// The additions to the tractions of the certificate that equilibrium needs.
-pub(crate) struct Closed<S> {
-    /// The forces that are added at both ends of each edge.
-    pub(crate) added: Vec<[Vector2<S>; 2]>,
-    pub(crate) changes: Vec<Change<S>>,
+/// Tractions in equilibrium, and what that takes beside small additions to those that are given.
+pub struct Equilibrium<S> {
+    /// tau N on the edges.
+    pub forces: Vec<[Vector2<S>; 2]>,
+    /// Pressures that change.
+    pub changes: Vec<Change<S>>,
     pub(crate) stops: Vec<Stop<S>>,
+    /// The force and the moment by which the given tractions and the body force leave each triangle out of balance.
+    pub(crate) resultants: Vec<Wrench<S>>,
 }
 
 /// A support of triangle `root` against a motion that the conditions leave free: a force along its edge 0, at both ends.
@@ -75,27 +80,29 @@ pub(crate) struct Stop<S> {
 /// such a motion, do by rounding and by what Newton's method leaves.
 const STOP: f64 = 1e-10;
 
-/// The tree over the triangles of each part: an order from the root on, and the edge towards the root. A part is what an edge
+/// The topology of a certificate's triangles: those of each edge, and the tree over those of each part: an order from the root on, and the edge towards the root. A part is what an edge
 /// that is held in both components, long enough to take any force and moment, is the nearest such to, or a connected part of
 /// the body where there is none: the fewer triangles behind an edge, the less rounding is carried over it.
 #[derive(Clone)]
-pub(crate) struct SpanningTree {
+pub struct Topology {
+    /// The triangles of each edge.
+    pub owners: Owners,
     order: Vec<usize>,
     towards_root: Vec<Option<usize>>,
     /// Where in `order` each part begins.
     parts: Vec<usize>,
 }
 
-impl SpanningTree {
+impl Topology {
     /// Breadth first, from all held roots at once; edges inside a triangle that was cut, elsewhere than in the middle of an
     /// edge, come before all others.
-    pub(crate) fn new(certificate: &Certificate, owners: &[[Option<Owner>; 2]]) -> SpanningTree {
+    pub(crate) fn new(certificate: &Certificate, owners: Owners) -> Topology {
         let count = certificate.pieces.len();
         let (mut found, mut parts) = (Vec::with_capacity(count), 0);
         let mut part_of = vec![usize::MAX; count];
         let mut towards_root = vec![None; count];
         let mut next = 0;
-        let held = held_roots(certificate, owners);
+        let held = held_roots(certificate, &owners);
         let alone = (0..count).map(|root| vec![root]);
         for roots in std::iter::once(held).chain(alone) {
             for root in roots {
@@ -115,9 +122,8 @@ impl SpanningTree {
                         if from != t && !is_cut(certificate, e) {
                             continue;
                         }
-                        let other =
-                            owners[e].into_iter().flatten().find(|owner| owner.piece != from);
-                        if let Some(Owner { piece: to, .. }) = other
+                        let other = owners[e].into_iter().flatten().find(|&owner| owner != from);
+                        if let Some(to) = other
                             && part_of[to] == usize::MAX
                         {
                             part_of[to] = part_of[t];
@@ -140,7 +146,7 @@ impl SpanningTree {
             order[end[part_of[t]]] = t;
             end[part_of[t]] += 1;
         }
-        SpanningTree { order, towards_root, parts: first }
+        Topology { owners, order, towards_root, parts: first }
     }
 
     /// The triangles of each part, from the root on.
@@ -165,7 +171,7 @@ fn is_cut(certificate: &Certificate, e: usize) -> bool {
 
 /// The triangles at the edges that are held in both components and no shorter than half of the longest: over a short one a
 /// moment would be a large force.
-fn held_roots(certificate: &Certificate, owners: &[[Option<Owner>; 2]]) -> Vec<usize> {
+fn held_roots(certificate: &Certificate, owners: &[[Option<usize>; 2]]) -> Vec<usize> {
     let length = |edge: &Edge| {
         let [start, end] = edge.ends.map(|p| place(certificate, p));
         (end - start).dot(&(end - start))
@@ -174,32 +180,29 @@ fn held_roots(certificate: &Certificate, owners: &[[Option<Owner>; 2]]) -> Vec<u
     let held = certificate.edges.iter().zip(owners).filter(|(edge, _)| is_held(edge));
     let longest = held.clone().map(|(edge, _)| length(edge)).fold(0.0, f64::max);
     let long = held.filter(|(edge, _)| length(edge) >= longest / 4.0);
-    long.filter_map(|(_, [owner, _])| Some(owner.as_ref()?.piece)).collect()
+    long.filter_map(|(_, [owner, _])| *owner).collect()
 }
 
 /// The edges of a certificate with the forces that it has on them.
 pub(crate) struct OnEdges<'a, S> {
     pub(crate) certificate: &'a Certificate,
-    pub(crate) owners: &'a [[Option<Owner>; 2]],
+    pub(crate) topology: &'a Topology,
     pub(crate) points: &'a [Vector2<S>],
     /// tau N at both ends.
-    pub(crate) forces: &'a dyn Fn(usize) -> [Vector2<S>; 2],
+    pub(crate) forces: &'a [[Vector2<S>; 2]],
 }
 
 impl<S: Enclosing> OnEdges<'_, S> {
-    /// Puts every triangle in equilibrium: finds what is to be added. `wrenches` are the resultants of the forces on the triangles,
-    /// with the loads.
+    /// Puts every triangle in equilibrium. `resultants` are those of the forces on the triangles, with the loads.
     ///
     /// # Errors
     /// A connected part that neither Gamma_D nor pressures on Gamma_C balance.
-    pub(crate) fn close(
-        &self,
-        tree: &SpanningTree,
-        wrenches: &mut [Wrench<S>],
-    ) -> Result<Closed<S>, Unbalanced> {
-        let added = vec![[Vector2::zeros(); 2]; self.certificate.edges.len()];
-        let mut closed = Closed { added, changes: Vec::new(), stops: Vec::new() };
-        for (part, chosen) in self.settled(tree)?.into_iter().rev() {
+    pub(crate) fn close(&self, resultants: Vec<Wrench<S>>) -> Result<Equilibrium<S>, Unbalanced> {
+        let mut added = vec![[Vector2::zeros(); 2]; self.certificate.edges.len()];
+        let (mut changes, mut stops) = (Vec::new(), Vec::new());
+        let mut wrenches = resultants.clone();
+        let owners = &self.topology.owners;
+        for (part, chosen) in self.settled()?.into_iter().rev() {
             let root = part[0];
             let mut total = wrenches[root];
             for &t in &part[1..] {
@@ -211,7 +214,7 @@ impl<S: Enclosing> OnEdges<'_, S> {
                     let [start, end] =
                         [1, 2].map(|k| self.points[self.certificate.pieces[root].vertices[k]]);
                     let force = wrench.on_edge(start, end);
-                    closed.stops.push(Stop { root, force, share });
+                    stops.push(Stop { root, force, share });
                     wrenches[root] = wrenches[root].plus(wrench);
                     continue;
                 }
@@ -220,43 +223,44 @@ impl<S: Enclosing> OnEdges<'_, S> {
                 // The opposite acts on the other body, which is closed later.
                 let there = other.map(|edge| (edge, opposite(force)));
                 for (edge, force) in std::iter::once((hold.edge, force)).chain(there) {
-                    let Some(owner) = self.owners[edge][0] else { continue };
-                    add(&mut closed.added[edge], force);
+                    let Some(owner) = owners[edge][0] else { continue };
+                    add(&mut added[edge], force);
                     let wrench = self.wrench(edge, force);
-                    wrenches[owner.piece] = wrenches[owner.piece].plus(wrench);
+                    wrenches[owner] = wrenches[owner].plus(wrench);
                 }
                 let Variation::Pressure(ends) = hold.profile else { continue };
                 let [a, b] = ends.map(|end| if end { factor } else { S::from(0) });
                 let second =
                     other.filter(|_| self.certificate.edges[hold.edge].role == Role::Facing);
-                closed.changes.push(match second {
+                changes.push(match second {
                     Some(edge) => Change { edge, factors: [b, a] },
                     None => Change { edge: hold.edge, factors: [a, b] },
                 });
             }
             for &t in part[1..].iter().rev() {
-                let Some(e) = tree.towards_root[t] else { continue };
-                let [Some(left), Some(right)] = self.owners[e] else { continue };
+                let Some(e) = self.topology.towards_root[t] else { continue };
+                let [Some(left), Some(right)] = owners[e] else { continue };
                 let [start, end] = self.certificate.edges[e].ends.map(|p| self.points[p]);
                 let wrench = wrenches[t];
                 let force = wrench.on_edge(start, end);
                 // The triangle behind the edge gets minus its resultant, the one before it the resultant.
                 let (before, force) =
-                    if left.piece == t { (right, force.map(|f| -f)) } else { (left, force) };
-                add(&mut closed.added[e], force);
-                wrenches[before.piece] = wrenches[before.piece].plus(wrench);
+                    if left == t { (right, force.map(|f| -f)) } else { (left, force) };
+                add(&mut added[e], force);
+                wrenches[before] = wrenches[before].plus(wrench);
             }
         }
-        Ok(closed)
+        let sum = |(given, added): (&[Vector2<S>; 2], [Vector2<S>; 2])| {
+            [given[0] + added[0], given[1] + added[1]]
+        };
+        let forces = self.forces.iter().zip(added).map(sum).collect();
+        Ok(Equilibrium { forces, changes, stops, resultants })
     }
 
     /// The parts with three holds each, of which pressures between two bodies are those towards parts before: closed from the last
     /// one on, none is changed by others once it is closed.
-    fn settled<'t>(
-        &self,
-        tree: &'t SpanningTree,
-    ) -> Result<Vec<(&'t [usize], Chosen)>, Unbalanced> {
-        let mut left: Vec<&[usize]> = tree.parts().collect();
+    fn settled<'t>(&'t self) -> Result<Vec<(&'t [usize], Chosen)>, Unbalanced> {
+        let mut left: Vec<&[usize]> = self.topology.parts().collect();
         let mut settled = Vec::with_capacity(left.len());
         let mut is_settled = vec![false; self.certificate.pieces.len()];
         while let Some(&first) = left.first() {
@@ -318,8 +322,8 @@ impl<S: Enclosing> OnEdges<'_, S> {
     /// The sum of the forces on the boundary of a part.
     fn pull(&self, part: &[usize]) -> f64 {
         let edges = part.iter().flat_map(|&t| self.certificate.pieces[t].edges);
-        let outer = edges.filter(|&e| self.owners[e][1].is_none());
-        outer.flat_map(|e| (self.forces)(e)).map(length).sum()
+        let outer = edges.filter(|&e| self.topology.owners[e][1].is_none());
+        outer.flat_map(|e| self.forces[e]).map(length).sum()
     }
 
     /// The force of a hold at both ends of its edge.
@@ -387,11 +391,12 @@ impl<S: Enclosing> OnEdges<'_, S> {
         let mut size = 0.0_f64;
         for &t in part {
             for e in self.certificate.pieces[t].edges {
-                if self.owners[e][0].is_none_or(|owner| owner.piece != t) {
+                if self.topology.owners[e][0] != Some(t) {
                     continue;
                 }
-                let faced = self.certificate.facing.get(&e).map(|&other| self.owners[other][0]);
-                if faced.is_some_and(|owner| owner.is_none_or(|owner| !is_settled[owner.piece])) {
+                let faced =
+                    self.certificate.facing.get(&e).map(|&other| self.topology.owners[other][0]);
+                if faced.is_some_and(|owner| owner.is_none_or(|owner| !is_settled[owner])) {
                     continue;
                 }
                 for hold in self.candidates(e) {

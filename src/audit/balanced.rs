@@ -3,23 +3,16 @@
 
 use nalgebra::Vector2;
 
-use super::balance::{Change, Closed, OnEdges, SpanningTree, Unbalanced};
+use super::balance::OnEdges;
+pub use super::balance::{Change, Equilibrium, Topology, Unbalanced};
 use super::certificate::{
-    Certificate, Edge, Law, Owner, Piece, Role, Shape, exactly, opposite, support, turned,
+    Certificate, Edge, Law, Piece, Role, Shape, exactly, opposite, support, turned,
 };
 use super::checks::{Rejection, VARIES, wrong};
 use super::forces::along;
 use super::on_contact::{OnContact, OnEdge, along_directions, along_the_normal};
-use crate::kernel::composite::{Affine, Composite, Frame, Loads, Wrench};
+use crate::kernel::composite::{Affine, Composite, Frame, Loads};
 use crate::kernel::{Ball, Enclosing, Triangle};
-
-/// The topology of a certificate's triangles.
-#[derive(Clone)]
-pub struct Topology {
-    /// The triangles of each edge.
-    pub owners: Vec<[Option<Owner>; 2]>,
-    pub(crate) tree: SpanningTree,
-}
 
 /// An upper bound of 2 int s |x| + q x over an edge, for x with these Bernstein coefficients times its length: |x| is at most the function
 /// with the absolute values of them.
@@ -39,17 +32,16 @@ pub(super) fn friction<S: Enclosing>(across: [S; 4], shear: [f64; 2], bound: [f6
 pub struct Balanced<S> {
     /// Vertices and cuts.
     pub points: Vec<Vector2<S>>,
+    /// The triangles.
     pub triangles: Vec<Triangle<S>>,
+    /// v
     pub v: Shape<S>,
+    /// How triangles and edges hang together.
     pub topology: Topology,
     /// tau N on the edges as the certificate has it.
     pub forces: Vec<[Vector2<S>; 2]>,
-    /// The force and the moment about its centroid by which these and the body force leave each triangle out of balance.
-    pub(crate) resultants: Vec<Wrench<S>>,
-    /// tau N on the edges in equilibrium.
-    pub(crate) in_balance: Vec<[Vector2<S>; 2]>,
-    /// Corrections that equilibrium needs beside tractions.
-    pub(crate) closed: Closed<S>,
+    /// The same in equilibrium.
+    pub balance: Equilibrium<S>,
     /// 2 int tau_n (v_n - g) over the edges of each triangle.
     pub on_contact: Vec<S>,
 }
@@ -58,8 +50,7 @@ impl Certificate {
     /// The topology of triangles and edges.
     pub fn topology(&self) -> Result<Topology, Rejection> {
         self.check_shape()?;
-        let owners = self.owners()?;
-        Ok(Topology { tree: SpanningTree::new(self, &owners), owners })
+        Ok(Topology::new(self, self.owners()?))
     }
 
     /// Checks all other conditions and puts the triangles in equilibrium.
@@ -82,46 +73,60 @@ impl Certificate {
                 return Err(Rejection::Penetration { edge: e, value: value.upper() });
             }
             if let Some(owner) = topology.owners[e][0] {
-                on_contact[owner.piece] += contact.term;
+                on_contact[owner] += contact.term;
                 if let Law::Friction { shear, bound } = law {
                     let slip = self.across(e, self.jump(e, &v), &points);
-                    on_contact[owner.piece] += friction(slip, shear, bound);
+                    on_contact[owner] += friction(slip, shear, bound);
                 }
             }
         }
-        let mut forces: Vec<_> = (0..self.edges.len()).map(|e| self.force(e, &points)).collect();
-        self.face(&mut forces);
-        let (resultants, in_balance) = (Vec::new(), Vec::new());
-        let closed = Closed { added: Vec::new(), changes: Vec::new(), stops: Vec::new() };
-        let mut state = Balanced {
-            points,
-            triangles,
-            v,
-            topology,
-            forces,
-            resultants,
-            in_balance,
-            closed,
-            on_contact,
-        };
-        state.close(self)?;
-        for &Change { edge, factors } in &state.closed.changes {
+        let forces = self.tractions(&points);
+        let balance = self.equilibrium((&points, &triangles), &topology, &forces)?;
+        for &Change { edge, factors } in &balance.changes {
             let Role::Contact { pressure, .. } = self.edges[edge].role else { continue };
             // p (1 + factor) is no tension.
             if let Some(k) = (0..2).find(|&k| !(-factors[k]).is_at_most(1.0)) {
                 return Err(Rejection::Tension { edge, value: pressure[k] });
             }
             let added = [0, 1].map(|k| S::exactly(pressure[k]) * factors[k]);
-            let contact = self.on_contact(edge, &state.v, &state.points, added)?;
-            if let Some(owner) = state.topology.owners[edge][0] {
-                state.on_contact[owner.piece] += contact.term;
+            let contact = self.on_contact(edge, &v, &points, added)?;
+            if let Some(owner) = topology.owners[edge][0] {
+                on_contact[owner] += contact.term;
             }
         }
-        Ok(state)
+        Ok(Balanced { points, triangles, v, topology, forces, balance, on_contact })
     }
 
-    /// tau N at both ends of edge `e`, as the certificate has it; of the second body of a pair see `face`.
-    pub(super) fn force<S: Enclosing>(&self, e: usize, points: &[Vector2<S>]) -> [Vector2<S>; 2] {
+    /// tau N on the edges, as the certificate has it.
+    pub fn tractions<S: Enclosing>(&self, points: &[Vector2<S>]) -> Vec<[Vector2<S>; 2]> {
+        let mut forces: Vec<_> = (0..self.edges.len()).map(|e| self.force(e, points)).collect();
+        for (&e, &other) in &self.facing {
+            if self.edges[e].role == Role::Facing {
+                forces[e] = opposite(forces[other]);
+            }
+        }
+        forces
+    }
+
+    /// Puts the triangles in equilibrium, from these forces on the edges.
+    ///
+    /// # Errors
+    /// A part of the body whose loads nothing balances.
+    pub fn equilibrium<S: Enclosing>(
+        &self,
+        (points, triangles): (&[Vector2<S>], &[Triangle<S>]),
+        topology: &Topology,
+        forces: &[[Vector2<S>; 2]],
+    ) -> Result<Equilibrium<S>, Unbalanced> {
+        let resultant = |(t, piece): (usize, &Piece)| {
+            loads(piece, t, topology, forces).resultant(&triangles[t])
+        };
+        let resultants = self.pieces.iter().enumerate().map(resultant).collect();
+        OnEdges { certificate: self, topology, points, forces }.close(resultants)
+    }
+
+    /// tau N at both ends of edge `e`; on the second body of a pair see `tractions`.
+    fn force<S: Enclosing>(&self, e: usize, points: &[Vector2<S>]) -> [Vector2<S>; 2] {
         let edge = &self.edges[e];
         let [start, end] = edge.ends.map(|p| points[p]);
         let along = end - start;
@@ -142,17 +147,8 @@ impl Certificate {
         }
     }
 
-    /// The forces on the second bodies of pairs.
-    fn face<S: Enclosing>(&self, forces: &mut [[Vector2<S>; 2]]) {
-        for (&e, &other) in &self.facing {
-            if self.edges[e].role == Role::Facing {
-                forces[e] = opposite(forces[other]);
-            }
-        }
-    }
-
     /// |E| d at both ends of edge `e` of Gamma_C.
-    fn units<S: Enclosing>(&self, e: usize, points: &[Vector2<S>]) -> [Vector2<S>; 2] {
+    pub fn units<S: Enclosing>(&self, e: usize, points: &[Vector2<S>]) -> [Vector2<S>; 2] {
         let span = self.span(self.edges[e].ends, points);
         match self.edges[e].role {
             Role::Contact { along: Some(d), .. } => {
@@ -285,32 +281,6 @@ impl Certificate {
 }
 
 impl<S: Enclosing> Balanced<S> {
-    /// The forces on the triangles from those on the edges, put in equilibrium.
-    fn close(&mut self, certificate: &Certificate) -> Result<(), Unbalanced> {
-        let count = certificate.pieces.len();
-        let mut wrenches = Vec::with_capacity(count);
-        for t in 0..count {
-            let loads = self.loads_as_given(certificate, t);
-            wrenches.push(loads.resultant(&self.triangles[t]));
-        }
-        self.resultants = wrenches.clone();
-        let Balanced { points, topology: Topology { owners, tree }, forces, .. } = self;
-        let on_edges = OnEdges { certificate, owners, points, forces: &|e| forces[e] };
-        self.closed = on_edges.close(tree, &mut wrenches)?;
-        let sum = |(given, added): (&[Vector2<S>; 2], &[Vector2<S>; 2])| {
-            [given[0] + added[0], given[1] + added[1]]
-        };
-        self.in_balance = self.forces.iter().zip(&self.closed.added).map(sum).collect();
-        Ok(())
-    }
-
-    /// The forces on triangle `t` towards its outside, and its body force.
-    pub(crate) fn loads_as_given(&self, certificate: &Certificate, t: usize) -> Loads<S> {
-        let piece = &certificate.pieces[t];
-        let forces = outward(piece.edges, t, &self.topology, &self.forces);
-        Loads { forces, body: piece.body.map(exactly) }
-    }
-
     /// C eps(v) and C eps(v) - tau on triangle `t`.
     pub fn stresses(&self, certificate: &Certificate, t: usize) -> (Affine<S>, Composite<S>) {
         let (piece, triangle) = (&certificate.pieces[t], &self.triangles[t]);
@@ -324,13 +294,23 @@ impl<S: Enclosing> Balanced<S> {
 
     /// The forces on triangle `t` towards its outside, in equilibrium, and its body force.
     pub fn loads(&self, piece: &Piece, t: usize) -> Loads<S> {
-        let forces = outward(piece.edges, t, &self.topology, &self.in_balance);
-        let mut loads = Loads { forces, body: piece.body.map(exactly) };
-        for stop in self.closed.stops.iter().filter(|stop| stop.root == t) {
+        let mut loads = loads(piece, t, &self.topology, &self.balance.forces);
+        for stop in self.balance.stops.iter().filter(|stop| stop.root == t) {
             (0..2).for_each(|k| loads.forces[0][k] += stop.force[k]);
         }
         loads
     }
+}
+
+/// The forces on triangle `t` towards its outside, by those on the edges, and its body force.
+fn loads<S: Enclosing>(
+    piece: &Piece,
+    t: usize,
+    topology: &Topology,
+    forces: &[[Vector2<S>; 2]],
+) -> Loads<S> {
+    let forces = outward(piece.edges, t, topology, forces);
+    Loads { forces, body: piece.body.map(exactly) }
 }
 
 /// The forces on the edges of triangle `t` towards its outside.
@@ -342,65 +322,6 @@ pub(crate) fn outward<S: Enclosing>(
 ) -> [[Vector2<S>; 2]; 3] {
     edges.map(|e| {
         let [a, b] = forces[e];
-        match topology.owners[e][0] {
-            Some(owner) if owner.piece == t => [a, b],
-            _ => [-b, -a],
-        }
+        if topology.owners[e][0] == Some(t) { [a, b] } else { [-b, -a] }
     })
-}
-
-impl Balanced<f64> {
-    /// Gives the edges of the certificate the tractions that balance.
-    pub fn give(&self, certificate: &mut Certificate) {
-        for (e, now) in self.in_balance.iter().enumerate() {
-            let units = certificate.units(e, &self.points);
-            match &mut certificate.edges[e].role {
-                Role::Inner(force) | Role::Held(_, force) => *force = now.map(Into::into),
-                Role::Supported { along, force, .. } => {
-                    let d = Vector2::from(*along);
-                    *force = now.map(|f| f.dot(&d) / d.dot(&d));
-                }
-                Role::Contact { pressure, law, .. } if law.is_tied() => {
-                    // Where the direction turns it is one, and so is the work on both ends.
-                    let work = [0, 1].map(|k| now[k].dot(&units[k]));
-                    let square = [0, 1].map(|k| units[k].dot(&units[k]));
-                    if units[0] != units[1] {
-                        *pressure = [(work[0] + work[1]) / (square[0] + square[1]); 2];
-                        continue;
-                    }
-                    for k in 0..2 {
-                        let unit = units[k];
-                        pressure[k] = work[k] / square[k];
-                        if let Law::Bonded { shear, .. } = law {
-                            shear[k] = now[k].dot(&turned(unit)) / unit.dot(&unit);
-                        }
-                    }
-                }
-                Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } | Role::Facing => {}
-            }
-        }
-        for &Change { edge, factors } in &self.closed.changes {
-            if let Role::Contact { pressure, .. } = &mut certificate.edges[edge].role {
-                (0..2).for_each(|k| pressure[k] = (pressure[k] * (1.0 + factors[k])).min(0.0));
-            }
-        }
-    }
-
-    /// Takes over the forces that the certificate has now on edges between triangles and of Gamma_D.
-    pub fn rebalance(&mut self, certificate: &Certificate) -> Result<(), Unbalanced> {
-        for (e, (force, edge)) in self.forces.iter_mut().zip(&certificate.edges).enumerate() {
-            let is_given = match edge.role {
-                Role::Contact { law, .. } => !law.is_tied(),
-                role => matches!(role, Role::Loaded(_) | Role::Pressed(_) | Role::Facing),
-            };
-            if !is_given {
-                *force = certificate.force(e, &self.points);
-            }
-        }
-        for &Change { edge, factors } in &self.closed.changes {
-            (0..2).for_each(|k| self.forces[edge][k] *= 1.0 + factors[k]);
-        }
-        certificate.face(&mut self.forces);
-        self.close(certificate)
-    }
 }

@@ -287,19 +287,16 @@ pub(super) fn opposite<S: Enclosing>([a, b]: [Vector2<S>; 2]) -> [Vector2<S>; 2]
 }
 
 /// The vector with these components.
-#[doc(hidden)]
 pub fn exactly<S: Enclosing>(components: [f64; 2]) -> Vector2<S> {
     components.map(S::exactly).into()
 }
 
 /// d turned to the left.
-#[doc(hidden)]
 pub fn turned<S: Enclosing>(d: Vector2<S>) -> Vector2<S> {
     Vector2::new(-d[1], d[0])
 }
 
 /// Tells whether d is not along an axis.
-#[doc(hidden)]
 pub fn is_oblique(d: [f64; 2]) -> bool {
     d[0] != 0.0 && d[1] != 0.0
 }
@@ -311,7 +308,6 @@ fn nearest<S: Enclosing>(v: [f64; 2], d: [f64; 2], w: f64) -> Vector2<S> {
 }
 
 /// tau N on an edge that is held along `d`, of the given `length`.
-#[doc(hidden)]
 pub fn support<S: Enclosing>(
     d: [f64; 2],
     force: [f64; 2],
@@ -341,7 +337,7 @@ impl Certificate {
 
     /// An upper bound of |z|_a for the sum z of the lifts, which meet on edges only.
     pub fn lift(&self) -> f64 {
-        if self.lifts.is_empty() { 0.0 } else { self.with_lifts(0.0) }
+        self.with_lifts(0.0)
     }
 
     /// (bound^2 + |z|_a^2)^(1/2), rounded upwards: the bound of |u - v|_a that is left of one for the v that has z, too.
@@ -376,14 +372,12 @@ impl Certificate {
     }
 
     /// Vertices and cuts.
-    #[doc(hidden)]
     pub fn places<S: Enclosing>(&self) -> Vec<Vector2<S>> {
         let vertices = self.vertices.iter().map(|&x| exactly(x)).collect();
         self.with_cuts(vertices, &self.vertices, |_| true)
     }
 
     /// v at a point that has its own, and what is prescribed there.
-    #[doc(hidden)]
     pub fn at_own(&self, point: usize) -> Option<([f64; 2], [Option<f64>; 2])> {
         let of =
             |v: &[[f64; 2]], data: &[[Option<f64>; 2]], k: usize| Some((*v.get(k)?, *data.get(k)?));
@@ -418,7 +412,6 @@ impl Certificate {
     }
 
     /// The edges on which two bodies may not open.
-    #[doc(hidden)]
     pub fn tied(&self) -> impl Iterator<Item = Tied> {
         self.edges.iter().enumerate().filter_map(|(edge, of)| match of.role {
             Role::Contact { gap, along: Some(d), law, .. } if law.is_tied() => {
@@ -430,7 +423,6 @@ impl Certificate {
     }
 
     /// v.
-    #[doc(hidden)]
     pub fn shape<S: Enclosing>(&self) -> Shape<S> {
         let all = |values: &[[f64; 2]]| values.iter().copied().map(exactly).collect::<Vec<_>>();
         let mut points = all(&self.displacement);
@@ -472,7 +464,6 @@ impl Certificate {
 }
 
 /// An edge on which two bodies may not open.
-#[doc(hidden)]
 pub struct Tied {
     /// The edge of the first body, by its number.
     pub edge: usize,
@@ -488,7 +479,6 @@ pub struct Tied {
 
 /// A displacement on the triangles of a certificate.
 #[derive(Clone)]
-#[doc(hidden)]
 pub struct Shape<S> {
     /// At vertices and cuts.
     pub points: Vec<Vector2<S>>,
@@ -541,14 +531,8 @@ impl<S: Enclosing> Shape<S> {
     }
 }
 
-/// A triangle at an edge, by the place of the edge in it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Owner {
-    /// The triangle.
-    pub piece: usize,
-    /// Which of its edges this is.
-    pub local: usize,
-}
+/// The triangles of each edge, the one on its left first: inner edges have two, the others one.
+pub type Owners = Vec<[Option<usize>; 2]>;
 
 impl Piece {
     /// f is not constant.
@@ -563,7 +547,6 @@ impl Piece {
 }
 
 /// Where point `p` of a certificate lies.
-#[doc(hidden)]
 pub fn place(certificate: &Certificate, p: usize) -> Vector2<f64> {
     let Certificate { vertices, cuts, .. } = certificate;
     let Some(cut) = p.checked_sub(vertices.len()) else { return vertices[p].into() };

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use thiserror::Error;
 
 use super::balance::Unbalanced;
-use super::certificate::{Certificate, Curved, Edge, Law, Lift, Owner, Role, axis, is_oblique};
+use super::certificate::{Certificate, Curved, Edge, Law, Lift, Owners, Role, axis, is_oblique};
 use crate::kernel::{Ball, Material};
 
 /// Why a certificate proves nothing.
@@ -28,21 +28,8 @@ pub enum Rejection {
         "edge {edge}: v_n - g can't be shown to be <= 0 (a Bernstein coefficient is up to {value}, per unit of length where contact is along the normal)"
     )]
     Penetration { edge: usize, value: f64 },
-    #[error("point {point}: v_{} = {found}; expected the prescribed {expected}", ["x", "y"][*component])]
-    NotPrescribed { point: usize, component: usize, found: f64, expected: f64 },
-    #[error(
-        "point {point}: v . d = {found} along the direction that is held; expected the prescribed {expected}"
-    )]
-    NotPrescribedAlong { point: usize, found: f64, expected: f64 },
-    #[error(
-        "edge {edge}: in the middle v . d is {found} beyond the mean of the ends along the direction that is held; expected the prescribed {expected}"
-    )]
-    NotPrescribedAlongBetween { edge: usize, found: f64, expected: f64 },
-    #[error(
-        "edge {edge}: in the middle v_{} is {found} beyond the mean of the ends; expected the prescribed {expected}",
-        ["x", "y"][*component]
-    )]
-    NotPrescribedBetween { edge: usize, component: usize, found: f64, expected: f64 },
+    #[error("{}; expected the prescribed {expected}", at.says(*found))]
+    NotPrescribed { at: Prescribed, found: f64, expected: f64 },
     #[error("triangle {triangle} is not counter-clockwise, or too flat to tell")]
     Orientation { triangle: usize },
     #[error(transparent)]
@@ -61,17 +48,46 @@ pub enum Rejection {
     NotFinite,
 }
 
+/// A value of u_D: at a point, or in the middle of an edge beyond the mean of its ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Prescribed {
+    /// The number of the edge in place of that of the point.
+    pub is_between: bool,
+    /// The number of the point or the edge.
+    pub index: usize,
+    /// The component; `None` is that along the direction that is held.
+    pub component: Option<usize>,
+}
+
+impl Prescribed {
+    fn says(self, found: f64) -> String {
+        let Prescribed { is_between, index, component } = self;
+        let (v, along) = match component {
+            Some(c) => (["v_x", "v_y"][c], ""),
+            None => ("v . d", " along the direction that is held"),
+        };
+        if is_between {
+            format!("edge {index}: in the middle {v} is {found} beyond the mean of the ends{along}")
+        } else {
+            format!("point {index}: {v} = {found}{along}")
+        }
+    }
+}
+
 const AXES: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 
 /// The error of an edge along which p d is not affine.
 pub(super) const VARIES: &str = "a pressure that varies along a direction that turns";
 
-/// v . d, if it is not w: to rounding where d is oblique, for there doubles can't be nearer.
-fn along(v: [f64; 2], d: [f64; 2], w: f64) -> Option<f64> {
+/// v . d is w: to rounding where d is oblique, for there doubles can't be nearer.
+fn check_along(v: [f64; 2], d: [f64; 2], w: f64, at: Prescribed) -> Result<(), Rejection> {
     let [x, y] = [v[0] * d[0], v[1] * d[1]];
     let allowed =
         if is_oblique(d) { 16.0 * f64::EPSILON * (x.abs() + y.abs() + w.abs()) } else { 0.0 };
-    if (x + y - w).abs() <= allowed { None } else { Some(x + y) }
+    if (x + y - w).abs() <= allowed {
+        return Ok(());
+    }
+    Err(Rejection::NotPrescribed { at, found: x + y, expected: w })
 }
 
 /// The law has finite entries and positive eigenvalues.
@@ -107,53 +123,54 @@ pub(super) fn wrong(what: &'static str, index: usize, problem: &'static str) -> 
     Rejection::Wrong { what, index, problem }
 }
 
+/// There are as many entries as there should be.
+pub(super) fn length(what: &'static str, found: usize, expected: usize) -> Result<(), Rejection> {
+    if found == expected { Ok(()) } else { Err(Rejection::Length { what, found, expected }) }
+}
+
+fn is_finite(values: &[f64]) -> bool {
+    values.iter().all(|x| x.is_finite())
+}
+
+fn are_finite(what: &'static str, values: &[[f64; 2]]) -> Result<(), Rejection> {
+    match values.iter().position(|x| !is_finite(x)) {
+        Some(i) => Err(wrong(what, i, "a number is not finite")),
+        None => Ok(()),
+    }
+}
+
 impl Certificate {
     /// The fields have the lengths that they should, and their numbers are finite.
     pub(super) fn check_fields(&self) -> Result<(), Rejection> {
-        let vertices = self.vertices.len();
-        for (what, found) in
-            [("displacement", self.displacement.len()), ("prescribed", self.prescribed.len())]
-        {
-            if found != vertices {
-                return Err(Rejection::Length { what, found, expected: vertices });
-            }
-        }
-        let finite = |values: &[f64]| values.iter().all(|x| x.is_finite());
-        if let Some(i) = self.displacement.iter().position(|v| !finite(v)) {
-            return Err(wrong("displacement", i, "a number is not finite"));
-        }
+        let (vertices, cuts, edges) = (self.vertices.len(), self.cuts.len(), self.edges.len());
+        length("displacement", self.displacement.len(), vertices)?;
+        length("prescribed", self.prescribed.len(), vertices)?;
+        are_finite("displacement", &self.displacement)?;
         if let Some(Curved { at_cuts, prescribed, bulges, data }) = &self.curved {
-            if prescribed.len() != self.cuts.len() {
-                let (found, expected) = (prescribed.len(), self.cuts.len());
-                return Err(Rejection::Length { what: "prescribed at cuts", found, expected });
-            }
+            length("prescribed at cuts", prescribed.len(), cuts)?;
             for (what, values, expected) in [
-                ("v at cuts", at_cuts, self.cuts.len()),
-                ("bulges", bulges, self.edges.len()),
-                ("bulges of data", data, self.edges.len()),
+                ("v at cuts", at_cuts, cuts),
+                ("bulges", bulges, edges),
+                ("bulges of data", data, edges),
             ] {
-                if values.len() != expected {
-                    return Err(Rejection::Length { what, found: values.len(), expected });
-                }
-                if let Some(i) = values.iter().position(|x| !finite(x)) {
-                    return Err(wrong(what, i, "a number is not finite"));
-                }
+                length(what, values.len(), expected)?;
+                are_finite(what, values)?;
             }
         }
         for (i, edge) in self.edges.iter().enumerate() {
             let numbers = match edge.role {
-                Role::Inner(f) | Role::Held(_, f) | Role::Loaded(f) => finite(f.as_flattened()),
-                Role::Pressed(p) => finite(&p),
+                Role::Inner(f) | Role::Held(_, f) | Role::Loaded(f) => is_finite(f.as_flattened()),
+                Role::Pressed(p) => is_finite(&p),
                 Role::Supported { along, force, traction } => {
-                    finite(&force) && finite(&traction) && has_length(along)
+                    is_finite(&force) && is_finite(&traction) && has_length(along)
                 }
                 Role::Contact { pressure, gap, along, law } => {
                     let beside = match law {
                         Law::Friction { bound, .. } => bound,
                         _ => law.offset(),
                     };
-                    [pressure, gap, law.shear(), beside].iter().all(|numbers| finite(numbers))
-                        && along.is_none_or(|d| finite(d.as_flattened()))
+                    [pressure, gap, law.shear(), beside].iter().all(|numbers| is_finite(numbers))
+                        && along.is_none_or(|d| is_finite(d.as_flattened()))
                 }
                 Role::Facing => true,
             };
@@ -171,10 +188,7 @@ impl Certificate {
         if self.pieces.is_empty() {
             return Err(Rejection::Length { what: "triangles", found: 0, expected: 1 });
         }
-        let finite = |values: &[f64]| values.iter().all(|x| x.is_finite());
-        if let Some(i) = self.vertices.iter().position(|x| !finite(x)) {
-            return Err(wrong("vertex", i, "a number is not finite"));
-        }
+        are_finite("vertex", &self.vertices)?;
         for (i, cut) in self.cuts.iter().enumerate() {
             if !(0.0 < cut.at && cut.at < 1.0 && cut.ends.iter().all(|&end| end < vertices)) {
                 return Err(wrong("cut", i, "expected a place between two vertices"));
@@ -191,7 +205,7 @@ impl Certificate {
             if elliptic != Some(piece.material) {
                 elliptic = is_elliptic(&piece.material).then_some(piece.material);
             }
-            if !(finite(piece.body.as_flattened()) && elliptic.is_some()) {
+            if !(is_finite(piece.body.as_flattened()) && elliptic.is_some()) {
                 return Err(wrong(
                     "triangle",
                     i,
@@ -369,7 +383,8 @@ impl Certificate {
         for component in (0..2).filter(|&c| held[c]) {
             let (found, expected) = (v[component], data[component].ok_or_else(missing)?);
             if expected != found {
-                return Err(Rejection::NotPrescribed { point, component, found, expected });
+                let at = Prescribed { is_between: false, index: point, component: Some(component) };
+                return Err(Rejection::NotPrescribed { at, found, expected });
             }
         }
         Ok(())
@@ -386,10 +401,8 @@ impl Certificate {
         };
         let (v, data) = self.at_own(point).ok_or_else(missing)?;
         let expected = data[0].filter(|_| frame == d).ok_or_else(missing)?;
-        match along(v, d, expected) {
-            Some(found) => Err(Rejection::NotPrescribedAlong { point, found, expected }),
-            None => Ok(()),
-        }
+        let at = Prescribed { is_between: false, index: point, component: None };
+        check_along(v, d, expected, at)
     }
 
     /// v = u_D between the ends of the edges of Gamma_D, and there are bulges of data where there are such data only.
@@ -400,14 +413,8 @@ impl Certificate {
                 Role::Held(held, _) => held,
                 Role::Contact { law, .. } => [data[0] != 0.0, law.is_bonded() && data[1] != 0.0],
                 Role::Supported { along: d, .. } => {
-                    if let Some(found) = along(bulge, d, data[0]) {
-                        let expected = data[0];
-                        return Err(Rejection::NotPrescribedAlongBetween {
-                            edge: e,
-                            found,
-                            expected,
-                        });
-                    }
+                    let at = Prescribed { is_between: true, index: e, component: None };
+                    check_along(bulge, d, data[0], at)?;
                     [data[0] != 0.0, false]
                 }
                 Role::Inner(_) | Role::Loaded(_) | Role::Pressed(_) | Role::Facing => [false; 2],
@@ -419,20 +426,16 @@ impl Certificate {
                     return Err(wrong("edge", e, "a bulge of data where there are none"));
                 }
                 if is_held && held[component] && found != expected {
-                    return Err(Rejection::NotPrescribedBetween {
-                        edge: e,
-                        component,
-                        found,
-                        expected,
-                    });
+                    let at = Prescribed { is_between: true, index: e, component: Some(component) };
+                    return Err(Rejection::NotPrescribed { at, found, expected });
                 }
             }
         }
         Ok(())
     }
 
-    /// The triangles of each edge, the one on its left first: inner edges have two, the others one.
-    pub(super) fn owners(&self) -> Result<Vec<[Option<Owner>; 2]>, Rejection> {
+    /// The triangles of each edge.
+    pub(super) fn owners(&self) -> Result<Owners, Rejection> {
         let mut owners = vec![[None; 2]; self.edges.len()];
         for (t, piece) in self.pieces.iter().enumerate() {
             for local in 0..3 {
@@ -446,7 +449,7 @@ impl Certificate {
                 } else {
                     return Err(wrong("triangle", t, "one of its edges joins other vertices"));
                 };
-                if owners[e][side].replace(Owner { piece: t, local }).is_some() {
+                if owners[e][side].replace(t).is_some() {
                     return Err(wrong("edge", e, "two triangles on the same side"));
                 }
             }

@@ -14,7 +14,7 @@
 use nalgebra::Vector2;
 
 use super::balance::{OnEdges, Stop};
-use super::balanced::{Topology, outward};
+use super::balanced::outward;
 use super::certificate::{Certificate, Curved, Edge, Law, Piece, Role, Shape, exactly};
 use super::checks::Rejection;
 use super::forces::{
@@ -176,57 +176,24 @@ fn in_doubles(vectors: [Vector2<Ball>; 2]) -> ([Vector2<f64>; 2], f64) {
     (values, off)
 }
 
-/// A dual pair with its sums over the triangles.
-struct Summed<S> {
-    pair: Pair<S>,
-    /// int C^-1 (C eps(v) - tau) : (C eps(w) - rho)
-    product: Ball,
-    /// An upper bound of eta.
-    eta: f64,
-    /// An upper bound of |w|_a^2, where the error of data is to be multiplied with it.
-    norm: Ball,
-    /// The shares of the triangles in eta^2.
-    shares: Vec<f64>,
-}
-
 impl<S: Enclosing> Forces<'_, S> {
-    /// Encloses the contact force with the weight of its target by each of some dual pairs; an end may be infinite.
-    ///
-    /// # Errors
-    /// A pair that is none; one whose w is not what it should be on Gamma_C.
-    pub fn by_pairs(
-        &self,
-        pairs: &[(ForceTarget, Dual)],
-        cover: Option<&Cover>,
-    ) -> Result<Vec<ByPair>, WrongPair> {
-        let sums = self.sums(pairs)?;
-        let all = pairs.iter().zip(sums);
-        all.map(|((target, pair), sums)| self.by_sums(pair, *target, sums, cover)).collect()
-    }
-
     /// Verifies that this is a pair, whose tractions balance on every triangle to the rounding of doubles, and bounds those that
     /// make up for the rest.
     fn pair(&self, pair: &Dual) -> Result<Pair<S>, WrongPair> {
         let state = self.state;
         let pair = self.certificate.of_pair(pair, &state.points)?;
         let points = pair.places::<Ball>();
-        let forces: Vec<_> = (0..pair.edges.len()).map(|e| pair.force(e, &points)).collect();
-        let Topology { owners, tree } = &state.topology;
+        let (topology, forces) = (&state.topology, pair.tractions(&points));
         let of_piece = |(t, piece): (usize, &Piece)| {
             let triangle = Triangle { vertices: piece.vertices.map(|p| points[p]) };
-            resultant(&triangle, outward(piece.edges, t, &state.topology, &forces))
+            resultant(&triangle, outward(piece.edges, t, topology, &forces))
         };
-        let resultants: Vec<Wrench<Ball>> = pair.pieces.iter().enumerate().map(of_piece).collect();
-        let given = |e: usize| forces[e];
-        let on_edges = OnEdges { certificate: &pair, owners, points: &points, forces: &given };
-        let closed = on_edges.close(tree, &mut resultants.clone()).map_err(Rejection::from)?;
-        pair.check_balance((&forces, &resultants), |_| Ball::from(0), &closed)?;
-        let in_balance = forces
-            .iter()
-            .zip(&closed.added)
-            .map(|(given, added)| in_doubles([given[0] + added[0], given[1] + added[1]]));
-        let (forces, off) = in_balance.unzip();
-        Ok(Pair { w: pair.shape(), forces, off, stops: closed.stops })
+        let resultants = pair.pieces.iter().enumerate().map(of_piece).collect();
+        let on_edges = OnEdges { certificate: &pair, topology, points: &points, forces: &forces };
+        let balance = on_edges.close(resultants).map_err(Rejection::from)?;
+        pair.check_balance(&forces, |_| Ball::from(0), &balance)?;
+        let (forces, off) = balance.forces.into_iter().map(in_doubles).unzip();
+        Ok(Pair { w: pair.shape(), forces, off, stops: balance.stops })
     }
 
     /// C eps(w) - rho on triangle `t` for the tractions in doubles, and the energy at most of what is to be added to those.
@@ -252,61 +219,48 @@ impl<S: Enclosing> Forces<'_, S> {
         (apart, beside.energy(&piece.material(), triangle.double_area()))
     }
 
-    /// Verifies that these are pairs and sums over the triangles.
-    fn sums(&self, pairs: &[(ForceTarget, Dual)]) -> Result<Vec<Summed<S>>, WrongPair> {
-        if pairs.is_empty() {
-            return Ok(Vec::new());
-        }
-        let (state, pieces) = (self.state, &self.certificate.pieces);
-        let start = |(_, pair): &(ForceTarget, Dual)| {
-            let (zero, shares) = (Ball::from(0), Vec::with_capacity(pieces.len()));
-            Ok((self.pair(pair)?, [zero; 4], shares))
-        };
-        let mut sums = pairs.iter().map(start).collect::<Result<Vec<_>, WrongPair>>()?;
-        let mut of_mean = Ball::from(0);
-        for (t, piece) in pieces.iter().enumerate() {
+    /// Encloses the contact force with the weight of its target by a dual pair; an end may be infinite.
+    ///
+    /// # Errors
+    /// What is no pair; a w that is not what it should be on Gamma_C.
+    pub fn by_pair(
+        &self,
+        target: ForceTarget,
+        dual: &Dual,
+        cover: Option<&Cover>,
+    ) -> Result<ByPair, WrongPair> {
+        let (certificate, state, pair) = (self.certificate, self.state, self.pair(dual)?);
+        let mut shares = Vec::with_capacity(certificate.pieces.len());
+        // int C^-1 (C eps(v) - tau) : (C eps(w) - rho); the squares of |C eps(v) - tau|, of eta, of what is to be added to rho, and
+        // of |w|_a, where the error of data is to be multiplied with that.
+        let [mut product, mut own, mut eta, mut rest, mut norm] = [Ball::from(0); 5];
+        for (t, piece) in certificate.pieces.iter().enumerate() {
             let (triangle, material) = (&state.triangles[t], piece.material());
-            let (double_area, frame) = (triangle.double_area(), Frame::new(triangle));
-            let (_, own) = state.stresses(self.certificate, t);
-            of_mean += own.energy(&material, double_area).ball();
-            for (pair, [product, square, beside, norm], shares) in &mut sums {
-                let (apart, rest) = self.apart((t, &frame), pair);
-                let affine = (apart.corners, apart.centre);
-                *product += own.product_with_affine(affine, &material, double_area).ball();
-                let share = apart.energy(&material, double_area).ball();
-                shares.push(share.centre());
-                *square += share;
-                *beside += rest;
-                if self.loose != 0.0 {
-                    *norm += energy(&pair.w, piece, triangle);
-                }
+            let double_area = triangle.double_area();
+            let (_, of_tau) = state.stresses(certificate, t);
+            own += of_tau.energy(&material, double_area).ball();
+            let (apart, beside) = self.apart((t, &Frame::new(triangle)), &pair);
+            let affine = (apart.corners, apart.centre);
+            product += of_tau.product_with_affine(affine, &material, double_area).ball();
+            let share = apart.energy(&material, double_area).ball();
+            shares.push(share.centre());
+            eta += share;
+            rest += beside;
+            if self.loose != 0.0 {
+                norm += energy(&pair.w, piece, triangle);
             }
         }
         let root = |square: Ball| Ball::point(square.sqrt().upper());
-        let summed = |(pair, [product, square, beside, norm], shares): (_, [Ball; 4], _)| {
-            let [own, eta, beside] = [of_mean, square, beside].map(root);
-            let product = product + Ball::around(0.0, (own * beside).upper());
-            Summed { pair, product, eta: (eta + beside).upper(), norm, shares }
-        };
-        Ok(sums.into_iter().map(summed).collect())
-    }
-
-    fn by_sums(
-        &self,
-        Dual { roles, .. }: &Dual,
-        target: ForceTarget,
-        sums: Summed<S>,
-        cover: Option<&Cover>,
-    ) -> Result<ByPair, WrongPair> {
-        let (certificate, state) = (self.certificate, self.state);
-        let Summed { pair, product, eta, norm, shares } = sums;
+        let [own, eta, rest, norm] = [own, eta, rest, norm].map(root);
+        let product = product + Ball::around(0.0, (own * rest).upper());
+        let eta = Ball::point((eta + rest).upper());
         let mut middle =
             self.within(&pair.w) + certificate.work_of_tractions(&state.forces, &pair.w);
         // What the corrections of r may add, and r at least and at most in units of |tau_n|.
         let (mut beside, mut most) = (Ball::from(0), [0.0_f64; 2]);
         for e in self.contact() {
             let Role::Contact { pressure, .. } = certificate.edges[e].role else { continue };
-            if matches!(roles[e], Role::Loaded(_)) {
+            if matches!(dual.roles[e], Role::Loaded(_)) {
                 continue;
             }
             let d = certificate.directions(e, &state.points);
@@ -330,7 +284,6 @@ impl<S: Enclosing> Forces<'_, S> {
         let missed = self.all_missed(&pair.w, target, cover)?;
         let point = Ball::point;
         let middle = middle.ball() + beside + product / Ball::from(2);
-        let (eta, norm) = (point(eta), point(norm.sqrt().upper()));
         let force = point(cover.map_or(0.0, Cover::force));
         let loose = point(2.0 * self.loose) * (norm + eta / Ball::from(2));
         let factors = [0, 1].map(|side| most[side].max(missed.open[side]));

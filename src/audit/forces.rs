@@ -18,7 +18,7 @@ use nalgebra::Vector2;
 
 use super::balanced::{Balanced, friction};
 use super::certificate::{Certificate, Edge, Law, Piece, Role, Shape, Tied, exactly, is_oblique};
-use super::checks::Rejection;
+use super::checks::{Rejection, length};
 use super::dual::{Dual, WrongPair};
 use super::proof::Proof;
 use crate::kernel::{Ball, Enclosing, Scalar, Triangle};
@@ -267,15 +267,6 @@ pub enum WrongLifting {
     NotFinite,
 }
 
-/// R(w) without what w misses on Gamma_C.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct LiftingValue<S> {
-    /// L(w) - int m : eps(w)
-    middle: S,
-    /// An upper bound of |w|_a.
-    norm: f64,
-}
-
 /// w0 of the module's head: its Bernstein coefficients on the edges of Gamma_C.
 pub struct Cover {
     along: Vec<Option<[f64; 4]>>,
@@ -381,10 +372,8 @@ impl Certificate {
             Err(WrongPair::Rejected(rejection)) => return Err(rejection),
             Err(error) => return wrong(0, &error),
         };
-        let both = [(claimed.liftings.len(), found.len()), (claimed.pairs.len(), pairs.len())];
-        if let Some(&(found, expected)) = both.iter().find(|(found, expected)| found != expected) {
-            return Err(Rejection::Length { what: "intervals of forces", found, expected });
-        }
+        length("intervals of forces", claimed.liftings.len(), found.len())?;
+        length("intervals of forces", claimed.pairs.len(), pairs.len())?;
         let same = |a: [f64; 2], b: [f64; 2]| a.map(f64::to_bits) == b.map(f64::to_bits);
         let of_cover = (&claimed.cover, Ok(cover.map_or([0.0; 2], |cover| cover.between)));
         let of_pairs = claimed.pairs.iter().zip(pairs.into_iter().map(Ok));
@@ -414,15 +403,14 @@ impl Certificate {
         evidence: &Evidence,
     ) -> Result<Enclosed, WrongPair> {
         let mean = Mean::new(state, proof, self.lift());
-        if evidence.of.len() != self.edges.len() {
-            let (what, found) = ("boundaries of edges", evidence.of.len());
-            return Err(Rejection::Length { what, found, expected: self.edges.len() }.into());
-        }
+        length("boundaries of edges", evidence.of.len(), self.edges.len())?;
         let forces = Forces::new(self, state, &evidence.of, mean);
         let cover = evidence.cover.as_ref().and_then(|w| forces.cover(w).ok());
         let found = forces.between(&evidence.liftings, cover.as_ref());
-        let pairs = forces.by_pairs(&evidence.pairs, cover.as_ref())?;
-        Ok((cover, found, pairs.into_iter().map(|pair| pair.between).collect()))
+        let pairs = evidence.pairs.iter();
+        let pairs = pairs.map(|(target, dual)| forces.by_pair(*target, dual, cover.as_ref()));
+        let pairs = pairs.map(|found| Ok(found?.between)).collect::<Result<_, WrongPair>>()?;
+        Ok((cover, found, pairs))
     }
 }
 
@@ -457,10 +445,10 @@ impl<'a, S: Enclosing> Forces<'a, S> {
     pub fn shape(&self, w: &Lifting, target: ForceTarget) -> Result<Shape<S>, WrongLifting> {
         let certificate = self.certificate;
         let (vertices, cuts) = (certificate.vertices.len(), certificate.cuts.len());
-        let length = |found: usize, expected: usize| {
+        let same = |found: usize, expected: usize| {
             if found == expected { Ok(()) } else { Err(WrongLifting::Length { found, expected }) }
         };
-        length(w.vertices.len(), vertices)?;
+        same(w.vertices.len(), vertices)?;
         let mut points: Vec<Vector2<S>> = w.vertices.iter().map(|&w| exactly(w)).collect();
         let frames = &certificate.frames;
         for (e, edge) in certificate.edges.iter().enumerate() {
@@ -476,8 +464,8 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         points = certificate.with_cuts(points, &w.vertices, |p| !frames.contains_key(&p));
         let mut bulges = None;
         if let Some([at_cuts, beyond]) = &w.beyond {
-            length(at_cuts.len(), cuts)?;
-            length(beyond.len(), certificate.edges.len())?;
+            same(at_cuts.len(), cuts)?;
+            same(beyond.len(), certificate.edges.len())?;
             for (point, &beyond) in points[vertices..].iter_mut().zip(at_cuts) {
                 *point += exactly::<S>(beyond);
             }
@@ -611,27 +599,33 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         Ok(())
     }
 
-    /// L(w) - int m : eps(w) and |w|_a of some displacements, in one pass over the triangles.
-    fn values(&self, shapes: &[Shape<S>]) -> Vec<LiftingValue<S>> {
+    /// Encloses L(w) - int m : eps(w) + int |sigma_n| omega.
+    fn enclose(&self, w: &Shape<S>, missed: Missed, cover: Option<&Cover>) -> [f64; 2] {
         let (certificate, state) = (self.certificate, self.state);
-        let mut squares = vec![Ball::from(0); shapes.len()];
-        for (piece, triangle) in certificate.pieces.iter().zip(&state.triangles) {
-            for (square, w) in squares.iter_mut().zip(shapes) {
-                *square += energy(w, piece, triangle);
+        // Half of int f . w is in int tau : eps(w) / 2, as is half of the work of all tractions.
+        let mut middle = self.within(w) / S::from(2);
+        middle += certificate.work_of_tractions(&state.forces, w);
+        for (e, edge) in certificate.edges.iter().enumerate() {
+            if state.topology.owners[e][1].is_none() {
+                middle -= w.work_of(state.balance.forces[e], edge.ends, e) / S::from(2);
             }
         }
-        let value = |(w, square): (&Shape<S>, Ball)| {
-            // Half of int f . w is in int tau : eps(w) / 2, as is half of the work of all tractions.
-            let mut middle = self.within(w) / S::from(2);
-            middle += certificate.work_of_tractions(&state.forces, w);
-            for (e, edge) in certificate.edges.iter().enumerate() {
-                if state.topology.owners[e][1].is_none() {
-                    middle -= w.work_of(state.in_balance[e], edge.ends, e) / S::from(2);
-                }
-            }
-            LiftingValue { middle, norm: square.sqrt().upper() }
+        let triangles = certificate.pieces.iter().zip(&state.triangles);
+        let square = triangles
+            .fold(Ball::from(0), |sum, (piece, triangle)| sum + energy(w, piece, triangle));
+        let point = Ball::point;
+        let norm = point(square.sqrt().upper());
+        let force = point(cover.map_or(0.0, Cover::force));
+        let away = |side: usize| {
+            let covered = point(missed.covered[side]) * force;
+            let loose = point(self.loose) * norm;
+            let of_friction = point(missed.dragged);
+            (reach(norm, point(missed.open[side]), self.mean) + covered + of_friction + loose)
+                .upper()
         };
-        shapes.iter().zip(squares).map(value).collect()
+        let below = point(middle.lower()) - point(away(0));
+        let above = point(middle.upper()) + point(away(1));
+        [below.lower(), above.upper()]
     }
 
     /// phi - w . d on an edge of Gamma_C: what its Bernstein coefficients are at least and at most.
@@ -753,27 +747,9 @@ impl<'a, S: Enclosing> Forces<'a, S> {
                 return Err(WrongLifting::OnContact { edge: e, off: 1.0 });
             }
         }
-        let values = self.values(std::slice::from_ref(&shape));
         let missed = Missed { dragged: self.all_dragged(&shape, target), ..Missed::default() };
-        let between = self.enclose(values[0], missed, None);
+        let between = self.enclose(&shape, missed, None);
         Ok(Cover { along: along_all, between })
-    }
-
-    /// Encloses R(w) + int |sigma_n| omega.
-    fn enclose(&self, value: LiftingValue<S>, missed: Missed, cover: Option<&Cover>) -> [f64; 2] {
-        let point = Ball::point;
-        let norm = point(value.norm);
-        let force = point(cover.map_or(0.0, Cover::force));
-        let away = |side: usize| {
-            let covered = point(missed.covered[side]) * force;
-            let loose = point(self.loose) * norm;
-            let of_friction = point(missed.dragged);
-            (reach(norm, point(missed.open[side]), self.mean) + covered + of_friction + loose)
-                .upper()
-        };
-        let below = point(value.middle.lower()) - point(away(0));
-        let above = point(value.middle.upper()) + point(away(1));
-        [below.lower(), above.upper()]
     }
 
     /// The forces of some liftings, each between two numbers.
@@ -782,27 +758,15 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         liftings: &[(ForceTarget, Lifting)],
         cover: Option<&Cover>,
     ) -> Vec<Result<[f64; 2], WrongLifting>> {
-        let checked = liftings.iter().map(|(target, w)| {
-            let target = *target;
-            self.check_supports(w, target)?;
-            let shape = self.shape(w, target)?;
-            let missed = self.all_missed(&shape, target, cover)?;
-            Ok((shape, missed))
-        });
-        let checked: Vec<Result<_, WrongLifting>> = checked.collect();
-        let shapes: Vec<Shape<S>> = checked.iter().flatten().map(|(w, _)| w.clone()).collect();
-        let mut values = self.values(&shapes).into_iter();
-        let found = checked.into_iter().map(|checked| {
-            let (_, missed) = checked?;
-            let value = values.next().ok_or(WrongLifting::NotFinite)?;
-            let ends = self.enclose(value, missed, cover);
-            if ends.iter().all(|end| end.is_finite()) {
-                Ok(ends)
-            } else {
-                Err(WrongLifting::NotFinite)
-            }
-        });
-        found.collect()
+        let between = |(target, w): &(ForceTarget, Lifting)| {
+            self.check_supports(w, *target)?;
+            let shape = self.shape(w, *target)?;
+            let missed = self.all_missed(&shape, *target, cover)?;
+            let ends = self.enclose(&shape, missed, cover);
+            let is_finite = ends.iter().all(|end| end.is_finite());
+            if is_finite { Ok(ends) } else { Err(WrongLifting::NotFinite) }
+        };
+        liftings.iter().map(between).collect()
     }
 }
 

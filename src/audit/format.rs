@@ -2,7 +2,7 @@
 //! which holds them. docs/certificates.md, "The files", says what each of their words is.
 //!
 //! An array that a reader does not know is refused: what it says may change what the others prove. So a new one is added by its
-//! name, in [`encode`] and [`decode`], without another version of the format; files without it stay what they are.
+//! name, in [`decode`] and where certificates are written, without another version of the format; files without it stay what they are.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use super::proof::{Claim, Proof};
 use crate::kernel::{Material, Plane};
 
 /// The format that is written and read.
-const FORMAT: u32 = 10;
+pub const FORMAT: u32 = 10;
 
 /// certificate.json.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -140,38 +140,8 @@ impl Audit {
     }
 }
 
-const STATEMENT: &str = "|u - v|_a <= bound for the solution u of the contact problem with these data and the displacement v";
-
-/// certificate.json and certificate.bin of a certificate and what it proves, with forces.
-pub fn encode(
-    title: &str,
-    certificate: &Certificate,
-    proof: &Proof,
-    forces: &Evidence,
-) -> (Header, Vec<u8>) {
-    let mut out = arrays(certificate, &proof.shares);
-    let boundaries = match &forces.between {
-        Some(between) => {
-            add_forces(certificate, forces, between, &mut out);
-            forces.names.clone()
-        }
-        None => Vec::new(),
-    };
-    let ArrayWriter { arrays, bytes } = out;
-    let header = Header {
-        format: FORMAT,
-        title: title.to_owned(),
-        statement: STATEMENT.to_owned(),
-        degree: if certificate.curved.is_some() { 2 } else { 1 },
-        // Two doubles more: whoever reads the decimals of a number may be off by one.
-        bound: certificate.with_lifts(proof.bound).next_up().next_up(),
-        thickness: None,
-        boundaries,
-        arrays,
-        hash: hash(&bytes),
-    };
-    (header, bytes)
-}
+/// The statement of each certificate.
+pub const STATEMENT: &str = "|u - v|_a <= bound for the solution u of the contact problem with these data and the displacement v";
 
 /// The header in the bytes of certificate.json.
 ///
@@ -318,10 +288,10 @@ fn curved(arrays: &mut ArrayReader) -> Result<Curved, String> {
 
 /// Motion, boundary and the axis of its weight; where the weight is 1, and the width over which it falls; what the force lies
 /// between.
-type ForceEntry = ([usize; 3], [f64; 3], [f64; 2]);
+pub type ForceEntry = ([usize; 3], [f64; 3], [f64; 2]);
 
 /// The role of an edge, with its four numbers.
-type RoleEntry = (usize, [[f64; 2]; 2]);
+pub type RoleEntry = (usize, [[f64; 2]; 2]);
 
 /// The forces, with what proves them.
 fn forces(
@@ -462,132 +432,19 @@ fn dual_pairs(
 }
 
 /// An edge that holds something has the name of its boundary.
-fn is_named(edge: &Edge) -> bool {
+pub fn is_named(edge: &Edge) -> bool {
     matches!(edge.role, Role::Held(..) | Role::Supported { .. } | Role::Contact { .. })
 }
 
-/// Adds forces, with what proves them.
-fn add_forces(
-    certificate: &Certificate,
-    forces: &Evidence,
-    between: &Between,
-    out: &mut ArrayWriter,
-) {
-    let Evidence { of, cover, liftings, pairs, .. } = forces;
-    let number = |boundary: &Option<usize>| boundary.map_or(0, |k| k + 1);
-    let named =
-        certificate.edges.iter().zip(of).enumerate().filter(|(_, (edge, _))| is_named(edge));
-    out.add("boundaries", named.map(|(e, (_, of))| (e, number(of))));
-    let of_w0 = ForceTarget { boundary: None, motion: Motion::Along(None) };
-    let targets = std::iter::once(&of_w0).chain(liftings.iter().map(|(target, _)| target));
-    let ends = std::iter::once(&between.cover).chain(&between.liftings);
-    let entry = |(target, &ends): (&ForceTarget, &[f64; 2])| -> ForceEntry {
-        let (motion, weight) = match target.motion {
-            Motion::Along(weight) => (0, weight),
-            Motion::Axis(c) => (c + 1, None),
-            Motion::Turn => (3, None),
-        };
-        let (axis, [from, to], width) =
-            weight.map_or((0, [0.0; 2], 0.0), |r| (r.axis + 1, r.between, r.width));
-        ([motion, number(&target.boundary), axis], [from, to, width], ends)
-    };
-    out.add("forces", targets.zip(ends).map(entry));
-    let none = || Lifting {
-        vertices: vec![[0.0; 2]; certificate.vertices.len()],
-        beyond: liftings.iter().any(|(_, w)| w.beyond.is_some()).then(|| {
-            [certificate.cuts.len(), certificate.edges.len()].map(|count| vec![[0.0; 2]; count])
-        }),
-    };
-    let cover = cover.clone().unwrap_or_else(none);
-    let all = || std::iter::once(&cover).chain(liftings.iter().map(|(_, w)| w));
-    write_displacements("w", all, out);
-    let place = |target: &ForceTarget| liftings.iter().position(|(other, _)| other == target);
-    let served = pairs.iter().zip(&between.pairs);
-    let served = served.filter_map(|((target, pair), &ends)| Some((place(target)?, pair, ends)));
-    let served: Vec<(usize, &Dual, [f64; 2])> = served.collect();
-    out.add("dual forces", served.iter().map(|&(force, _, ends)| (force, ends)));
-    let pairs = || served.iter().map(|&(_, pair, _)| pair);
-    write_displacements("dual w", || pairs().map(|pair| &pair.w), out);
-    out.add("dual edges", pairs().flat_map(|pair| &pair.roles).map(role_entry));
-}
-
-fn write_displacements<'a, W: Iterator<Item = &'a Lifting>>(
-    prefix: &str,
-    all: impl Fn() -> W,
-    out: &mut ArrayWriter,
-) {
-    out.add(prefix, all().flat_map(|w| &w.vertices).copied());
-    for (k, what) in ["at cuts", "bulges"].into_iter().enumerate() {
-        let beyond = all().flat_map(|w| &w.beyond).flat_map(|both| &both[k]);
-        out.add(&format!("{prefix} {what}"), beyond.copied());
-    }
-}
-
-fn arrays(certificate: &Certificate, shares: &[f64]) -> ArrayWriter {
-    let mut out = ArrayWriter::default();
-    let prescribed =
-        |data: &[Option<f64>; 2]| data.map(|u| (usize::from(u.is_some()), u.unwrap_or(0.0)));
-    out.add("vertices", certificate.vertices.iter().copied());
-    out.add("displacement", certificate.displacement.iter().copied());
-    out.add("prescribed", certificate.prescribed.iter().map(prescribed));
-    out.add("cuts", certificate.cuts.iter().map(|cut| (cut.ends, cut.at)));
-    let mut tensors: Vec<Material<f64>> = Vec::new();
-    for material in certificate.pieces.iter().map(|piece| piece.material) {
-        if !material.is_isotropic() && !tensors.contains(&material) {
-            tensors.push(material);
-        }
-    }
-    let moduli = |material: &Material<f64>| match tensors.iter().position(|t| t == material) {
-        Some(place) => [place as f64, 0.0],
-        None => [material.lambda(), material.mu()],
-    };
-    let piece = |piece: &Piece| -> PieceEntry {
-        let Piece { vertices, edges, body, oscillation, ref material } = *piece;
-        ([vertices, edges], moduli(material), body, oscillation)
-    };
-    out.add("triangles", certificate.pieces.iter().map(piece));
-    out.add("tensors", tensors.iter().map(Material::stiffness));
-    let edges = certificate.edges.iter();
-    out.add("edges", edges.map(|edge| -> EdgeEntry { (edge.ends, role_entry(&edge.role)) }));
-    // Those of contact that are not the edges' normals, and those of edges that are held along one alone.
-    let direction = |(e, edge): (usize, &Edge)| match edge.role {
-        Role::Contact { along, .. } => Some((e, along?)),
-        Role::Supported { along, .. } => Some((e, [along; 2])),
-        _ => None,
-    };
-    out.add("directions", certificate.edges.iter().enumerate().filter_map(direction));
-    let law = |(e, edge): (usize, &Edge)| -> Option<(usize, usize, [[f64; 2]; 2])> {
-        let Role::Contact { law, .. } = edge.role else { return None };
-        match law {
-            Law::Contact => None,
-            Law::Sliding => Some((e, 1, [[0.0; 2]; 2])),
-            Law::Bonded { shear, offset } => Some((e, 2, [shear, offset])),
-            Law::Friction { shear, bound } => Some((e, 3, [shear, bound])),
-        }
-    };
-    out.add("laws", certificate.edges.iter().enumerate().filter_map(law));
-    out.add("frames", certificate.frames.iter().map(|(&point, &d)| (point, d)));
-    if let Some(Curved { at_cuts, prescribed: data_at_cuts, bulges, data }) = &certificate.curved {
-        out.add("displacement at cuts", at_cuts.iter().copied());
-        out.add("prescribed at cuts", data_at_cuts.iter().map(prescribed));
-        out.add("bulges", bulges.iter().zip(data).map(|(&bulge, &data)| (bulge, data)));
-    }
-    out.add("lifts", certificate.lifts.iter().map(|lift| (lift.corners, lift.norm)));
-    out.add("polygon", certificate.polygon.iter().copied());
-    let is_second = |e: &usize| certificate.edges[*e].role == Role::Facing;
-    let pairs = certificate.facing.iter().filter(|(_, other)| is_second(other));
-    out.add("pairs", pairs.map(|(&e, &other)| [e, other]));
-    out.add("shares", shares.iter().copied());
-    out
-}
-
 /// A number or numbers in words of eight bytes each, least significant first.
-trait Words: Sized {
+pub trait Words: Sized {
     /// Adds `f` for each double, `n` for each whole number.
     fn name(name: &mut String);
 
+    /// Adds the words themselves.
     fn write(&self, bytes: &mut Vec<u8>);
 
+    /// Takes as many words as it needs.
     fn read(words: &mut impl Iterator<Item = u64>) -> Self;
 }
 
@@ -655,30 +512,11 @@ words_of_tuple!(A 0, B 1);
 words_of_tuple!(A 0, B 1, C 2);
 words_of_tuple!(A 0, B 1, C 2, D 3);
 
-fn name_of<T: Words>() -> String {
+/// The letters of all words of an entry.
+pub fn name_of<T: Words>() -> String {
     let mut name = String::new();
     T::name(&mut name);
     name
-}
-
-/// Arrays one after the other.
-#[derive(Default)]
-struct ArrayWriter {
-    arrays: Vec<Array>,
-    bytes: Vec<u8>,
-}
-
-impl ArrayWriter {
-    fn add<T: Words>(&mut self, name: &str, entries: impl Iterator<Item = T>) {
-        let words = name_of::<T>();
-        let before = self.bytes.len();
-        self.bytes.reserve(8 * words.len() * entries.size_hint().0);
-        entries.for_each(|entry| entry.write(&mut self.bytes));
-        let entries = (self.bytes.len() - before) / (8 * words.len());
-        if entries > 0 {
-            self.arrays.push(Array { name: name.to_owned(), words, entries });
-        }
-    }
 }
 
 /// The arrays that have not been read yet: their words, in letters and in bytes.
@@ -761,7 +599,7 @@ fn given(data: [(usize, f64); 2]) -> Result<[Option<f64>; 2], String> {
 }
 
 /// Vertices and edges; lambda and mu, or the number of a tensor and 0, as no material has mu = 0; body force; oscillation.
-type PieceEntry = ([[usize; 3]; 2], [f64; 2], [[f64; 2]; 3], f64);
+pub type PieceEntry = ([[usize; 3]; 2], [f64; 2], [[f64; 2]; 3], f64);
 
 fn piece(
     ([vertices, edges], [lambda, mu], body, oscillation): PieceEntry,
@@ -778,19 +616,7 @@ fn piece(
 }
 
 /// The ends of an edge, and its role.
-type EdgeEntry = ([usize; 2], RoleEntry);
-
-fn role_entry(role: &Role) -> RoleEntry {
-    match *role {
-        Role::Inner(force) => (0, force),
-        Role::Held(held, force) => (usize::from(held[0]) + 2 * usize::from(held[1]), force),
-        Role::Loaded(traction) => (4, traction),
-        Role::Pressed(pressure) => (5, [pressure, [0.0; 2]]),
-        Role::Contact { pressure, gap, .. } => (6, [pressure, gap]),
-        Role::Supported { force, traction, .. } => (7, [force, traction]),
-        Role::Facing => (8, [[0.0; 2]; 2]),
-    }
-}
+pub type EdgeEntry = ([usize; 2], RoleEntry);
 
 /// The role of edge `e`, but for its directions.
 fn role(e: usize, number: usize, [start, end]: [[f64; 2]; 2]) -> Result<Role, String> {

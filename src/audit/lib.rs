@@ -9,13 +9,12 @@
 //! | [`certificate`] | v, tau and the problem that they belong to, as numbers |
 //! | [`format`](mod@format) | the same as two files |
 //! | `checks`, `on_contact` | what they must satisfy; the edges of Gamma_C |
-//! | `balance`, `balanced` | tractions in exact equilibrium |
+//! | `balance`, [`balanced`] | tractions in exact equilibrium |
 //! | [`proof`] | the bound |
 //! | [`forces`], [`dual`] | forces of the true solution between two numbers; to second order |
 #![cfg(not(kani))]
 
 mod balance;
-#[doc(hidden)]
 pub mod balanced;
 pub mod certificate;
 mod checks;

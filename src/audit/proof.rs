@@ -25,15 +25,16 @@
 
 pub use super::balance::Unbalanced;
 pub use super::certificate::{
-    Certificate, Curved, Cut, Edge, Law, Lift, Owner, Piece, Reservations, Role,
+    Certificate, Curved, Cut, Edge, Law, Lift, Piece, Reservations, Role,
 };
-pub use super::checks::Rejection;
+pub use super::checks::{Prescribed, Rejection};
 
 use nalgebra::Vector2;
 
-use super::balance::Closed;
+use super::balance::Equilibrium;
 use super::balanced::Balanced;
 use super::certificate::{Shape, exactly, place};
+use super::checks::length;
 use super::forces::Evidence;
 use crate::kernel::composite::{Composite, Wrench};
 use crate::kernel::{Ball, Enclosing};
@@ -103,12 +104,9 @@ impl Certificate {
     pub fn audit(&self, claim: &Claim) -> Result<Proof, Rejection> {
         let state = self.balanced::<Ball>(self.topology()?)?;
         let double_area = |t: usize| state.triangles[t].double_area();
-        self.check_balance((&state.forces, &state.resultants), double_area, &state.closed)?;
+        self.check_balance(&state.forces, double_area, &state.balance)?;
         let proof = self.sum(&state)?;
-        if claim.shares.len() != proof.shares.len() {
-            let (found, expected) = (claim.shares.len(), proof.shares.len());
-            return Err(Rejection::Length { what: "claimed shares", found, expected });
-        }
+        length("claimed shares", claim.shares.len(), proof.shares.len())?;
         let same = |a: f64, b: f64| a.to_bits() == b.to_bits();
         for (triangle, (&claimed, &found)) in claim.shares.iter().zip(&proof.shares).enumerate() {
             if !same(claimed, found) {
@@ -123,13 +121,12 @@ impl Certificate {
         Ok(proof)
     }
 
-    /// The tractions balance on every triangle to the rounding of doubles: the forces on the edges, with what they and the body
-    /// force amount to.
+    /// The tractions balance on every triangle to the rounding of doubles, before what equilibrium takes: the forces on the edges.
     pub(crate) fn check_balance<S: Enclosing>(
         &self,
-        (forces, resultants): (&[[Vector2<S>; 2]], &[Wrench<S>]),
+        forces: &[[Vector2<S>; 2]],
         double_area: impl Fn(usize) -> S,
-        closed: &Closed<S>,
+        balance: &Equilibrium<S>,
     ) -> Result<(), Rejection> {
         let size = |x: S| x.upper().max(-x.lower());
         // The sum of the forces' sizes, and the largest component of the edge.
@@ -146,11 +143,11 @@ impl Certificate {
             let body: f64 = piece.body.iter().flatten().map(|f| f.abs()).sum();
             let loads = if body == 0.0 { 0.0 } else { body * size(double_area(t)) };
             let allowed = IMBALANCE * (forces + loads);
-            let Wrench { force, moment, .. } = &resultants[t];
+            let Wrench { force, moment, .. } = &balance.resultants[t];
             // Places of cuts are not doubles: what their balls leave open may be balance.
             let near = |x: &S, most: f64| x.lower() <= most && x.upper() >= -most;
             // What a support against a free motion takes is not on the edges.
-            let is_stopped = closed.stops.iter().any(|stop| stop.root == t);
+            let is_stopped = balance.stops.iter().any(|stop| stop.root == t);
             let balances = force.iter().all(|f| near(f, allowed)) && near(moment, allowed * reach);
             if !(is_stopped || balances) {
                 return Err(Rejection::OutOfBalance { triangle: t });
@@ -160,7 +157,6 @@ impl Certificate {
     }
 
     /// The share of triangle `t` in the right side, C eps(v) being that far from tau.
-    #[doc(hidden)]
     pub fn share<S: Enclosing>(&self, state: &Balanced<S>, t: usize, apart: &Composite<S>) -> S {
         let piece = &self.pieces[t];
         let distance = apart.energy(&piece.material(), state.triangles[t].double_area());
@@ -198,7 +194,6 @@ impl Certificate {
     }
 
     /// The right side of the theorem.
-    #[doc(hidden)]
     pub fn sum<S: Enclosing>(&self, state: &Balanced<S>) -> Result<Proof, Rejection> {
         let Balanced { triangles, v, forces, .. } = state;
         let zero = S::from(0);
@@ -220,7 +215,7 @@ impl Certificate {
         let bound = square.split(|_| zero, |s| s).sqrt().upper();
         let norm = norm.split(|_| zero, |n| n).sqrt().lower();
         let energy = [energy.lower(), energy.upper()];
-        let stop = state.closed.stops.iter().map(|stop| stop.share).fold(0.0, f64::max);
+        let stop = state.balance.stops.iter().map(|stop| stop.share).fold(0.0, f64::max);
         let proof = Proof { shares, bound, norm, energy, stop };
         if proof.bound.is_finite() && norm.is_finite() && proof.energy.iter().all(|e| e.is_finite())
         {

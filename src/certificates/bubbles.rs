@@ -20,7 +20,7 @@
 use nalgebra::Vector2;
 
 use super::sweeps::{factor_positive, substitute};
-use crate::kernel::composite::{Composite, Frame, Loads, complementary};
+use crate::kernel::composite::{Composite, Frame, Loads};
 use crate::kernel::{Material, Stress, Triangle};
 use crate::model::quadrature;
 
@@ -84,7 +84,7 @@ pub(super) fn take_off(
             let [x, y] = edges[i].into();
             Stress::new([x * x, y * y, x * y]) * along[i]
         });
-        square += *weight * complementary(material, stress[0] + stress[1] + stress[2]);
+        square += *weight * material.squares().of_stress(stress[0] + stress[1] + stress[2]);
     }
     square.sqrt()
 }
@@ -107,7 +107,7 @@ pub(super) fn of_traction(
             l[(side + 1) % 3] += mu[1];
             l[(side + 2) % 3] += mu[2];
             let there = tau.at(side, *mu) + bubble * (l[(i + 1) % 3] * l[(i + 2) % 3]);
-            square += weight * part * complementary(material, there);
+            square += weight * part * material.squares().of_stress(there);
         }
     }
     square.sqrt()

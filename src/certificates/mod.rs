@@ -13,26 +13,26 @@
 //! | `sweeps` | a better tau |
 //! | `oscillation` | data outside the exact class |
 //! | `binding` | whether a certificate is one of a problem |
+//! | `encode` | certificates as files |
 //! | `quantities`, `lifting` | forces between two numbers, and where contact can act, by `signorini_audit::forces`; the displacements that prove them |
 //! | `adapt` | meshes that are refined until the bound meets a target |
 
-#[doc(hidden)]
 pub mod adapt;
 mod admissible;
-#[doc(hidden)]
 pub mod binding;
 mod bubbles;
 mod build;
 mod contact;
 mod data;
 mod divide;
+#[cfg(feature = "files")]
+mod encode;
 mod errors;
 mod field;
 mod lifting;
 mod oscillation;
 mod parts;
 mod pressed;
-#[doc(hidden)]
 pub mod quantities;
 mod quarters;
 mod sweeps;
@@ -45,6 +45,8 @@ use nalgebra::Vector2;
 use self::balanced::Balanced;
 use self::build::Built;
 use self::certificate::Shape;
+#[cfg(feature = "files")]
+pub use self::encode::encode;
 pub use self::errors::CertifyError;
 use self::field::Field;
 use self::parts::ProblemParts;

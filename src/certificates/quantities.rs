@@ -429,9 +429,8 @@ impl<'a> Lifters<'a> {
     ) -> Option<Tried> {
         let w = self.at(of_w)?.1.field(target).ok()?;
         let (open, lifter) = self.at(of_rho)?;
-        let pair = [(target, lifter.pair((target, &w), built, open).ok()?)];
-        let found = forces.by_pairs(&pair, cover).ok()?.pop()?;
-        let [(_, pair)] = pair;
+        let pair = lifter.pair((target, &w), built, open).ok()?;
+        let found = forces.by_pair(target, &pair, cover).ok()?;
         Some(Tried { found, pair })
     }
 }

@@ -17,8 +17,8 @@ use std::collections::VecDeque;
 
 use nalgebra::Vector2;
 
-use super::balanced::{Balanced, Topology};
-use super::certificate::{Certificate, Edge, Role};
+use super::balanced::{Balanced, Change, Topology, Unbalanced};
+use super::certificate::{Certificate, Edge, Law, Role, turned};
 use super::proof::Rejection;
 use crate::kernel::composite::{Composite, Frame, Loads};
 use crate::kernel::{Material, Stress, Triangle};
@@ -60,12 +60,74 @@ pub(super) fn improve(
     for sweep in 0..count {
         sweeps.go(sweep % 2 == 1);
     }
-    state.give(certificate);
+    give(&state, certificate);
     sweeps.add_to(certificate, &state);
     // The sums have left their rounding errors.
-    state.rebalance(certificate)?;
-    state.give(certificate);
+    rebalance(&mut state, certificate)?;
+    give(&state, certificate);
     Ok(state.topology)
+}
+
+/// Gives the edges of the certificate the tractions that balance.
+fn give(state: &Balanced<f64>, certificate: &mut Certificate) {
+    for (e, &now) in state.balance.forces.iter().enumerate() {
+        let units = certificate.units(e, &state.points);
+        match &mut certificate.edges[e].role {
+            Role::Inner(force) | Role::Held(_, force) => *force = now.map(Into::into),
+            Role::Supported { along, force, .. } => {
+                let d = Vector2::from(*along);
+                *force = now.map(|f| f.dot(&d) / d.dot(&d));
+            }
+            Role::Contact { pressure, law, .. } if law.is_tied() => {
+                // Where the direction turns it is one, and so is the work on both ends.
+                let work = [0, 1].map(|k| now[k].dot(&units[k]));
+                let square = [0, 1].map(|k| units[k].dot(&units[k]));
+                if units[0] != units[1] {
+                    *pressure = [(work[0] + work[1]) / (square[0] + square[1]); 2];
+                    continue;
+                }
+                for k in 0..2 {
+                    let unit = units[k];
+                    pressure[k] = work[k] / square[k];
+                    if let Law::Bonded { shear, .. } = law {
+                        shear[k] = now[k].dot(&turned(unit)) / unit.dot(&unit);
+                    }
+                }
+            }
+            Role::Loaded(_) | Role::Pressed(_) | Role::Contact { .. } | Role::Facing => {}
+        }
+    }
+    for &Change { edge, factors } in &state.balance.changes {
+        if let Role::Contact { pressure, .. } = &mut certificate.edges[edge].role {
+            (0..2).for_each(|k| pressure[k] = (pressure[k] * (1.0 + factors[k])).min(0.0));
+        }
+    }
+}
+
+/// Takes over the forces that the certificate has now on edges between triangles and of Gamma_D.
+fn rebalance(state: &mut Balanced<f64>, certificate: &Certificate) -> Result<(), Unbalanced> {
+    let now = certificate.tractions(&state.points);
+    for ((force, edge), now) in state.forces.iter_mut().zip(&certificate.edges).zip(now) {
+        let is_given = match edge.role {
+            Role::Contact { law, .. } => !law.is_tied(),
+            role => matches!(role, Role::Loaded(_) | Role::Pressed(_) | Role::Facing),
+        };
+        if !is_given {
+            *force = now;
+        }
+    }
+    for &Change { edge, factors } in &state.balance.changes {
+        (0..2).for_each(|k| state.forces[edge][k] *= 1.0 + factors[k]);
+    }
+    for (&e, &other) in &certificate.facing {
+        if certificate.edges[e].role == Role::Facing {
+            let [a, b] = state.forces[other];
+            state.forces[e] = [-b, -a];
+        }
+    }
+    let Balanced { points, triangles, topology, forces, balance, .. } = state;
+    *balance = certificate.equilibrium((points, triangles), topology, forces)?;
+    Ok(())
 }
 
 /// An unknown of a triangle as an unknown of a star.
@@ -140,7 +202,7 @@ impl Sweeps {
                     if seen.is_none() {
                         edges.push(e);
                     }
-                    let is_left = state.topology.owners[e][0].is_some_and(|o| o.piece == triangle);
+                    let is_left = state.topology.owners[e][0] == Some(triangle);
                     let sign = if is_left { 1.0 } else { -1.0 };
                     places.push(StarUnknown { triangle, unknown: 9 + side, in_star, sign });
                 }

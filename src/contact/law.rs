@@ -173,13 +173,10 @@ impl EdgeRule {
             return EdgeIntegrals { energy: 0.0, gradient, hessian, active: 0.0 };
         }
         match (self, radii) {
-            (EdgeRule::Exact, None) => E::exact(p.map(DoubleDouble::head)),
-            (EdgeRule::Exact, Some(radii)) => {
-                E::exact_in_revolution(p.map(DoubleDouble::head), radii)
-            }
+            (EdgeRule::Exact, radii) => E::exact_with(p.map(DoubleDouble::head), radii),
             (EdgeRule::Gauss(rule), radii) => {
                 let (points, radii) = (in_double_doubles(rule), fine(radii));
-                let fine = edge_integral::gauss_in_revolution::<E, _, _, _>(p, radii, points);
+                let fine = edge_integral::gauss::<E, _, _, _>(p, radii, points);
                 EdgeIntegrals {
                     energy: fine.energy.head(),
                     gradient: fine.gradient.map(DoubleDouble::head),

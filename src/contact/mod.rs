@@ -4,6 +4,7 @@
 pub mod contact_line;
 pub mod discretization;
 pub mod friction;
+mod hoop;
 pub mod law;
 #[doc(hidden)]
 pub mod moments;

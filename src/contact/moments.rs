@@ -9,7 +9,7 @@ use super::friction;
 use super::law::{EdgeRule, Law};
 use super::piece::Piece;
 use crate::kernel::ball::{PreciseBall, larger};
-use crate::kernel::edge_integral::{bilateral, gauss_in_revolution, roots, times_radius, value_at};
+use crate::kernel::edge_integral::{bilateral, gauss, roots, times_radius, value_at};
 use crate::kernel::friction::gauss_friction;
 use crate::kernel::{Element, Response};
 use crate::model::element::{Degree, with_element};
@@ -60,7 +60,7 @@ fn moments_of<E: Element<N, M>, const N: usize, const M: usize>(
     match rule {
         EdgeRule::Gauss(points) => {
             let points = points.iter().map(|&(s, w)| (PreciseBall::from(s), PreciseBall::from(w)));
-            gauss_in_revolution::<E, _, _, _>(p, radii, points).gradient
+            gauss::<E, _, _, _>(p, radii, points).gradient
         }
         // Bernstein's coefficients bound P.
         EdgeRule::Exact if degree.bernstein(&p).iter().all(|c| c.upper() <= 0.0) => {
@@ -320,7 +320,7 @@ mod tests {
     fn with_the_weight_of_revolution_too_and_without_it_the_kernel_is_outside() {
         let radii = [0.0, 1.5];
         for p in values().into_iter().skip(9) {
-            let exact = P2::exact_in_revolution(p, radii).gradient;
+            let exact = P2::exact_with(p, Some(radii)).gradient;
             let [with, without] = [Some(radii.map(PreciseBall::from)), None].map(|radii| {
                 moments(&EdgeRule::Exact, Degree::Two, radii, &p.map(PreciseBall::from))
             });

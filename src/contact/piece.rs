@@ -11,11 +11,11 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
+use super::hoop::HoopStress;
 use super::law::{EdgeRule, Integrals, Law, is_open};
 use super::stress_points::Nodal;
-use crate::kernel::axial::{HoopStress, edge_mass};
 use crate::kernel::contact_edge::integral_of_product;
-use crate::kernel::edge_integral::{self, weighted_product};
+use crate::kernel::edge_integral::{self, edge_mass, weighted_product};
 use crate::kernel::friction::clip;
 use crate::kernel::positive_part;
 use crate::kernel::{ContactEdge, DoubleDouble, Element, Material, Response, Scalar, Triangle};

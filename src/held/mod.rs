@@ -5,7 +5,6 @@ pub(crate) mod clearance;
 pub(crate) mod corners;
 pub(crate) mod grip;
 pub(crate) mod holding;
-#[doc(hidden)]
 pub mod solvability;
 
 pub use crate::model::rigid::{FreeMotion, Parts};

@@ -4,9 +4,10 @@ use std::path::Path;
 
 use super::input;
 use super::input::Failure;
+pub use crate::certificates::encode;
 use crate::certificates::format;
 use crate::certificates::format::Refused;
-pub use crate::certificates::format::{Audit, Header, decode, encode, hash};
+pub use crate::certificates::format::{Audit, Header, decode, hash};
 use crate::memory;
 use crate::quote;
 

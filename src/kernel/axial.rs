@@ -10,7 +10,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::triangle::on_edge;
+use super::edge_integral::edge_mass;
 use super::{Element, Material, Scalar, Stress, Triangle};
 
 /// int r f g over a triangle for functions of degree p - 1 in terms of their values at the points: entry (a, b) is that of f at a
@@ -182,13 +182,6 @@ pub fn weighted<S: Scalar>(
     (1..points).fold(states[0].0 * mass[0][b], |sum, a| sum + states[a].0 * mass[a][b])
 }
 
-/// int r f g over an edge for affine functions in terms of their values at its ends.
-pub fn edge_mass<S: Scalar>([a, b]: [S; 2]) -> [[S; 2]; 2] {
-    let (three, twelve) = (S::from(3), S::from(12));
-    let across = (a + b) / twelve;
-    [[(three * a + b) / twelve, across], [across, (a + three * b) / twelve]]
-}
-
 /// The sharp constant R |T| / |E| of int_E r w^2 <= R int_T r w^2 for w of degree p - 1, with r at the two ends of E and at the
 /// corner opposite: r_E / r_c for P1, with the means of r on the edge and the triangle; for P2 a root of a quadratic, at most 4 and 3
 /// where r is constant.
@@ -270,40 +263,6 @@ where
 
 fn sum<S: Scalar>([a, b, c]: [S; 3]) -> S {
     a + b + c
-}
-
-/// The hoop strain in the functional of the stress s(v) = n~ . sigma(v) n on an edge of a triangle.
-#[derive(Clone, Copy, Debug)]
-pub struct HoopStress<S, const N: usize> {
-    /// The part of each node's v_r in s at the two ends of a piece of the edge.
-    pub at_ends: [[S; N]; 2],
-    /// The sums of these: s of the displacement e_r, which is no rigid motion.
-    pub ring: [S; 2],
-}
-
-impl<S: Scalar, const N: usize> HoopStress<S, N> {
-    /// At the `places` of the ends on edge `i` (mod 3) of a triangle with these `radii`, with the unit outward normal `n` and the
-    /// directions n~ at the ends.
-    pub fn new<E: Element<N, M>, const M: usize>(
-        radii: [S; 3],
-        (i, places): (usize, [S; 2]),
-        n: Vector2<S>,
-        directions: [Vector2<S>; 2],
-        material: &Material<S>,
-    ) -> Self {
-        let mass = mass::<E, S, N, M>(radii);
-        let shares = shares::<E, N, M>();
-        let (stress, _) = material.stress_of_revolution(Matrix2::zeros(), S::from(1));
-        let traction = directions.map(|d| stress.traction(n).dot(&d));
-        let at_ends = |means: [S; 3]| {
-            let theta = projected(&mass, means, E::POINTS);
-            [0, 1].map(|a| traction[a] * value_at::<E, S, N, M>(theta, on_edge(i, places[a])))
-        };
-        let of_node = |j: usize| at_ends(shares.map(|row| S::from(row[j]) / S::from(30)));
-        let nodes: [[S; 2]; N] = std::array::from_fn(of_node);
-        let ring = at_ends(shares.map(|row| S::from(row.iter().sum::<i32>()) / S::from(30)));
-        HoopStress { at_ends: [0, 1].map(|a| std::array::from_fn(|j| nodes[j][a])), ring }
-    }
 }
 
 #[cfg(test)]

@@ -55,15 +55,20 @@ pub fn larger(a: f64, b: f64) -> f64 {
 
 /// The number in the middle of a ball: a sum of two doubles, the first of which is the sum rounded to nearest. Its operations round,
 /// and bound what they are off by.
-pub trait Centre: nalgebra::Scalar + Copy + Neg<Output = Self> {
-    /// The number that is this double.
-    fn from_double(value: f64) -> Self;
-
+pub trait Centre:
+    nalgebra::Scalar + Copy + From<f64> + Into<DoubleDouble> + Neg<Output = Self>
+{
     /// The nearest double.
-    fn head(self) -> f64;
+    #[inline]
+    fn head(self) -> f64 {
+        self.into().head()
+    }
 
     /// The difference from the nearest double.
-    fn tail(self) -> f64;
+    #[inline]
+    fn tail(self) -> f64 {
+        self.into().tail()
+    }
 
     /// A double that its magnitude is not below.
     #[inline]
@@ -86,21 +91,6 @@ pub trait Centre: nalgebra::Scalar + Copy + Neg<Output = Self> {
 }
 
 impl Centre for f64 {
-    #[inline]
-    fn from_double(value: f64) -> f64 {
-        value
-    }
-
-    #[inline]
-    fn head(self) -> f64 {
-        self
-    }
-
-    #[inline]
-    fn tail(self) -> f64 {
-        0.0
-    }
-
     #[inline]
     fn rounded_sum(self, other: f64) -> (f64, f64) {
         let sum = self + other;
@@ -228,7 +218,7 @@ impl<C: Centre> MidRad<C> {
         }
         let centre = lo / 2.0 + hi / 2.0;
         let radius = (hi - centre).max(centre - lo).next_up();
-        MidRad { centre: C::from_double(centre), radius }
+        MidRad { centre: C::from(centre), radius }
     }
 
     /// The square roots of its nonnegative numbers; NaN if it has none.
@@ -257,7 +247,7 @@ impl<C: Centre> MidRad<C> {
 impl<C: Centre> From<f64> for MidRad<C> {
     #[inline]
     fn from(value: f64) -> Self {
-        MidRad::point(C::from_double(value))
+        MidRad::point(C::from(value))
     }
 }
 
@@ -332,7 +322,7 @@ impl<C: Centre> Div for MidRad<C> {
     fn div(self, other: Self) -> Self {
         let distance = other.centre.least() - other.radius;
         if !(distance > 0.0) {
-            return MidRad { centre: C::from_double(f64::NAN), radius: f64::INFINITY };
+            return MidRad { centre: C::from(f64::NAN), radius: f64::INFINITY };
         }
         if self.is_zero() {
             return self;
@@ -375,7 +365,7 @@ where
 {
     #[inline]
     fn exactly(value: f64) -> Self {
-        MidRad::point(C::from_double(value))
+        MidRad::point(C::from(value))
     }
 
     #[inline]
@@ -408,7 +398,7 @@ mod tests {
     }
 
     fn around<C: Centre>(centre: f64, radius: f64) -> MidRad<C> {
-        MidRad::around(C::from_double(centre), radius)
+        MidRad::around(C::from(centre), radius)
     }
 
     fn zeros_stay_sharp<C: Centre>() {

@@ -148,7 +148,7 @@ impl<S: Scalar> Affine<S> {
     /// |T| / 12 (sum s_i^2 + (sum s_i)^2).
     pub fn energy(&self, material: &Material<S>, double_area: S) -> S {
         if self.beyond.is_none() {
-            return complementary(material, self.base) * double_area / S::from(2);
+            return material.squares().of_stress(self.base) * double_area / S::from(2);
         }
         let [a, b, c] = [0, 1, 2].map(|i| self.at_corner(i));
         let squares = material.squares();
@@ -342,11 +342,6 @@ impl<S: Scalar> Wrench<S> {
     }
 }
 
-/// tau : C^-1 tau.
-pub fn complementary<S: Scalar>(material: &Material<S>, tau: Stress<S>) -> S {
-    material.squares().of_stress(tau)
-}
-
 /// The symmetric part of a (x) b.
 fn symmetric<S: Scalar>(a: Vector2<S>, b: Vector2<S>) -> Stress<S> {
     let xy = (a[0] * b[1] + a[1] * b[0]) / S::from(2);
@@ -457,7 +452,7 @@ mod tests {
         let mut integral = 0.0;
         for i in 0..3 {
             for (mu, weight) in rule() {
-                integral += weight * part * complementary(&material, tau.at(i, mu));
+                integral += weight * part * material.squares().of_stress(tau.at(i, mu));
             }
         }
         let energy = tau.energy(&material, T.double_area());

@@ -55,7 +55,7 @@ impl DoubleDouble {
 
 /// Splits a into a sum of two doubles of 26 bits each (Veltkamp).
 #[inline]
-fn halves(a: f64) -> [f64; 2] {
+pub fn halves(a: f64) -> [f64; 2] {
     let c = 134_217_729.0 * a;
     let high = c - (c - a);
     [high, a - high]
@@ -125,31 +125,16 @@ impl Div for DoubleDouble {
 crate::entry_of_nalgebra!(DoubleDouble);
 
 /// 2^-103 >= twice the rounding error of a sum beside the magnitudes of its terms' heads (Lemma 7.4 of docs/a-posteriori.md).
-const SUM: f64 = 9.860_761_315_262_648e-32;
+pub const SUM: f64 = 9.860_761_315_262_648e-32;
 
 /// 2^-101 >= twice the rounding error of a product beside its magnitude.
-const PRODUCT: f64 = 4.0 * SUM;
+pub const PRODUCT: f64 = 4.0 * SUM;
 
 /// 2^-890: the error of a product of less than 2^-900 in magnitude, however it underflows, is less.
-const UNDERFLOW: f64 = f64::from_bits((1023 - 890) << 52);
+pub const UNDERFLOW: f64 = f64::from_bits((1023 - 890) << 52);
 
 /// Sums and products with fewer operations than those of the operators, and with the bounds of Lemma 7.4.
 impl Centre for DoubleDouble {
-    #[inline]
-    fn from_double(value: f64) -> Self {
-        DoubleDouble::from(value)
-    }
-
-    #[inline]
-    fn head(self) -> f64 {
-        self.head
-    }
-
-    #[inline]
-    fn tail(self) -> f64 {
-        self.tail
-    }
-
     #[inline]
     fn rounded_sum(self, other: Self) -> (Self, f64) {
         let heads = DoubleDouble::sum(self.head, other.head);
@@ -201,72 +186,15 @@ impl Scalar for DoubleDouble {
     }
 }
 
-/// A factor of several products, its head split once for all of them.
-#[derive(Clone, Copy, Debug)]
-pub struct Multiplier {
-    number: DoubleDouble,
-    halves: [f64; 2],
-}
-
-impl From<DoubleDouble> for Multiplier {
-    #[inline]
-    fn from(number: DoubleDouble) -> Self {
-        Multiplier { number, halves: halves(number.head) }
-    }
-}
-
-impl Multiplier {
-    /// The product of the heads, and what rounding and the tails add to it.
-    #[inline]
-    fn times(self, other: Self) -> [f64; 2] {
-        let (a, b) = (self.number, other.number);
-        let head = a.head * b.head;
-        let ([a1, a2], [b1, b2]) = (self.halves, other.halves);
-        let tail = ((a1 * b1 - head) + a1 * b2 + a2 * b1) + a2 * b2;
-        [head, tail + (a.head * b.tail + a.tail * b.head)]
-    }
-}
-
-impl DoubleDouble {
-    /// Adds a b + c d, rounded, and bounds the error: quicker than the operators, which find the halves of each factor anew.
-    #[inline]
-    pub fn rounded_sum_with_products(
-        self,
-        [(a, b), (c, d)]: [(Multiplier, Multiplier); 2],
-    ) -> (Self, f64) {
-        let [[p, p_tail], [q, q_tail]] = [a.times(b), c.times(d)];
-        let products = DoubleDouble::sum(p, q);
-        let tail = (p_tail + q_tail) + products.tail;
-        let heads = DoubleDouble::sum(self.head, products.head);
-        let sum = DoubleDouble::sum(heads.head, heads.tail + (self.tail + tail));
-        let of_products = 2.0 * (PRODUCT * (p.abs() + q.abs()) + UNDERFLOW);
-        (sum, SUM * self.head.abs() + of_products)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::PreciseBall;
 
     #[test]
     fn products_of_doubles_are_exact() {
         // (2^27 + 1)(2^27 - 1) = 2^54 - 1 needs 54 bits.
         let p = DoubleDouble::product(134_217_729.0, 134_217_727.0);
         assert_eq!((p.head(), p.tail()), (2.0_f64.powi(54), -1.0));
-    }
-
-    #[test]
-    fn products_that_are_added_are_those_of_the_operators() {
-        let parts = [3.0, -0.7, 1e-9, 12345.678];
-        let exact = parts.map(|x| DoubleDouble::sum(x, x * 1e-17 / 3.0));
-        let third = DoubleDouble::from(1) / DoubleDouble::from(3);
-        let [a, b, c, d] = exact.map(Multiplier::from);
-        let (sum, error) = third.rounded_sum_with_products([(a, b), (c, d)]);
-        let [a, b, c, d] = exact.map(PreciseBall::from);
-        let off = PreciseBall::around(sum, error) - (PreciseBall::from(third) + a * b + c * d);
-        assert!(off.lower() <= 0.0 && off.upper() >= 0.0 && off.magnitude() < 1e-29, "{off:?}");
-        assert!(off.head() != 0.0, "control: the sums alone differ, {off:?}");
     }
 
     #[test]

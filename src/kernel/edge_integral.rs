@@ -15,8 +15,6 @@
 //! In a body of revolution the integrals but the measure have the weight r, affine along the edge: one degree more, for which the same
 //! cuts and points are exact.
 
-#[cfg(not(kani))]
-use super::axial::edge_mass;
 use super::contact_edge::integral_of_product;
 use super::{Element, P1, P2, Scalar, positive_part, positive_part_slope};
 
@@ -69,12 +67,14 @@ where
 /// An element whose edge integrals are known exactly in the number type `S`: P1 in every field, P2 in doubles (the
 /// roots of a quadratic P need a square root).
 pub trait ExactEdge<S, const N: usize, const M: usize>: Element<N, M> {
-    /// The integrals without quadrature error. A NaN in `p` makes them NaN.
-    fn exact(p: [S; M]) -> EdgeIntegrals<S, M>;
+    /// The integrals without quadrature error; with the weight r where r has these `radii` at the two ends. A NaN in `p` makes
+    /// them NaN.
+    fn exact_with(p: [S; M], radii: Option<[S; 2]>) -> EdgeIntegrals<S, M>;
 
-    /// Integrates as [`ExactEdge::exact`] with the weight r, which has the values `radii` at the two ends.
-    #[cfg(not(kani))]
-    fn exact_in_revolution(p: [S; M], radii: [S; 2]) -> EdgeIntegrals<S, M>;
+    /// The integrals without a weight.
+    fn exact(p: [S; M]) -> EdgeIntegrals<S, M> {
+        Self::exact_with(p, None)
+    }
 }
 
 /// The interval of \[0, 1\] on which the affine function with the values `p` at 0 and 1 is positive, as its two ends;
@@ -88,82 +88,75 @@ pub fn positive_interval<S: Scalar>(p: [S; 2]) -> [S; 2] {
 }
 
 impl<S: Scalar> ExactEdge<S, 3, 2> for P1 {
-    fn exact(p: [S; 2]) -> EdgeIntegrals<S, 2> {
-        exact_p1(p, |_, f, g| integral_of_product(f, g))
-    }
-
-    #[cfg(not(kani))]
-    fn exact_in_revolution(p: [S; 2], radii: [S; 2]) -> EdgeIntegrals<S, 2> {
-        let r =
-            |shapes: [[S; 2]; 2]| [0, 1].map(|k| radii[0] * shapes[0][k] + radii[1] * shapes[1][k]);
-        exact_p1(p, |shapes, f, g| weighted_product(r(shapes), f, g))
+    /// On its positive interval \[P\]+ is affine: \[p_0\]+ at the start and \[p_1\]+ at the end, and so are the N_a.
+    fn exact_with(p: [S; 2], radii: Option<[S; 2]>) -> EdgeIntegrals<S, 2> {
+        let [start, end] = positive_interval(p);
+        let length = end - start;
+        let positive = p.map(positive_part);
+        let at_start: [S; 2] = P1::edge_values(start);
+        let at_end: [S; 2] = P1::edge_values(end);
+        let shapes = [0, 1].map(|a| [at_start[a], at_end[a]]);
+        let r = radii.map(|r| [0, 1].map(|k| r[0] * shapes[0][k] + r[1] * shapes[1][k]));
+        let product = |f, g| match r {
+            None => integral_of_product(f, g),
+            Some(r) => weighted_product(r, f, g),
+        };
+        let integral = |f, g| length * product(f, g);
+        EdgeIntegrals {
+            energy: integral(positive, positive) / S::from(2),
+            gradient: shapes.map(|n| integral(positive, n)),
+            hessian: shapes.map(|m| shapes.map(|n| integral(m, n))),
+            active: length,
+        }
     }
 }
 
-/// On its positive interval \[P\]+ is affine: \[p_0\]+ at the start and \[p_1\]+ at the end, and so are the N_a, with which
-/// `product` integrates products.
-fn exact_p1<S: Scalar>(
-    p: [S; 2],
-    product: impl Fn([[S; 2]; 2], [S; 2], [S; 2]) -> S,
-) -> EdgeIntegrals<S, 2> {
-    let [start, end] = positive_interval(p);
-    let length = end - start;
-    let positive = p.map(positive_part);
-    let at_start: [S; 2] = P1::edge_values(start);
-    let at_end: [S; 2] = P1::edge_values(end);
-    let shapes = [0, 1].map(|a| [at_start[a], at_end[a]]);
-    let integral = |f, g| length * product(shapes, f, g);
-    EdgeIntegrals {
-        energy: integral(positive, positive) / S::from(2),
-        gradient: shapes.map(|n| integral(positive, n)),
-        hessian: shapes.map(|m| shapes.map(|n| integral(m, n))),
-        active: length,
-    }
+/// int r f g over an edge for affine functions in terms of their values at its ends.
+pub fn edge_mass<S: Scalar>([a, b]: [S; 2]) -> [[S; 2]; 2] {
+    let (three, twelve) = (S::from(3), S::from(12));
+    let across = (a + b) / twelve;
+    [[(three * a + b) / twelve, across], [across, (a + three * b) / twelve]]
 }
 
 /// int_0^1 r f g for three affine functions given by their values at 0 and 1.
-#[cfg(not(kani))]
 pub fn weighted_product<S: Scalar>(r: [S; 2], f: [S; 2], g: [S; 2]) -> S {
     let [[start, across], [_, end]] = edge_mass(r);
     f[0] * (start * g[0] + across * g[1]) + f[1] * (across * g[0] + end * g[1])
 }
 
 impl ExactEdge<f64, 6, 3> for P2 {
-    fn exact(p: [f64; 3]) -> EdgeIntegrals<f64, 3> {
-        exact_p2(p, None)
-    }
-
-    #[cfg(not(kani))]
-    fn exact_in_revolution(p: [f64; 3], radii: [f64; 2]) -> EdgeIntegrals<f64, 3> {
-        exact_p2(p, Some(radii))
-    }
-}
-
-fn exact_p2(p: [f64; 3], radii: Option<[f64; 2]>) -> EdgeIntegrals<f64, 3> {
-    let mut sum = EdgeIntegrals::of(0.0);
-    each_positive_point(p, |s, weight| {
-        // Inside a positive piece P itself is integrated: a rounding error of its sign near the ends of the piece must not cut
-        // it again.
-        let (value, weights) =
-            (value_at::<P2, f64, 6, 3>(p, s), [weight, times_radius(weight, radii, s)]);
-        sum.add(weights, value, 1.0, P2::edge_values(s));
-    });
-    sum
-}
-
-/// Calls `add` with the points and weights of Gauss's rule on the pieces where P is positive.
-fn each_positive_point(p: [f64; 3], mut add: impl FnMut(f64, f64)) {
-    let mut cuts = Cuts::new();
-    cuts.add_roots::<P2, 6, 3>(p);
-    for [start, end] in cuts.pieces() {
-        // By the sign of Simpson's sum, which is the integral of P: the value in the middle alone would take
-        // (s - 1/2)^2 for zero. A NaN is not <= 0: the piece counts as positive and the integrals become NaN.
-        let [first, middle, last] =
-            [start, (start + end) / 2.0, end].map(|s| value_at::<P2, f64, 6, 3>(p, s));
-        if !(first + 4.0 * middle + last <= 0.0) {
-            gauss3(start, end).into_iter().for_each(|(s, weight)| add(s, weight));
+    /// By the points of Gauss's rule on the pieces where P is positive.
+    fn exact_with(p: [f64; 3], radii: Option<[f64; 2]>) -> EdgeIntegrals<f64, 3> {
+        let mut sum = EdgeIntegrals::of(0.0);
+        let mut cuts = Cuts::new();
+        cuts.add_roots::<P2, 6, 3>(p);
+        for [start, end] in cuts.pieces() {
+            // By the sign of Simpson's sum, which is the integral of P: the value in the middle alone would take
+            // (s - 1/2)^2 for zero. A NaN is not <= 0: the piece counts as positive and the integrals become NaN.
+            if simpson::<P2, 6, 3>(p, [start, end]) <= 0.0 {
+                continue;
+            }
+            for (s, weight) in gauss3(start, end) {
+                // Inside a positive piece P itself is integrated: a rounding error of its sign near the ends of the piece must
+                // not cut it again.
+                let value = value_at::<P2, f64, 6, 3>(p, s);
+                let weights = [weight, times_radius(weight, radii, s)];
+                sum.add(weights, value, 1.0, P2::edge_values(s));
+            }
         }
+        sum
     }
+}
+
+/// The integral over \[start, end\] of the quadratic with the values `p` at the nodes, but for the factor (end - start) / 6: what
+/// has one sign there has that of the integral.
+pub(super) fn simpson<E: Element<N, M>, const N: usize, const M: usize>(
+    p: [f64; M],
+    [start, end]: [f64; 2],
+) -> f64 {
+    let [first, middle, last] =
+        [start, (start + end) / 2.0, end].map(|s| value_at::<E, f64, N, M>(p, s));
+    first + 4.0 * middle + last
 }
 
 /// r at `s` from its values at the two ends.
@@ -176,20 +169,9 @@ pub fn times_radius<S: Scalar>(weight: S, radii: Option<[S; 2]>, s: S) -> S {
     radii.map_or(weight, |radii| weight * radius(radii, s))
 }
 
-/// The integrals by a rule on the whole edge: `rule` yields points in \[0, 1\] with their weights.
+/// The integrals by a rule on the whole edge: `rule` yields points in \[0, 1\] with their weights. With the weight r where r has
+/// these `radii` at the two ends.
 pub fn gauss<E, S, const N: usize, const M: usize>(
-    p: [S; M],
-    rule: impl IntoIterator<Item = (S, S)>,
-) -> EdgeIntegrals<S, M>
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
-    gauss_in_revolution::<E, S, N, M>(p, None, rule)
-}
-
-/// [`gauss`] with the weight r, where r has these `radii` at the two ends.
-pub fn gauss_in_revolution<E, S, const N: usize, const M: usize>(
     p: [S; M],
     radii: Option<[S; 2]>,
     rule: impl IntoIterator<Item = (S, S)>,
@@ -385,7 +367,7 @@ mod tests {
         assert!(P1::exact([f64::NAN, -1.0]).energy.is_nan());
         assert!(P1::exact([-1.0, f64::NAN]).energy.is_nan());
         assert!(P2::exact([-1.0, f64::NAN, -1.0]).energy.is_nan());
-        assert!(gauss::<P1, f64, 3, 2>([f64::NAN, -1.0], [(0.5, 1.0)]).energy.is_nan());
+        assert!(gauss::<P1, f64, 3, 2>([f64::NAN, -1.0], None, [(0.5, 1.0)]).energy.is_nan());
         assert!(maximum::<P1, 3, 2>([f64::NAN, -1.0]).is_nan());
         assert!(maximum::<P1, 3, 2>([-1.0, f64::NAN]).is_nan());
     }

@@ -29,23 +29,4 @@ impl Response {
             Response::Bilateral => p,
         }
     }
-
-    /// The part of a jump that is not allowed, y - prox(y): 0 if and only if psi(y) is finite.
-    pub fn forbidden_jump<S: Scalar>(self, y: S) -> S {
-        self.q(y)
-    }
-
-    /// The part of a stress that is not allowed: 0 if and only if psi*(-sigma) is finite.
-    pub fn forbidden_stress<S: Scalar>(self, sigma: S) -> S {
-        match self {
-            Response::Unilateral => positive_part(sigma),
-            Response::Bilateral => S::from(0),
-        }
-    }
-
-    /// Fenchel's gap psi(y) + psi*(-sigma) + sigma y of an allowed jump and an allowed stress: never negative, and 0 if and only if
-    /// they satisfy the law.
-    pub fn fenchel_gap<S: Scalar>(self, y: S, sigma: S) -> S {
-        sigma * y
-    }
 }

@@ -430,37 +430,22 @@ impl<S: Scalar, const D: usize> Stress<S, D> {
     }
 }
 
-impl<S: Scalar, const D: usize> Add for Stress<S, D> {
-    type Output = Self;
+/// An operator that acts on the matrix.
+macro_rules! of_matrices {
+    ($operator:ident $function:ident $other:ty, $b:ident => $value:expr) => {
+        impl<S: Scalar, const D: usize> $operator<$other> for Stress<S, D> {
+            type Output = Self;
 
-    fn add(self, other: Self) -> Self {
-        Stress(self.0 + other.0)
-    }
+            fn $function(self, $b: $other) -> Self {
+                Stress($operator::$function(self.0, $value))
+            }
+        }
+    };
 }
-
-impl<S: Scalar, const D: usize> Mul<S> for Stress<S, D> {
-    type Output = Self;
-
-    fn mul(self, factor: S) -> Self {
-        Stress(self.0 * factor)
-    }
-}
-
-impl<S: Scalar, const D: usize> Sub for Stress<S, D> {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        Stress(self.0 - other.0)
-    }
-}
-
-impl<S: Scalar, const D: usize> Div<S> for Stress<S, D> {
-    type Output = Self;
-
-    fn div(self, divisor: S) -> Self {
-        Stress(self.0 / divisor)
-    }
-}
+of_matrices!(Add add Self, other => other.0);
+of_matrices!(Sub sub Self, other => other.0);
+of_matrices!(Mul mul S, factor => factor);
+of_matrices!(Div div S, divisor => divisor);
 
 impl<S: Scalar> Stress<S> {
     /// The stress in the plane with these components: sigma_xx, sigma_yy, sigma_xy.

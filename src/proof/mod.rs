@@ -11,6 +11,7 @@ pub(crate) mod isolated;
 pub mod korn;
 #[doc(hidden)]
 pub mod pressed;
+mod products;
 #[doc(hidden)]
 pub mod rounded_stress;
 

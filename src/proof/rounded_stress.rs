@@ -3,13 +3,13 @@
 
 use nalgebra::{Matrix2, Vector2, Vector3};
 
+use super::products::{Multiplier, rounded_sum_with_products};
 use crate::contact::discretization::Discretization;
 use crate::contact::residual::exactly;
 use crate::kernel::axial;
 use crate::kernel::ball::up;
-use crate::kernel::double_double::{DoubleDouble, Multiplier};
 use crate::kernel::element::displacement_gradient;
-use crate::kernel::{Element, Material, PreciseBall, Stress, Triangle};
+use crate::kernel::{DoubleDouble, Element, Material, PreciseBall, Stress, Triangle};
 use crate::model::element::with_element;
 use crate::model::material::{Materials, largest_entry, least_eigenvalue};
 
@@ -33,7 +33,7 @@ pub fn add_forces(
         for (force, products) in
             forces[node].iter_mut().zip([[(xx, x), (xy, y)], [(xy, x), (yy, y)]])
         {
-            let (sum, error) = force.centre().rounded_sum_with_products(products);
+            let (sum, error) = rounded_sum_with_products(force.centre(), products);
             *force = PreciseBall::around(sum, up(force.radius() + error));
         }
     })

@@ -21,6 +21,7 @@ mod exact;
 mod figure;
 mod friction;
 mod friction_certified;
+mod friction_integrals;
 mod fuzz;
 mod gmsh_live;
 mod held;

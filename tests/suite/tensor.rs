@@ -119,7 +119,12 @@ fn certificates_of_tensors_are_written_read_and_accepted_and_a_wrong_law_is_not(
         let certified = certify(&problem, &s).unwrap();
         assert!(certified.relative < 1.0, "{}", certified.relative);
         let encode = |certificate| {
-            format::encode("spruce", certificate, &certified.proof, &Default::default())
+            signorini::certificates::encode(
+                "spruce",
+                certificate,
+                &certified.proof,
+                &Default::default(),
+            )
         };
         let (header, bytes) = encode(&certified.certificate);
         assert!(header.arrays.iter().any(|array| array.name == "tensors" && array.entries == 1));

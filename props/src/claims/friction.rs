@@ -1,8 +1,8 @@
 //! Friction, which the paper does not have: Tresca's law as one equation, the clip that it is made of, and the inequalities on which
 //! existence, uniqueness and error bounds with friction rest. v is the slip, sigma the shear stress, s the slip bound, mu Coulomb's
-//! coefficient; the laws are written out here, clip and gap are the kernel's.
+//! coefficient; the laws and their gap are written out here, clip is the kernel's.
 
-use signorini::kernel::friction::{clip, fenchel_gap};
+use signorini::kernel::friction::clip;
 use signorini::kernel::positive_part;
 
 use crate::harness::{any, assume, byte, finite};
@@ -18,6 +18,12 @@ pub fn abs<S: Ordered>(a: S) -> S {
 fn tresca<S: Ordered>(v: S, sigma: S, s: S) -> bool {
     let zero = S::from(0);
     abs(sigma) <= s && if v > zero { sigma == -s } else { v == zero || sigma == s }
+}
+
+/// Fenchel's gap s |v| + tau v of a slip v and a traction tau: zero exactly where Tresca's law holds, if |tau| <= s; else it may be
+/// negative.
+fn fenchel_gap<S: Ordered>(v: S, tau: S, s: S) -> S {
+    v.split(|v| (s - tau) * -v, |v| (s + tau) * v)
 }
 
 /// A shear stress that satisfies Tresca's law at the slip v; each one for some w.

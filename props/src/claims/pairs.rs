@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use signorini::contact::piece::PieceGeometry;
 use signorini::contact::residual::{add_internal_forces, exact_piece};
 use signorini::contact::{Discretization, Law, Pair, Piece};
-use signorini::kernel::{Material, Plane, Response};
+use signorini::kernel::{Material, Plane, Response, positive_part};
 use signorini::model::{Condition, Degree, Materials, Mesh, Problem};
 use signorini::solve::{Gamma0, Method, discretize};
 
@@ -19,12 +19,24 @@ use crate::{ensure, given};
 
 const BOTH: [Response; 2] = [Response::Unilateral, Response::Bilateral];
 
+/// The part of a stress that is not allowed: 0 if and only if psi*(-sigma) is finite.
+fn forbidden_stress<S: Ordered>(law: Response, sigma: S) -> S {
+    match law {
+        Response::Unilateral => positive_part(sigma),
+        Response::Bilateral => S::from(0),
+    }
+}
+
+/// Fenchel's gap psi(y) + psi*(-sigma) + sigma y of an allowed jump and an allowed stress: never negative, and 0 if and only if
+/// they satisfy the law.
+fn fenchel_gap<S: Ordered>(y: S, sigma: S) -> S {
+    sigma * y
+}
+
 /// y and -sigma satisfy the law, said by what is forbidden and by Fenchel's gap.
 fn is_law<S: Ordered>(law: Response, y: S, sigma: S) -> bool {
     let zero = S::from(0);
-    law.forbidden_jump(y) == zero
-        && law.forbidden_stress(sigma) == zero
-        && law.fenchel_gap(y, sigma) == zero
+    law.q(y) == zero && forbidden_stress(law, sigma) == zero && fenchel_gap(y, sigma) == zero
 }
 
 /// Whether gamma sigma = -q(y - gamma sigma), for a candidate of q.
@@ -62,10 +74,9 @@ pub fn q_of_every_law_is_firmly_nonexpansive<S: Ordered>([a, b]: [S; 2]) -> Verd
 pub fn identity_c_holds_at_a_point<S: Ordered>([y_u, y_v, sigma, tau]: [S; 4]) -> Verdict {
     let zero = S::from(0);
     for law in BOTH {
-        let is_allowed = law.forbidden_jump(y_v) == zero && law.forbidden_stress(tau) == zero;
+        let is_allowed = law.q(y_v) == zero && forbidden_stress(law, tau) == zero;
         if is_law(law, y_u, sigma) && is_allowed {
-            let [g, a, b] =
-                [law.fenchel_gap(y_v, tau), law.fenchel_gap(y_v, sigma), law.fenchel_gap(y_u, tau)];
+            let [g, a, b] = [fenchel_gap(y_v, tau), fenchel_gap(y_v, sigma), fenchel_gap(y_u, tau)];
             ensure!(g - a - b == (sigma - tau) * (y_u - y_v));
             ensure!(g >= zero && a >= zero && b >= zero);
         }
@@ -77,9 +88,7 @@ pub fn identity_c_holds_at_a_point<S: Ordered>([y_u, y_v, sigma, tau]: [S; 4]) -
 pub fn control_identity_c_without_the_law_of_the_solution<S: Ordered>(
     [y_u, y_v, sigma, tau]: [S; 4],
 ) -> Verdict {
-    let law = Response::Bilateral;
-    let [g, a, b] =
-        [law.fenchel_gap(y_v, tau), law.fenchel_gap(y_v, sigma), law.fenchel_gap(y_u, tau)];
+    let [g, a, b] = [fenchel_gap(y_v, tau), fenchel_gap(y_v, sigma), fenchel_gap(y_u, tau)];
     ensure!(g - a - b == (sigma - tau) * (y_u - y_v));
     Verdict::Holds("always")
 }

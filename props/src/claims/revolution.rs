@@ -4,7 +4,8 @@
 //! A function that is affine on a triangle has the values a, b at the ends of the edge and c opposite. Everything is linear in r >= 0:
 //! an inequality is one for r = 1 at each of the three corners.
 
-use signorini::kernel::axial::{corner_mass, edge_mass, trace_constant};
+use signorini::kernel::axial::{corner_mass, trace_constant};
+use signorini::kernel::edge_integral::edge_mass;
 use signorini::kernel::{Material, P1, Plane};
 use signorini::nalgebra::{Matrix2, Vector2};
 

@@ -219,7 +219,7 @@ fn sums_over_points(values: &[(i64, i64); 3], off: Exact) -> Verdict {
     // A rule with positive weights; it need not be a good one, for both sides use it.
     let points = [[(1, 8), (1, 4)], [(1, 2), (5, 12)], [(5, 6), (1, 3)]]
         .map(|point| point.map(|(n, d)| Exact::ratio(n, d)));
-    let e = gauss::<P2, Exact, 6, 3>(p, points.map(|[s, w]| (s, off * w)));
+    let e = gauss::<P2, Exact, 6, 3>(p, None, points.map(|[s, w]| (s, off * w)));
     let positive = |s| positive_part(line.at(s));
     let slope = |s| Exact::from(i32::from(line.at(s) > Exact::from(0)));
     let of = |f: &dyn Fn(Exact) -> Exact| sum(&points, |&[s, w]| w * f(s));

@@ -415,8 +415,8 @@ fn forces_by_definition(draw: &Draw, mistake: Mistake) -> Verdict {
     let w0 = draw.shape(&certificate, &draw.w0, |_| [0.0; 2], |_| -1.0);
     let cover = forces.cover(&w0.lifting());
     let found = forces.between(&[(draw.target(), w.lifting())], cover.as_ref().ok());
-    let pairs = [(draw.target(), draw.pair(&certificate, &w))];
-    let by_pair = forces.by_pairs(&pairs, cover.as_ref().ok());
+    let pair = draw.pair(&certificate, &w);
+    let by_pair = forces.by_pair(draw.target(), &pair, cover.as_ref().ok());
     Exact::scope(|| {
         let Some(known) = known(draw, &certificate, &w0) else { return Verdict::Vacuous };
         ensure!((mean.square - known.mean_squared).abs() <= CLOSE * (1.0 + known.mean_squared));
@@ -435,7 +435,7 @@ fn forces_by_definition(draw: &Draw, mistake: Mistake) -> Verdict {
         if MOTIONS[draw.motion].0 == BOTTOM && is_straight {
             let Ok(by_pair) = by_pair else { return Verdict::Fails("there is a dual pair") };
             let expected = between_by_pair(draw, &certificate, &of_w, &known, factors, mistake);
-            ensure!(near(by_pair[0].between, expected));
+            ensure!(near(by_pair.between, expected));
         }
         let norm = to_double(of_w.square).sqrt();
         Verdict::Holds(match (by_gap, by_cover) {

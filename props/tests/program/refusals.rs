@@ -2,10 +2,9 @@
 
 use signorini::certificates::Rejection;
 use signorini::certificates::Rejection::{
-    Length, NotPrescribed, NotPrescribedAlong, NotPrescribedAlongBetween, NotPrescribedBetween,
-    Orientation, OutOfBalance, Penetration, Tension, Unbalanced, Wrong,
+    Length, NotPrescribed, Orientation, OutOfBalance, Penetration, Tension, Unbalanced, Wrong,
 };
-use signorini::certificates::proof::{Certificate, Claim as Said, Edge, Law, Role};
+use signorini::certificates::proof::{Certificate, Claim as Said, Edge, Law, Prescribed, Role};
 use signorini::kernel::{Ball, Material, Plane, PreciseBall};
 
 use super::by_hand::{Draw, supported};
@@ -128,7 +127,7 @@ const TAMPERINGS: &[Tampering] = tamperings! {
         penetrate_between_turning_ends;
     "a pressure that varies along a direction that turns" => Wrong { .. },
         |c| turn_contact(c, [-1.0, -2.0], 9.0, [0.6, -0.8]);
-    "a prescribed value that v misses by a rounding error" => NotPrescribed { .. },
+    "a prescribed value that v misses by a rounding error" => NotPrescribed { at: Prescribed { is_between: false, component: Some(_), .. }, .. },
         |c| of_prescribed(c, |u| u[0].iter_mut().for_each(|u| *u = u.next_up()));
     "an end of Gamma_D without a prescribed value" => Wrong { .. }, |c| of_prescribed(c, |u| u[1] = None);
     "a prescribed value off Gamma_D" => Wrong { .. },
@@ -188,7 +187,7 @@ const QUADRATIC_TAMPERINGS: &[Tampering] = tamperings! {
         turn_contact(c, [-1.0; 2], 9.0, [0.6, -0.8]);
         of_bulges(c, IS_CONTACT, |bulge, _| *bulge = [0.0, -30.0]);
     };
-    "a prescribed bulge that v misses by a rounding error" => NotPrescribedBetween { component: 0, .. },
+    "a prescribed bulge that v misses by a rounding error" => NotPrescribed { at: Prescribed { is_between: true, component: Some(0), .. }, .. },
         |c| of_bulges(c, IS_HELD, |bulge, _| bulge[0] = bulge[0].next_up());
     "a bulge of data inside the body" => Wrong { .. }, |c| of_bulges(c, IS_INNER, |_, data| data[1] = 0.125);
     "a second bulge of a gap" => Wrong { .. }, |c| of_bulges(c, IS_CONTACT, |_, data| data[1] = 0.125);
@@ -295,11 +294,11 @@ fn frame_a_free_point(c: &mut Certificate) {
 
 /// What the theorem does not allow where bodies are held along directions.
 const SUPPORT_TAMPERINGS: &[Tampering] = tamperings! {
-    "v . d off what is prescribed by 1e-12" => NotPrescribedAlong { .. }, |c| {
+    "v . d off what is prescribed by 1e-12" => NotPrescribed { at: Prescribed { is_between: false, component: None, .. }, .. }, |c| {
         let k = framed(c);
         c.displacement[k][0] += 1e-12;
     };
-    "a value along a support that v misses by 1e-12" => NotPrescribedAlong { .. }, |c| {
+    "a value along a support that v misses by 1e-12" => NotPrescribed { at: Prescribed { is_between: false, component: None, .. }, .. }, |c| {
         let k = framed(c);
         c.prescribed[k][0].iter_mut().for_each(|w| *w += 1e-12);
     };
@@ -326,7 +325,7 @@ pub fn refusals_of_supports(tamper: bool) -> Outcome {
     let supported = |role: &Role| matches!(role, Role::Supported { .. });
     of_bulges(&mut bulging, supported, |bulge, _| bulge[0] += 1e-9);
     match bulging.evaluate::<Ball>() {
-        Err(NotPrescribedAlongBetween { .. }) => {}
+        Err(NotPrescribed { at: Prescribed { is_between: true, component: None, .. }, .. }) => {}
         other => return Err(format!("a bulge that is off by 1e-9: {other:?}")),
     }
     Ok(format!("{} tamperings", 2 * SUPPORT_TAMPERINGS.len() + 3))

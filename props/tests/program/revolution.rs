@@ -1,8 +1,8 @@
 //! Formulas for bodies of revolution (docs/theory.md, 11) that are the program's own: integrals over a cut edge, the hoop strain of P2,
 //! directions that turn, and the constants of [7.2'] (docs/a-posteriori.md) on a piece that touches the axis.
 
-use signorini::kernel::axial::{edge_mass, hoop_strain, mass, turning_factor};
-use signorini::kernel::edge_integral::{ExactEdge, weighted_product};
+use signorini::kernel::axial::{hoop_strain, mass, turning_factor};
+use signorini::kernel::edge_integral::{ExactEdge, edge_mass, weighted_product};
 use signorini::kernel::{P1, P2};
 
 use props::draws::hold_exactly;
@@ -42,7 +42,7 @@ fn weighted_integrals_of_a_cut_edge_are_those_of_the_positive_part<S: Ordered>(
     given!(p > zero && q < zero && r >= zero && s >= zero);
     let tau = p / (p - q);
     let end = r + (s - r) * tau;
-    let e = P1::exact_in_revolution([p, q], [r, s]);
+    let e = P1::exact_with([p, q], Some([r, s]));
     ensure!(e.active == tau);
     ensure!(two * e.energy == tau * weighted_product([r, end], [p, zero], [p, zero]));
     ensure!(e.gradient[0] * p + e.gradient[1] * q == two * e.energy);
