@@ -12,14 +12,14 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use crate::io::Failure;
+use crate::io::input::reason;
+use crate::io::sweep::Extent;
+use crate::io::{Case, checked};
+use crate::model::DataError;
+use crate::solve::SolveError;
+use crate::{quote, solve as library};
 use clap::CommandFactory;
-use signorini::io::Failure;
-use signorini::io::input::reason;
-use signorini::io::sweep::Extent;
-use signorini::io::{Case, checked};
-use signorini::model::DataError;
-use signorini::solve::SolveError;
-use signorini::{quote, solve as library};
 
 use self::arguments::{Arguments, CaseArguments, Task};
 use self::progress::Phases;
@@ -42,7 +42,8 @@ fn summarised(text: &str, quiet: bool) -> Done {
     Done { text: if quiet { String::new() } else { quote::lines(text) }, code: 0 }
 }
 
-pub(crate) fn run() -> ExitCode {
+/// Runs the command on the arguments of the program; its exit code.
+pub fn run() -> ExitCode {
     let Arguments { task, quiet, verbose } = match Arguments::read() {
         Ok(arguments) => arguments,
         Err(error) if error.use_stderr() => error.exit(),

@@ -114,6 +114,8 @@ pub use signorini_kernel::entry_of_nalgebra;
 
 #[cfg(not(kani))]
 pub mod certificates;
+#[cfg(all(not(kani), feature = "cli"))]
+pub mod command;
 #[cfg(not(kani))]
 pub mod contact;
 #[cfg(not(kani))]

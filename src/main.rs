@@ -7,11 +7,8 @@
 //! program as a signal does: 130, 143 or 129 to a shell.
 
 #[cfg(not(kani))]
-mod command;
-
-#[cfg(not(kani))]
 fn main() -> std::process::ExitCode {
-    command::run()
+    signorini::command::run()
 }
 
 /// The model checker looks at the kernel only.

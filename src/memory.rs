@@ -26,7 +26,7 @@ const LITTLE: u64 = 1 << 20;
 ///
 /// # Errors
 /// [`OutOfMemory`] if the limit of the process (`ulimit -v`), the system or the control group does not allow so many bytes.
-pub fn check(bytes: u64) -> Result<(), OutOfMemory> {
+pub(crate) fn check(bytes: u64) -> Result<(), OutOfMemory> {
     if bytes < LITTLE {
         return Ok(());
     }

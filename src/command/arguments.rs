@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use crate::io::sweep::ParameterAxis;
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
-use signorini::io::sweep::ParameterAxis;
 
 /// Unilateral (Signorini) contact in linear elasticity by Nitsche's method.
 #[derive(Parser)]

@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use signorini::certificates::binding::compare;
-use signorini::certificates::certify_field;
-use signorini::io::Failure;
-use signorini::io::field::read_field;
-use signorini::io::summary::{self, AuditedCase};
-use signorini::io::{Case, certificate, outputs};
-use signorini::quote;
-use signorini::solve::{Course, solve_along};
+use crate::certificates::binding::compare;
+use crate::certificates::certify_field;
+use crate::io::Failure;
+use crate::io::field::read_field;
+use crate::io::summary::{self, AuditedCase};
+use crate::io::{Case, certificate, outputs};
+use crate::quote;
+use crate::solve::{Course, solve_along};
 
 use super::arguments::CaseArguments;
 use super::progress::Phases;
@@ -46,7 +46,7 @@ pub(crate) fn certify(
 }
 
 /// Verifies a certificate from scratch and, if a case is named, that the certificate is of this case.
-pub fn audit(
+pub(crate) fn audit(
     path: &Path,
     case: Option<&Path>,
     settings: &[String],

@@ -10,12 +10,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::{env, fs, io};
 
-use signorini::io::Failure;
-use signorini::io::files;
-use signorini::io::input::{self, MOST_OF_A_CASE, reason};
-use signorini::io::outputs::{FILES, FILES_OF_FENICSX};
-use signorini::io::result::Results;
-use signorini::quote;
+use crate::io::Failure;
+use crate::io::files;
+use crate::io::input::{self, MOST_OF_A_CASE, reason};
+use crate::io::outputs::{FILES, FILES_OF_FENICSX};
+use crate::io::result::Results;
+use crate::quote;
 
 const NO_DOLFINX: &str = "the engine fenicsx needs DOLFINx and Python 3.11 or later, and neither python3 nor /usr/bin/python3 can import it: install it (Debian, Ubuntu: apt-get install python3-dolfinx)";
 

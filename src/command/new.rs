@@ -4,9 +4,9 @@ use std::fs::{self, OpenOptions};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use signorini::io::input::reason;
-use signorini::io::{Case, Failure, checked, draft, gmsh};
-use signorini::quote;
+use crate::io::input::reason;
+use crate::io::{Case, Failure, checked, draft, gmsh};
+use crate::quote;
 
 use super::progress::Phases;
 use super::{Done, complain, summarised};

@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::io::{IsTerminal, Write, stderr};
 use std::time::Instant;
 
-use signorini::solve::Phase;
+use crate::solve::Phase;
 
 /// To the start of the line, which is emptied.
 const CLEAR: &str = "\r\x1b[2K";
@@ -36,7 +36,6 @@ impl Phases {
             Phase::Condense => "condensing the body onto its contact line".to_owned(),
             Phase::Newton { step } => format!("Newton step {step}"),
             Phase::Evaluate => "evaluating stresses and pressures".to_owned(),
-            _ => "solving".to_owned(),
         });
     }
 }

@@ -4,12 +4,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use signorini::certificates::adapt::Stage;
-use signorini::io::files::spare;
-use signorini::io::outputs::{self, Extra};
-use signorini::io::result::{Results, result_json};
-use signorini::io::{Case, Failure, input, run, steps, summary};
-use signorini::quote;
+use crate::certificates::adapt::Stage;
+use crate::io::files::spare;
+use crate::io::outputs::{self, Extra};
+use crate::io::result::{Results, result_json};
+use crate::io::{Case, Failure, input, run, steps, summary};
+use crate::quote;
 
 use super::arguments::{CaseArguments, Engine, SolveOptions};
 use super::progress::Phases;

@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use signorini::io::Failure;
-use signorini::io::files::spare;
-use signorini::io::result::Results;
-use signorini::io::sweep::{self, Extent, ParameterAxis, Sweep};
+use crate::io::Failure;
+use crate::io::files::spare;
+use crate::io::result::Results;
+use crate::io::sweep::{self, Extent, ParameterAxis, Sweep};
 
 use super::progress::Phases;
 use super::{Done, FAILED, SHORT, WRONG, folder, read_text, summarised};

@@ -43,7 +43,7 @@ impl Law {
 
     /// The integral of the Bregman distance of the energy from P to Q, given by their nodal values. Coulomb's law has no energy: its
     /// bound is taken where P is.
-    pub fn bregman<T: Copy + Into<DoubleDouble>>(
+    pub(crate) fn bregman<T: Copy + Into<DoubleDouble>>(
         self,
         rule: &EdgeRule,
         (degree, gamma): (Degree, f64),

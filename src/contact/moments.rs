@@ -16,7 +16,7 @@ use crate::model::element::{Degree, with_element};
 
 impl Piece<PreciseBall> {
     /// The force of [`contribution`](Piece::contribution), enclosed.
-    pub fn force(&self, rule: &EdgeRule, p: &[PreciseBall]) -> Vec<PreciseBall> {
+    pub(crate) fn force(&self, rule: &EdgeRule, p: &[PreciseBall]) -> Vec<PreciseBall> {
         let weight = self.weight();
         let of = |(response, p): (&Response, &[PreciseBall])| match response {
             Response::Unilateral => moments(rule, self.degree, self.radii, p),
