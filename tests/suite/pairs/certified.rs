@@ -138,8 +138,8 @@ fn near(found: &[[f64; 2]], limit: f64, rate: f64) {
 #[test]
 fn the_bound_is_above_the_error_by_less_than_half_and_falls_with_the_mesh() {
     for moduli in [[1.0, 1.0], [1.0, 10.0]] {
-        let all = [[11, 7], [22, 14], [44, 28]].map(|cells| squares(cells, moduli));
-        near(&effectivities(&all, [88, 56], Degree::One, &|p| p), 1.5, 1.7);
+        let all = [[8, 5], [16, 10], [32, 20]].map(|cells| squares(cells, moduli));
+        near(&effectivities(&all, [64, 40], Degree::One, &|p| p), 1.5, 1.7);
     }
     let all = [[5, 8], [10, 16], [20, 32]].map(narrow);
     near(&effectivities(&all, [40, 64], Degree::One, &|p| p), 1.7, 1.4);
@@ -687,8 +687,8 @@ fn the_bound_of_bodies_that_stick_and_slide_is_above_the_error_and_falls_with_th
     let s = proved(&rough(squares([22, 14], [1.0, 1.0]).problem()), &method(Degree::One));
     let of = s.boundaries[0].friction.unwrap();
     assert!(of.sticks > 0.1 && of.slides > 0.1, "{of:?}");
-    let all = [[11, 7], [22, 14], [44, 28]].map(|cells| squares(cells, [1.0, 1.0]));
-    let found = effectivities(&all, [88, 56], Degree::One, &rough);
+    let all = [[8, 5], [16, 10], [32, 20]].map(|cells| squares(cells, [1.0, 1.0]));
+    let found = effectivities(&all, [64, 40], Degree::One, &rough);
     near(&found, 1.26, 1.6);
     assert!(found.iter().all(|[e, _]| *e >= 1.06), "{found:?}");
     let all = [[6, 4], [12, 8], [24, 16]].map(|cells| squares(cells, [1.0, 1.0]));
