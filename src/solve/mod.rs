@@ -10,23 +10,16 @@
 //!
 //! docs/theory.md: 4 has Newton's method, 5 the routes and the refinement; docs/a-posteriori.md, 7.5, has the enclosure.
 
-#[doc(hidden)]
 pub mod accuracy;
-#[doc(hidden)]
-pub mod assembled;
-#[doc(hidden)]
+pub(crate) mod assembled;
 pub mod body;
 pub mod condensed;
-#[doc(hidden)]
-pub mod coulomb;
-#[doc(hidden)]
-pub mod course;
+pub(crate) mod coulomb;
+pub(crate) mod course;
 mod error;
-#[doc(hidden)]
 pub mod iterate;
 mod method;
 pub mod newton;
-#[doc(hidden)]
 pub mod route;
 mod setup;
 pub(crate) mod times;
