@@ -2,7 +2,7 @@
 //! discretization that holds all of (8).
 
 pub mod contact_line;
-pub mod discretization;
+pub(crate) mod discretization;
 pub mod friction;
 mod hoop;
 pub mod law;
@@ -19,6 +19,4 @@ pub use friction::Friction;
 pub use law::{EdgeRule, Law};
 pub use piece::Piece;
 
-#[doc(hidden)]
-pub use crate::model::pairs;
 pub use crate::model::pairs::{Pair, PairError, PairPiece, PairSide};

@@ -5,6 +5,6 @@ pub(crate) mod clearance;
 pub(crate) mod corners;
 pub(crate) mod grip;
 pub(crate) mod holding;
-pub mod solvability;
+pub(crate) mod solvability;
 
 pub use crate::model::rigid::{FreeMotion, Parts};

@@ -20,8 +20,8 @@ use std::path::Path;
 
 use super::input::{self, FileError, MOST_OF_A_MESH};
 use super::raw_mesh::{ByDimension, Elements, Kind, Made, Node, RawMesh};
-use crate::contact::{Pair, pairs};
 use crate::memory;
+use crate::model::pairs::{self, Pair};
 use cursor::{Cursor, Version, shown};
 
 type Result<T> = std::result::Result<T, FileError>;

@@ -20,8 +20,7 @@ mod fields;
 pub mod files;
 #[doc(hidden)]
 pub mod gmsh;
-#[doc(hidden)]
-pub mod input;
+pub(crate) mod input;
 #[cfg(feature = "files")]
 mod numbers;
 #[cfg(feature = "files")]

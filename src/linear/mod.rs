@@ -1,10 +1,8 @@
 //! Matrices: A and its pattern, the order of elimination, the factor, the compliance of contact edges, small dense algebra.
 
 pub(crate) mod cholesky;
-#[doc(hidden)]
-pub mod compliance;
-#[doc(hidden)]
-pub mod dense;
+pub(crate) mod compliance;
+pub(crate) mod dense;
 #[doc(hidden)]
 pub mod factor;
 pub mod matrix;

@@ -2,28 +2,28 @@
 
 pub mod boundary_normals;
 pub mod constraints;
-pub mod data;
-pub mod element;
+pub(crate) mod data;
+pub(crate) mod element;
 mod embedding;
 pub(crate) mod function;
 pub mod graded_quadrature;
 pub(crate) mod groups;
-pub mod law;
+pub(crate) mod law;
 pub mod loads;
 pub mod material;
 pub mod merge;
-pub mod mesh;
+pub(crate) mod mesh;
 pub mod obstacle;
 pub mod pairs;
 pub(crate) mod path;
 pub(crate) mod plane_sweep;
-pub mod problem;
+pub(crate) mod problem;
 pub mod quadrature;
 pub(crate) mod revolution;
-pub mod rigid;
+pub(crate) mod rigid;
 pub mod space;
-pub mod structured;
-pub mod tree;
+pub(crate) mod structured;
+pub(crate) mod tree;
 
 pub use data::DataError;
 pub use element::Degree;

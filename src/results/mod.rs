@@ -1,12 +1,10 @@
 //! The results: displacement, stresses, contact pressure, resultants, energies, each with its interval, and the verdict.
 
-#[doc(hidden)]
-pub mod answers;
+pub(crate) mod answers;
 pub(crate) mod report;
 #[doc(hidden)]
 pub mod solution;
-#[doc(hidden)]
-pub mod stresses;
+pub(crate) mod stresses;
 pub(crate) mod whole;
 
 pub use answers::{ContactBoundary, EnergyBalance};

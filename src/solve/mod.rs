@@ -13,7 +13,7 @@
 pub mod accuracy;
 pub(crate) mod assembled;
 pub mod body;
-pub mod condensed;
+pub(crate) mod condensed;
 pub(crate) mod coulomb;
 pub(crate) mod course;
 mod error;

@@ -5,11 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use signorini::contact::Law;
-use signorini::contact::pairs::{PairPiece, of_problem};
 use signorini::io::Case;
 use signorini::model::Condition;
 use signorini::model::Degree;
 use signorini::model::boundary_normals::SmoothBoundary;
+use signorini::model::pairs::{PairPiece, of_problem};
 
 fn folder(test: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("pair_cases").join(test);
