@@ -13,7 +13,7 @@ use crate::model::MeshError;
 use crate::quote;
 
 /// The longest case file. A case for people has some thousand bytes.
-pub const MOST_OF_A_CASE: u64 = 16 << 20;
+pub(crate) const MOST_OF_A_CASE: u64 = 16 << 20;
 
 /// The longest mesh file: more nodes than a factorisation in the memory of one machine has room for.
 pub(crate) const MOST_OF_A_MESH: u64 = 4 << 30;
@@ -140,7 +140,7 @@ pub struct FileError {
 }
 
 /// The bytes of a regular file of at most `most` bytes.
-pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, FileError> {
+pub(crate) fn read(path: &Path, most: u64) -> Result<Vec<u8>, FileError> {
     bytes_of(path, most).map_err(|error| error.at(path, Position::File))
 }
 
@@ -185,7 +185,7 @@ fn regular(metadata: &Metadata) -> Result<(), Failure> {
 const DIRECTORY: &str = "this is a directory; expected a file";
 
 /// The reason in words, without the system's number.
-pub fn reason(error: &io::Error) -> String {
+pub(crate) fn reason(error: &io::Error) -> String {
     if error.kind() == io::ErrorKind::AlreadyExists {
         return "a file of this name is there; choose another folder: --out DIR".to_owned();
     }
