@@ -2,7 +2,7 @@
 //! discretization that holds all of (8).
 
 pub mod contact_line;
-pub(crate) mod discretization;
+pub mod discretization;
 pub mod friction;
 mod hoop;
 pub mod law;

@@ -12,7 +12,7 @@
 //!
 //! A [`Mesh`] that exists is valid: everything is checked when it is made, and nothing is checked again.
 
-pub(crate) mod bisection;
+pub mod bisection;
 mod edges;
 mod error;
 mod split;
@@ -29,7 +29,7 @@ use edges::{MeshEdge, match_edges, name_boundaries};
 pub use error::MeshError;
 pub(super) use error::TOUCHING;
 use nalgebra::Vector2;
-pub(crate) use split::split_names;
+pub use split::split_names;
 
 /// A conforming triangulation with named parts of its boundary.
 #[derive(Clone, Debug)]

@@ -12,7 +12,7 @@ pub(crate) mod law;
 pub mod loads;
 pub mod material;
 pub mod merge;
-pub(crate) mod mesh;
+pub mod mesh;
 pub mod obstacle;
 pub mod pairs;
 pub(crate) mod path;

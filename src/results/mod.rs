@@ -1,6 +1,6 @@
 //! The results: displacement, stresses, contact pressure, resultants, energies, each with its interval, and the verdict.
 
-pub(crate) mod answers;
+pub mod answers;
 pub(crate) mod report;
 #[doc(hidden)]
 pub mod solution;

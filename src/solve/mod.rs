@@ -11,11 +11,11 @@
 //! docs/theory.md: 4 has Newton's method, 5 the routes and the refinement; docs/a-posteriori.md, 7.5, has the enclosure.
 
 pub mod accuracy;
-pub(crate) mod assembled;
+pub mod assembled;
 pub mod body;
-pub(crate) mod condensed;
+pub mod condensed;
 pub(crate) mod coulomb;
-pub(crate) mod course;
+pub mod course;
 mod error;
 pub mod iterate;
 mod method;
