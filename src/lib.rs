@@ -86,8 +86,9 @@
 //!
 //! # What is stable
 //!
-//! The items that these pages show. Modules that they do not show are the inside of the solver: tests, benches and the claims reach them,
-//! and they may change with any version.
+//! The items that the first page and the pages of its modules list, such as [`Problem`] and [`solve::Settings`]. The modules below
+//! these are the inside of the solver: shown to those who read the method, reached by tests, benches and the claims, they may change
+//! with any version.
 //!
 //! # Features
 //!
