@@ -34,7 +34,7 @@ struct FreeForce {
     profile: Variation,
 }
 
-/// Its variation along the edge.
+/// The variation of a force along an edge.
 #[derive(Clone, Copy)]
 enum Variation {
     /// On Gamma_D, or between tied bodies, affine with these values at the ends.

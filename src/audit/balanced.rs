@@ -40,7 +40,7 @@ pub struct Balanced<S> {
     pub topology: Topology,
     /// tau N on the edges as the certificate has it.
     pub forces: Vec<[Vector2<S>; 2]>,
-    /// The same in equilibrium.
+    /// tau N in equilibrium, and what that takes.
     pub balance: Equilibrium<S>,
     /// 2 int tau_n (v_n - g) over the edges of each triangle.
     pub on_contact: Vec<S>,

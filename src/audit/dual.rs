@@ -222,7 +222,7 @@ impl<S: Enclosing> Forces<'_, S> {
     /// Encloses the contact force with the weight of its target by a dual pair; an end may be infinite.
     ///
     /// # Errors
-    /// What is no pair; a w that is not what it should be on Gamma_C.
+    /// A `dual` that is no pair; a w that is not what the target asks for on Gamma_C.
     pub fn by_pair(
         &self,
         target: ForceTarget,

@@ -38,7 +38,7 @@ const SMALLEST: f64 = 1e-200;
 /// A constraint beside the supports: a sum of components of v at nodes is at most `most` where |v|_a is at most 1.
 #[derive(Clone, Debug)]
 pub struct Hold {
-    /// What is summed up, triangle by triangle.
+    /// The terms of the sum, triangle by triangle.
     pub terms: Vec<Term>,
     /// The bound.
     pub most: f64,
@@ -51,7 +51,7 @@ pub struct Term {
     pub triangle: usize,
     /// The point.
     pub at: [Ball; 2],
-    /// What v is multiplied by there.
+    /// The vector that v is multiplied by at the point.
     pub along: [Ball; 2],
 }
 

@@ -96,7 +96,7 @@ struct PressedPart {
 pub struct Pressed {
     /// The number of pieces of Gamma_C.
     count: usize,
-    /// What is in S.
+    /// The parts of S.
     parts: Vec<PressedPart>,
 }
 

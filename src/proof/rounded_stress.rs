@@ -205,7 +205,7 @@ struct HoopTerm {
 }
 
 impl HoopTerm {
-    /// Those of all nodes. The [shares](axial::shares) of a node are small multiples of one of them.
+    /// The terms of all nodes. The [shares](axial::shares) of a node are small multiples of one of them.
     fn all<E: Element<N, M>, const N: usize, const M: usize>() -> Vec<Self> {
         let shares = axial::shares::<E, N, M>();
         let term = |node: usize| {

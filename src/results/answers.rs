@@ -98,7 +98,7 @@ pub struct BoundaryFriction {
     pub dissipated: f64,
     /// The share of the shear force that may act at most which acts where the body does not touch; 0 but for Tresca's law.
     pub across_gaps: f64,
-    /// What may act at most there, and all along.
+    /// The shear force that may act at most where the body does not touch, and all along.
     #[cfg_attr(feature = "files", serde(skip))]
     pub(crate) most: [f64; 2],
 }

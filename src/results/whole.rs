@@ -51,7 +51,7 @@ impl Times {
         energies.into_iter().for_each(|energy| *energy *= self.all);
     }
 
-    /// The same of intervals, by a product that is rounded outwards.
+    /// Multiplies intervals, by a product that is rounded outwards.
     pub(crate) fn intervals(&self, of: &mut Intervals, product: impl Fn(Range, f64) -> Range) {
         of.energy = product(of.energy, self.all);
         for part in &mut of.contact {
