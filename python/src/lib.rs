@@ -22,8 +22,8 @@ use signorini::io::summary;
 use signorini::io::{Failure, run};
 use signorini::kernel::Stress;
 use signorini::model::{Function, Mesh, SharedFunction};
+use signorini::results::ContactPoint;
 use signorini::results::Solution;
-use signorini::results::solution::ContactPoint;
 
 create_exception!(signorini, CaseError, PyValueError, "The case is wrong.");
 create_exception!(

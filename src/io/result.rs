@@ -33,6 +33,7 @@ use crate::results::{
 pub struct Results {
     pub(crate) version: String,
     #[serde(skip_serializing_if = "Option::is_none")]
+    /// The case file as it was read, with the settings over it; none in an older result.
     pub case: Option<String>,
     #[serde(default = "first")]
     pub(crate) schema: u32,
@@ -62,6 +63,7 @@ pub struct Results {
     pub(crate) method: Option<MethodReport>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) play: Vec<Play>,
+    /// Energies, forces, lengths.
     pub quantities: Quantities,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) contact: Vec<ContactBoundary>,
@@ -168,15 +170,20 @@ pub(crate) struct NewtonHistory {
     pub(crate) status: Status,
 }
 
+/// How the mesh was adapted to a target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adaptation {
     pub(crate) target: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) force: Option<String>,
+    /// The target is met.
     pub met: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
+    /// The reason why it is not.
     pub reason: Option<String>,
+    /// The level that the results are of.
     pub level: usize,
+    /// All levels, the given mesh first.
     pub levels: Vec<AdaptedLevel>,
 }
 
@@ -373,10 +380,12 @@ impl From<&Result<Enclosure, Unproved>> for DiscreteCertificate {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContinuousCertificate {
     #[serde(skip_serializing_if = "Option::is_none")]
+    /// The bound of the distance of v from u in the energy norm.
     pub bound: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) relative: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    /// That of the solution itself.
     pub of_solution: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) potential_energy: Option<[f64; 2]>,

@@ -40,6 +40,7 @@ impl Lines {
 /// The size from which a contact residual, a relative error or an imbalance is always shown.
 const WORTH_SHOWING: f64 = 1e-8;
 
+/// The summary of a result, which names the `files` that were written.
 pub fn solved(r: &Results, files: &[PathBuf], verbose: bool) -> String {
     let mut lines = Lines(lines_of(r, verbose));
     if !files.is_empty() {
@@ -347,7 +348,7 @@ fn times(s: &Seconds) -> String {
 }
 
 /// The summary of what is certified of a displacement from elsewhere.
-pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -> String {
+pub(crate) fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -> String {
     let mut lines = Lines::default();
     lines.line("field", quote::path(field));
     let norm = c.proof.norm;
@@ -393,17 +394,17 @@ fn of_problem(problem: Option<&str>) -> String {
 }
 
 /// The case that a certificate is of, in the summary of an audit.
-pub struct AuditedCase {
+pub(crate) struct AuditedCase {
     /// Its file.
-    pub file: PathBuf,
+    pub(crate) file: PathBuf,
     /// Its title.
-    pub title: String,
+    pub(crate) title: String,
     /// Its units.
-    pub units: Option<Units>,
+    pub(crate) units: Option<Units>,
 }
 
 /// The summary of a certificate that was verified, and compared with a case; `reason` says why it is not rigorous for that.
-pub fn audited(audit: &Audit, case: Option<(&AuditedCase, Option<&str>)>) -> String {
+pub(crate) fn audited(audit: &Audit, case: Option<(&AuditedCase, Option<&str>)>) -> String {
     let Audit { header, certificate, proof, reservations, .. } = audit;
     let mut lines = Lines::default();
     let (triangles, edges) = (certificate.pieces.len(), certificate.edges.len());

@@ -12,8 +12,8 @@ use signorini::model::{
     Condition, Diagonal, Materials, Mesh, Obstacle, PointSupport, Problem, Rectangle, Side,
 };
 use signorini::nalgebra::Vector2;
+use signorini::results::ContactPoint;
 use signorini::results::Solution;
-use signorini::results::solution::ContactPoint;
 use signorini::solve::solve;
 
 use super::common::*;

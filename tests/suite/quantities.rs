@@ -353,17 +353,14 @@ fn no_more_contact_and_no_more_opening_than_the_zones_say() {
                     zone.from < middle && middle < zone.to
                 });
             let sum = |of: &dyn Fn(usize, &[_]) -> f64| {
-                within.clone().fold(
-                    0.0,
-                    |sum, pair: &[signorini::results::solution::ContactPoint]| {
-                        sum + (of(0, pair) + of(1, pair)) / 2.0 * (pair[1].arc - pair[0].arc)
-                    },
-                )
+                within.clone().fold(0.0, |sum, pair: &[signorini::results::ContactPoint]| {
+                    sum + (of(0, pair) + of(1, pair)) / 2.0 * (pair[1].arc - pair[0].arc)
+                })
             };
             let (found, most) = match zone.limit {
                 Limit::Force(most) => {
                     limits[0] += 1;
-                    (sum(&|k, p: &[signorini::results::solution::ContactPoint]| -p[k].lambda), most)
+                    (sum(&|k, p: &[signorini::results::ContactPoint]| -p[k].lambda), most)
                 }
                 Limit::Slip(_) => panic!("there is no friction"),
                 Limit::Opening(most) => {

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use signorini::contact::Pair;
 use signorini::model::{Condition, Materials, Mesh, Problem};
-use signorini::results::solution::ContactEdge;
+use signorini::results::ContactEdge;
 
 use super::half_space::{before_the_cut, contact_radius, hertz_displacement};
 use super::*;
