@@ -25,7 +25,7 @@ use crate::proof::enclosure::{Enclosure, Isolation, Unproved};
 use crate::quote;
 use crate::results::whole::Times;
 use crate::results::{
-    ContactBoundary, EnergyBalance, GammaReport, MethodReport, Quantities, Status,
+    ContactBoundary, EnergyBalance, GammaReport, MethodReport, NewtonReport, Quantities,
 };
 
 /// The content of result.json, in its order.
@@ -164,10 +164,14 @@ pub(crate) struct StressPeak {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct NewtonHistory {
     pub(crate) iterations: usize,
-    pub(crate) residuals: Vec<f64>,
-    pub(crate) residual: f64,
-    pub(crate) factorizations: usize,
-    pub(crate) status: Status,
+    #[serde(flatten)]
+    pub(crate) report: NewtonReport,
+}
+
+impl From<&NewtonReport> for NewtonHistory {
+    fn from(report: &NewtonReport) -> Self {
+        NewtonHistory { iterations: report.iterations(), report: report.clone() }
+    }
 }
 
 /// How the mesh was adapted to a target.
@@ -240,15 +244,6 @@ impl Results {
         };
         let missing = self.missing.iter().map(|what| format!("; NO {what}"));
         Some(verdict + &missing.collect::<String>())
-    }
-}
-
-impl NewtonHistory {
-    pub(crate) fn verdict(&self) -> &'static str {
-        match self.status {
-            Status::Converged => "converged",
-            Status::ConvergedToRounding => "converged to rounding",
-        }
     }
 }
 
@@ -646,7 +641,7 @@ pub(super) mod tests {
         let spoils: [(Spoil, &str); 5] = [
             (|r| r.gamma.kappa = f64::NAN, "gamma.kappa"),
             (|r| r.gamma.limiting_edge[1][0] = f64::INFINITY, "gamma.limiting_edge[1][0]"),
-            (|r| r.newton.residuals[1] = f64::NAN, "newton.residuals[1]"),
+            (|r| r.newton.report.residuals[1] = f64::NAN, "newton.residuals[1]"),
             (
                 |r| {
                     r.quantities.reactions.insert("left".to_owned(), [0.0, f64::NEG_INFINITY]);

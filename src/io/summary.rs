@@ -296,7 +296,7 @@ fn how_it_was_solved(r: &Results, shown: &QuantityFormat, verbose: bool, lines: 
     if verbose || !(r.gamma.kappa < 1.0) {
         lines.line("coercivity", coercivity(&r.gamma));
     }
-    if verbose || r.newton.status != Status::Converged {
+    if verbose || r.newton.report.status != Status::Converged {
         lines.line("newton", newton(&r.newton));
     }
     if let Some(method) = &r.method
@@ -608,13 +608,14 @@ pub(super) fn coercivity(gamma: &GammaChoice) -> String {
 }
 
 fn newton(newton: &NewtonHistory) -> String {
-    let first = newton.residuals.first().copied().unwrap_or(newton.residual);
+    let NewtonHistory { iterations, report } = newton;
+    let first = report.residuals.first().copied().unwrap_or(report.residual);
     format!(
         "{} in {}, {}, relative residual from {first:.0e} to {:.1e}",
-        newton.verdict(),
-        count(newton.iterations, "step"),
-        count(newton.factorizations, "factorisation"),
-        newton.residual
+        report.status.name(),
+        count(*iterations, "step"),
+        count(report.factorizations, "factorisation"),
+        report.residual
     )
 }
 

@@ -382,7 +382,7 @@ impl Sweep {
     /// The heading and a line for each run: the values, the numbers of any run in the order of [`cells`], and how it ended.
     fn lines(&self, brief: bool, shown: NumberFormat) -> Vec<Vec<String>> {
         let of_run = |result: &Result<Results, Failure>| match result {
-            Ok(results) => (cells(results, shown), results.newton.verdict().to_owned()),
+            Ok(results) => (cells(results, shown), results.newton.report.status.name().to_owned()),
             Err(error) => (Vec::new(), error.to_string()),
         };
         let mut runs: Vec<(Vec<(String, String)>, String)> =
