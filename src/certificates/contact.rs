@@ -162,9 +162,9 @@ pub(super) fn sides(mesh: &Mesh, pieces: &[Piece]) -> Vec<Vec<Side>> {
 }
 
 /// The neighbours among these sides of contacts on one edge, each with its contact, and by how much of the edge they overlap.
-pub(super) fn overlaps<'s>(
-    mut all: Vec<(&'s Side, usize)>,
-) -> impl Iterator<Item = ([(&'s Side, usize); 2], f64)> {
+pub(super) fn overlaps(
+    mut all: Vec<(&Side, usize)>,
+) -> impl Iterator<Item = ([(&Side, usize); 2], f64)> {
     let range = |side: &Side| {
         let [s, t] = side.places;
         [s.min(t), s.max(t)]
