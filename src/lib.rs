@@ -86,9 +86,9 @@
 //!
 //! # What is stable
 //!
-//! The items that the first page and the pages of its modules list, such as [`Problem`] and [`solve::Settings`]. The modules below
-//! these are the inside of the solver: shown to those who read the method, reached by tests, benches and the claims, they may change
-//! with any version.
+//! The items that the first page and the pages of its modules list, such as [`Problem`] and [`solve::Settings`], but for those of [`exact`].
+//! These, and the modules below the modules, are the inside of the solver: shown to those who read the method, reached by tests, benches and
+//! the claims, they may change with any version.
 //!
 //! # Features
 //!
@@ -106,6 +106,9 @@
 //!
 //! Proofs of what the code relies on are in `docs/theory.md`; what has been verified, and how, is in `VERIFY.md`.
 
+// What the command alone uses, and its features alone switch on, is no mistake without it.
+#![cfg_attr(not(feature = "cli"), allow(dead_code))]
+
 /// The vectors and matrices of the interface.
 pub use nalgebra;
 /// The verified core, a crate of its own.
@@ -120,26 +123,21 @@ pub mod command;
 #[cfg(not(kani))]
 pub mod contact;
 #[cfg(not(kani))]
-#[doc(hidden)]
 pub mod exact;
 #[cfg(not(kani))]
-#[doc(hidden)]
-pub mod held;
+pub(crate) mod held;
 #[cfg(not(kani))]
 pub mod io;
 #[cfg(not(kani))]
 pub mod linear;
 #[cfg(not(kani))]
-#[doc(hidden)]
-pub mod memory;
+pub(crate) mod memory;
 #[cfg(not(kani))]
 pub mod model;
 #[cfg(not(kani))]
-#[doc(hidden)]
 pub mod proof;
 #[cfg(not(kani))]
-#[doc(hidden)]
-pub mod quote;
+pub(crate) mod quote;
 #[cfg(not(kani))]
 pub mod results;
 #[cfg(not(kani))]

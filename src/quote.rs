@@ -30,7 +30,7 @@ pub(crate) fn cut(text: &str) -> String {
 }
 
 /// A text of a file, on one line of at most 200 characters.
-pub fn line(text: &str) -> String {
+pub(crate) fn line(text: &str) -> String {
     cut_at(text, MOST_OF_A_LINE)
 }
 
@@ -43,7 +43,7 @@ fn cut_at(text: &str, most: usize) -> String {
 }
 
 /// A path, on one line; of a long one its end.
-pub fn path(path: &Path) -> String {
+pub(crate) fn path(path: &Path) -> String {
     let text = path.to_string_lossy();
     match text.char_indices().rev().nth(MOST_OF_A_PATH) {
         None => escaped(text.chars()),

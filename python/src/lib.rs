@@ -22,8 +22,8 @@ use signorini::io::summary;
 use signorini::io::{Failure, run};
 use signorini::kernel::Stress;
 use signorini::model::{Function, Mesh, SharedFunction};
+use signorini::results::ContactPoint;
 use signorini::results::Solution;
-use signorini::results::solution::ContactPoint;
 
 create_exception!(signorini, CaseError, PyValueError, "The case is wrong.");
 create_exception!(
@@ -369,8 +369,7 @@ fn raw<'py>(py: Python<'py>, s: &Solution, results: &str) -> PyResult<Bound<'py,
     };
     floats("stress", &mut s.stress.iter().flat_map(stress))?;
     floats("von_mises", &mut s.von_mises.iter().copied())?;
-    let edges = s.contact_points();
-    let points = || edges.iter().flatten();
+    let points = || s.contact.iter().flat_map(|edge| &edge.points);
     floats("arc", &mut points().map(|p| p.arc))?;
     // Where a pair of bodies touches is no node.
     let node = |p: &ContactPoint| p.node.map_or(-1, |node| node as i64);
@@ -382,7 +381,8 @@ fn raw<'py>(py: Python<'py>, s: &Solution, results: &str) -> PyResult<Bound<'py,
     floats("sigma_n", &mut points().map(|p| p.sigma_n))?;
     floats("lambda_h", &mut points().map(|p| p.lambda))?;
     floats("pressure", &mut points().map(|p| p.pressure))?;
-    dict.set_item("boundary", points().map(|p| p.boundary).collect::<Vec<&str>>())?;
+    let names = s.contact.iter().flat_map(|edge| edge.points.iter().map(|_| &*edge.boundary));
+    dict.set_item("boundary", names.collect::<Vec<&str>>())?;
     dict.set_item("results", results)?;
     Ok(dict)
 }

@@ -100,12 +100,17 @@ impl Certificate {
     /// tau N on the edges, as the certificate has it.
     pub fn tractions<S: Enclosing>(&self, points: &[Vector2<S>]) -> Vec<[Vector2<S>; 2]> {
         let mut forces: Vec<_> = (0..self.edges.len()).map(|e| self.force(e, points)).collect();
+        self.face(&mut forces);
+        forces
+    }
+
+    /// Gives the edges of second bodies the opposite of what acts on those of first ones.
+    pub fn face<S: Enclosing>(&self, forces: &mut [[Vector2<S>; 2]]) {
         for (&e, &other) in &self.facing {
             if self.edges[e].role == Role::Facing {
                 forces[e] = opposite(forces[other]);
             }
         }
-        forces
     }
 
     /// Puts the triangles in equilibrium, from these forces on the edges.

@@ -11,6 +11,7 @@
 //! On a pair an edge has several contacts, each with a part of an edge of the other body, and the pressure is one for both: where a
 //! side is cut, in the middle of an edge or where contact ends, the other one is.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::Vector2;
@@ -115,6 +116,65 @@ impl Side {
         let s = self.within(x);
         0.0 < s && s < 1.0
     }
+}
+
+/// The sides of the contacts of these pieces. On an edge that faces edges of two lengths a place is the same as its end or its middle within
+/// two lengths: of contacts that overlap there by less, the smaller length becomes the larger one, and they end at one place.
+pub(super) fn sides(mesh: &Mesh, pieces: &[Piece]) -> Vec<Vec<Side>> {
+    let stretches = |k: usize| pieces[k].geometry.stretches.iter();
+    let length = |stretch: &Stretch| mesh.length_and_normal(stretch.edge).0;
+    let of = |k: usize, longest: f64| -> Vec<Side> {
+        stretches(k).map(|stretch| Side::new(mesh, stretch, longest)).collect()
+    };
+    let mut longest: Vec<f64> =
+        (0..pieces.len()).map(|k| stretches(k).map(length).fold(0.0, f64::max)).collect();
+    let mut sides: Vec<Vec<Side>> = longest.iter().enumerate().map(|(k, &l)| of(k, l)).collect();
+    let mut on_edges: BTreeMap<usize, Vec<(usize, usize)>> = BTreeMap::new();
+    for (k, own) in sides.iter().enumerate() {
+        for (i, side) in own.iter().enumerate() {
+            on_edges.entry(mesh.number_of(side.edge)).or_default().push((k, i));
+        }
+    }
+    loop {
+        let mut changes = 0;
+        for line in on_edges.values() {
+            let all: Vec<(&Side, usize)> = line.iter().map(|&(k, i)| (&sides[k][i], k)).collect();
+            let is_one_place = |[(a, k), (b, l)]: [(&Side, usize); 2], by: f64| {
+                by > ROUNDING && by <= a.same.max(b.same) && longest[k] != longest[l]
+            };
+            let unlike: Vec<[usize; 2]> = overlaps(all)
+                .filter(|&(two, by)| is_one_place(two, by))
+                .map(|(two, _)| two.map(|(_, k)| k))
+                .collect();
+            changes += unlike.len();
+            for [k, l] in unlike {
+                let most = longest[k].max(longest[l]);
+                for k in [k, l] {
+                    longest[k] = most;
+                    sides[k] = of(k, most);
+                }
+            }
+        }
+        if changes == 0 {
+            return sides;
+        }
+    }
+}
+
+/// The neighbours among these sides of contacts on one edge, each with its contact, and by how much of the edge they overlap.
+pub(super) fn overlaps(
+    mut all: Vec<(&Side, usize)>,
+) -> impl Iterator<Item = ([(&Side, usize); 2], f64)> {
+    let range = |side: &Side| {
+        let [s, t] = side.places;
+        [s.min(t), s.max(t)]
+    };
+    all.sort_by(|(a, _), (b, _)| range(a)[0].total_cmp(&range(b)[0]));
+    (1..all.len()).map(move |k| {
+        let two = [all[k - 1], all[k]];
+        let [[_, before], [start, end]] = two.map(|(side, _)| range(side));
+        (two, before.min(end) - start)
+    })
 }
 
 fn near_place(x: f64, same: f64) -> f64 {
@@ -259,12 +319,13 @@ fn halves([s, t]: [f64; 2], value: impl Fn(f64) -> Vector2<f64>) -> Vec<Part> {
 
 impl Contact {
     /// `halved` tells whether each half of an edge has a pressure of its own.
-    pub(crate) fn new(problem: &Problem, piece: &Piece, u: &[[f64; 2]], halved: bool) -> Contact {
-        let (geometry, mesh) = (&piece.geometry, &problem.mesh);
-        let stretches = geometry.stretches.iter();
-        let lengths = stretches.clone().map(|s| mesh.length_and_normal(s.edge).0);
-        let longest = lengths.fold(0.0, f64::max);
-        let sides: Vec<Side> = stretches.map(|s| Side::new(mesh, s, longest)).collect();
+    pub(crate) fn new(
+        problem: &Problem,
+        (piece, sides): (&Piece, Vec<Side>),
+        u: &[[f64; 2]],
+        halved: bool,
+    ) -> Contact {
+        let geometry = &piece.geometry;
         let directions = directions(piece);
         let gap = [0, 1].map(|a| geometry.nodes[a].gap);
         let curved =
@@ -525,24 +586,24 @@ impl Contact {
     /// The tractions along the direction of contact and across at both ends of the part of an edge of side `i` between two places, per
     /// length of the edge of the first side.
     pub(crate) fn tractions_between(&self, i: usize, places: [f64; 2]) -> [[f64; 2]; 2] {
-        let ends = places.map(|x| self.sides[i].within(x));
-        let middle = (ends[0] + ends[1]) / 2.0;
+        let side = &self.sides[i];
+        let middle = side.within((places[0] + places[1]) / 2.0);
         let inside = |part: &&Part| part.ends[0] < middle && middle < part.ends[1];
-        let Some(Part { ends: [from, to], pressure, shear }) = self.parts.iter().find(inside)
-        else {
+        let Some(&Part { ends, pressure, shear }) = self.parts.iter().find(inside) else {
             return [[0.0; 2]; 2];
         };
+        let [from, to] = ends.map(|s| side.place(s));
         let [start, end] = self.sides[0].places;
         let ratio =
             if self.is_pair() { self.length / (self.sides[0].length * (end - start)) } else { 1.0 };
         [pressure, shear].map(|[p, q]| {
-            ends.map(|s| {
-                let s = (s - from) / (to - from);
+            places.map(|x| {
+                let s = (x - from) / (to - from);
                 // The ends of a part are known to rounding.
                 let p = if s.abs() <= SAME_PLACE {
-                    *p
+                    p
                 } else if (s - 1.0).abs() <= SAME_PLACE || p == q {
-                    *q
+                    q
                 } else {
                     p + s * (q - p)
                 };
@@ -796,3 +857,34 @@ const NEAR_THE_END: f64 = 1e-3;
 
 /// The least part of an edge that is cut off where lambda^h is not affine: a sliver bounds badly.
 const LEAST_PART: f64 = 0.15;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pressure_that_ends_near_the_middle_of_an_edge_ends_there_and_pulls_nowhere() {
+        let edge = BoundaryEdge { triangle: 0, local: 0 };
+        let part = |ends, pressure| Part { ends, pressure, shear: [0.0; 2] };
+        let contact = |at: f64| Contact {
+            edge,
+            boundary: "short".into(),
+            // Beside an edge that is a thousand times as long.
+            sides: vec![Side { edge, places: [0.0, 1.0], length: 1.0, same: 1e-3, moved: false }],
+            length: 1.0,
+            normal: Vector2::y(),
+            directions: [Vector2::y(); 2],
+            gap: [0.0; 2],
+            gap_bulge: 0.0,
+            law: Law::Contact,
+            offset: ([0.0; 2], 0.0),
+            parts: vec![part([0.0, at], [-1.0, 0.0]), part([at, 1.0], [0.0; 2])],
+        };
+        for at in [0.4995, 0.5, 0.5005] {
+            assert_eq!(contact(at).tractions_between(0, [0.0, 0.5])[0], [-1.0, 0.0]);
+            assert_eq!(contact(at).tractions_between(0, [0.5, 1.0])[0], [0.0; 2]);
+        }
+        // Control: elsewhere places are what they are.
+        assert_eq!(contact(0.4).tractions_between(0, [0.0, 0.2])[0], [-1.0, -0.5]);
+    }
+}

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector2;
 
 use super::certificate::{Role, is_oblique};
-use super::contact::{Contact, SAME_PLACE, even_out};
+use super::contact::{Contact, SAME_PLACE, even_out, overlaps, sides};
 use super::data::{Traction, bulge_of, is_within};
 use super::errors::CertifyError;
 use super::field::Field;
@@ -190,19 +190,11 @@ impl<'a> ProblemParts<'a> {
 
     /// No part of an edge faces two others.
     fn check_overlaps(&self) -> Result<(), CertifyError> {
-        for line in self.lines.iter().filter(|line| line.len() > 1) {
-            let mut ranges: Vec<([f64; 2], usize)> = line
-                .iter()
-                .map(|&(k, i)| {
-                    let [s, t] = self.contact[k].sides[i].places;
-                    ([s.min(t), s.max(t)], k)
-                })
-                .collect();
-            ranges.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]));
-            if let Some(pair) =
-                ranges.windows(2).find(|pair| pair[1].0[0] < pair[0].0[1] - SAME_PLACE)
-            {
-                let boundary = quoted(&self.contact[pair[0].1].boundary, '\'');
+        for line in &self.lines {
+            let of = |&(k, i): &(usize, usize)| (&self.contact[k].sides[i], k);
+            let all = line.iter().map(of).collect();
+            if let Some(([(_, k), _], _)) = overlaps(all).find(|(_, by)| *by > SAME_PLACE) {
+                let boundary = quoted(&self.contact[k].boundary, '\'');
                 return Err(CertifyError::Unsupported(format!(
                     "a part of an edge faces two others, on {boundary} or the boundary that it is a pair with"
                 )));
@@ -338,8 +330,8 @@ impl<'a> ProblemParts<'a> {
 fn contacts(problem: &Problem, pieces: &[Piece], u: &[[f64; 2]], halved: bool) -> Vec<Contact> {
     let mut contact: Vec<Contact> = Vec::with_capacity(pieces.len());
     let mut left_out = None;
-    for piece in pieces {
-        let mut next = Contact::new(problem, piece, u, halved);
+    for of_piece in pieces.iter().zip(sides(&problem.mesh, pieces)) {
+        let mut next = Contact::new(problem, of_piece, u, halved);
         let last = contact.last_mut();
         if !next.has_length() {
             last.into_iter().for_each(|last| last.take_over(&mut next, 1));

@@ -336,7 +336,7 @@ fn weighted(solution: &Solution, boundary: &str, weight: Ramp) -> f64 {
     let edges = solution.contact.iter().filter(|edge| &*edge.boundary == boundary);
     let nodes = edges.flat_map(|edge| edge.points.windows(2));
     nodes.fold(0.0, |sum, pair| {
-        let at = |k: usize| -pair[k].lambda * weight.at(solution.nodes[pair[k].node][weight.axis]);
+        let at = |k: usize| -pair[k].lambda * weight.at(pair[k].place[weight.axis]);
         sum + (at(0) + at(1)) / 2.0 * (pair[1].arc - pair[0].arc)
     })
 }

@@ -119,12 +119,7 @@ fn rebalance(state: &mut Balanced<f64>, certificate: &Certificate) -> Result<(),
     for &Change { edge, factors } in &state.balance.changes {
         (0..2).for_each(|k| state.forces[edge][k] *= 1.0 + factors[k]);
     }
-    for (&e, &other) in &certificate.facing {
-        if certificate.edges[e].role == Role::Facing {
-            let [a, b] = state.forces[other];
-            state.forces[e] = [-b, -a];
-        }
-    }
+    certificate.face(&mut state.forces);
     let Balanced { points, triangles, topology, forces, balance, .. } = state;
     *balance = certificate.equilibrium((points, triangles), topology, forces)?;
     Ok(())

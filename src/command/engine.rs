@@ -13,7 +13,7 @@ use std::{env, fs, io};
 use crate::io::Failure;
 use crate::io::files;
 use crate::io::input::{self, MOST_OF_A_CASE, reason};
-use crate::io::outputs::{FILES, FILES_OF_FENICSX};
+use crate::io::outputs::FILES;
 use crate::io::result::Results;
 use crate::quote;
 
@@ -57,7 +57,7 @@ pub(crate) fn fenicsx(
             "the engine fenicsx wrote no result.json that can be read: {error}"
         ))
     })?;
-    for name in FILES_OF_FENICSX {
+    for name in ["solution.xdmf", "solution.h5", "result.json"] {
         output.adopt(name)?;
     }
     let mut files = output.publish(&FILES)?;

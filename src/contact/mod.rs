@@ -6,10 +6,8 @@ pub mod discretization;
 pub mod friction;
 mod hoop;
 pub mod law;
-#[doc(hidden)]
 pub mod moments;
 pub mod piece;
-#[doc(hidden)]
 pub mod residual;
 pub(crate) mod stress_points;
 

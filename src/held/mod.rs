@@ -6,5 +6,3 @@ pub(crate) mod corners;
 pub(crate) mod grip;
 pub(crate) mod holding;
 pub(crate) mod solvability;
-
-pub use crate::model::rigid::{FreeMotion, Parts};

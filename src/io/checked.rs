@@ -14,7 +14,7 @@ use crate::solve::{ContactQuadrature, Outline};
 const MOST: usize = 100;
 
 /// The summary of a valid case.
-pub fn checked(case: &Case, outline: &Outline) -> String {
+pub(crate) fn checked(case: &Case, outline: &Outline) -> String {
     let mut lines = Lines::default();
     let mesh = MeshSizes::new(&case.problem.mesh, outline.nodes, outline.contact_edges);
     lines.line("mesh", summary::sizes(&mesh));
@@ -38,7 +38,7 @@ pub fn checked(case: &Case, outline: &Outline) -> String {
 }
 
 /// The boundaries of a case that cannot be solved, for one who looks for the reason.
-pub fn listed(case: &Case) -> String {
+pub(crate) fn listed(case: &Case) -> String {
     let mut lines = Lines::default();
     boundaries(case, &mut lines);
     lines.under(&case.title)

@@ -21,7 +21,7 @@ struct Used {
 }
 
 /// The text of a case file for this mesh, which it calls `gmsh`, with these pairs of boundaries that touch each other.
-pub fn draft(title: &str, gmsh: &Path, mesh: &Mesh, pairs: &[Pair]) -> String {
+pub(crate) fn draft(title: &str, gmsh: &Path, mesh: &Mesh, pairs: &[Pair]) -> String {
     let mut text = format!(
         "# Replace material, support and floor by yours: those below make a first run. docs/case.md lists all keys.\ntitle = {}\n\n[mesh]\ngmsh = {}\n",
         string(title),

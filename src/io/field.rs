@@ -25,7 +25,11 @@ const NEAR: f64 = 1e-6;
 ///
 /// # Errors
 /// A file that can't be read or understood, that lacks a node or has points that are none, or two values at one.
-pub fn read_field(path: &Path, mesh: &Mesh, degree: Degree) -> Result<Vec<[f64; 2]>, FileError> {
+pub(crate) fn read_field(
+    path: &Path,
+    mesh: &Mesh,
+    degree: Degree,
+) -> Result<Vec<[f64; 2]>, FileError> {
     let read = |bytes: Vec<u8>| -> Result<Vec<[f64; 2]>, String> {
         if path.extension().and_then(|e| e.to_str()) != Some("csv") {
             return Err(OTHER.to_owned());

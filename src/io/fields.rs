@@ -8,7 +8,7 @@ use super::input::Failure;
 use super::vtu::{CellKind, DataArray, Grid, vtu};
 use crate::kernel::Stress;
 use crate::model::{Mesh, Problem};
-use crate::results::solution::ContactPoint;
+use crate::results::solution::{ContactEdge, ContactPoint};
 use crate::results::{Solution, stresses};
 
 impl Solution {
@@ -119,17 +119,16 @@ fn contact_numbers(s: &Solution) -> &'static [ContactNumber] {
 
 /// The file contact.vtu.
 fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
-    let edges = s.contact_points();
     let degree = s.degree.number();
     let per_edge = degree + 1;
-    let connectivity: Vec<usize> = (0..edges.len())
+    let connectivity: Vec<usize> = (0..s.contact.len())
         .flat_map(|e| {
             let first = e * per_edge;
             // Ends first, then what lies between them.
             [first, first + degree].into_iter().chain(first + 1..first + degree)
         })
         .collect();
-    let points = || edges.iter().flatten();
+    let points = || s.contact.iter().flat_map(|edge| &edge.points);
     let places: Vec<[f64; 2]> = points().map(|p| p.place).collect();
     let displacement: Vec<[f64; 2]> = points().map(|p| p.displacement).collect();
     let direction: Vec<[f64; 2]> = points().map(|p| p.direction).collect();
@@ -152,16 +151,15 @@ fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
 
 /// A row for each node of each contact edge: arc length from the start of the boundary, place in the undeformed body, the
 /// numbers there.
-fn contact_csv(s: &Solution) -> Result<String, NotFinite> {
+fn contact_csv<'s>(s: &'s Solution) -> Result<String, NotFinite> {
     let named = contact_numbers(s);
     let row = |p: &ContactPoint| {
         let [x, y] = p.place;
         let numbers = named.iter().map(|(_, of)| of(p));
         [p.arc, x, y].into_iter().chain(numbers).collect::<Vec<f64>>()
     };
-    let edges = s.contact_points();
-    let rows: Vec<(Vec<f64>, &str)> =
-        edges.iter().flatten().map(|p| (row(p), p.boundary)).collect();
+    let of_edge = |edge: &'s ContactEdge| edge.points.iter().map(|p| (row(p), &*edge.boundary));
+    let rows: Vec<(Vec<f64>, &str)> = s.contact.iter().flat_map(of_edge).collect();
     let names: Vec<&str> = named.iter().map(|(name, _)| *name).collect();
     csv::table(&[&["arc", "x", "y"], &names[..], &["boundary"]].concat(), &rows)
 }
@@ -239,7 +237,7 @@ mod tests {
         let mut rows = text.lines().map(|line| line.split(',').collect::<Vec<&str>>());
         let names = rows.next().unwrap();
         let mut apart = 0;
-        for (row, point) in rows.zip(s.contact_points().into_iter().flatten()) {
+        for (row, point) in rows.zip(s.contact.iter().flat_map(|edge| &edge.points)) {
             let number = |name: &str| -> f64 {
                 row[names.iter().position(|of| *of == name).unwrap()].parse().unwrap()
             };
@@ -256,8 +254,8 @@ mod tests {
         assert!(apart > 2, "control: columns are not the same");
         let arrays = arrays(&contact_vtu(&s).unwrap());
         let opening = arrays.iter().find(|(names, _)| *names == ["PointData", "opening"]).unwrap();
-        let points = s.contact_points();
-        let left = points.iter().flatten().map(|point| point.gap - point.u_n);
+        let points = s.contact.iter().flat_map(|edge| &edge.points);
+        let left = points.map(|point| point.gap - point.u_n);
         assert_eq!(opening.1, left.collect::<Vec<f64>>());
     }
 }

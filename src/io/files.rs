@@ -106,7 +106,7 @@ impl Output {
     }
 
     /// The temporary folder, for another program to write to.
-    pub fn room(&self) -> &Path {
+    pub(crate) fn room(&self) -> &Path {
         &self.room
     }
 
@@ -114,7 +114,7 @@ impl Output {
     ///
     /// # Errors
     /// A failure with the place that the file was to have; also if there is no such file.
-    pub fn adopt(&mut self, name: &str) -> Result<(), Failure> {
+    pub(crate) fn adopt(&mut self, name: &str) -> Result<(), Failure> {
         self.add(name, |path| match fs::symlink_metadata(path)?.is_file() {
             true => File::open(path)?.sync_all(),
             false => Err(io::Error::other("not a regular file")),

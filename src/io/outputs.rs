@@ -47,13 +47,12 @@ pub const FILES: [&str; 11] = [
 /// The field of a displacement from elsewhere that is certified.
 const CERTIFIED: &str = "certified.vtu";
 
-pub const FILES_OF_FENICSX: [&str; 3] = ["solution.xdmf", "solution.h5", "result.json"];
-
 /// Files that are written on demand.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extra {
     /// certificate.json and certificate.bin, where there is a certificate.
     pub certificate: bool,
+    /// report.html.
     pub report: bool,
 }
 
@@ -151,7 +150,7 @@ impl Series {
 
 /// Writes what is certified of a displacement from elsewhere: certified.vtu with the `field`, its admissible part and the
 /// bound of its error by triangles, certificate.json and certificate.bin.
-pub fn write_certified(
+pub(crate) fn write_certified(
     folder: &Path,
     case: &Case,
     field: &[[f64; 2]],
@@ -270,13 +269,7 @@ pub fn results(
         remarks,
         mesh: MeshSizes::new(mesh, solution.nodes.len(), solution.pieces.len()),
         gamma: GammaChoice::from(&solution.gamma),
-        newton: NewtonHistory {
-            iterations: solution.newton.iterations(),
-            residuals: solution.newton.residuals.clone(),
-            residual: solution.newton.residual,
-            factorizations: solution.newton.factorizations,
-            status: solution.newton.status,
-        },
+        newton: NewtonHistory::from(&solution.newton),
         method: Some(solution.method),
         play: solution.plays.clone(),
         quantities: solution.quantities.clone(),

@@ -218,10 +218,11 @@ fn pressed() -> Group {
 mod tests {
     use super::body::Colours;
     use super::draw::{distance, short, viridis};
-    use super::scene::{ContactSample, ContactSurface};
+    use super::scene::ContactSurface;
     use super::*;
     use crate::certificates::quantities::{Limit, Zone};
     use crate::model::{Diagonal, Rectangle};
+    use crate::results::solution::ContactPoint;
     use svg::node::element::tag::Type;
     use svg::parser::Event;
 
@@ -234,14 +235,13 @@ mod tests {
         let displacement: Vec<Point> = mesh.vertices().iter().map(moved).collect();
         let mut edges = mesh.edges_of("bottom").unwrap().to_vec();
         edges.sort_by_key(|&edge| mesh.ends(edge)[0]);
-        let sample = |v: usize| ContactSample {
+        let sample = |v: usize| ContactPoint {
             arc: mesh.vertices()[v][0],
-            position: mesh.vertices()[v],
-            normal: [0.0, -1.0],
+            place: mesh.vertices()[v],
+            direction: [0.0, -1.0],
             displacement: displacement[v],
-            gap: 0.0,
             pressure: (0.5 - mesh.vertices()[v][0]).max(0.0),
-            shear: None,
+            ..ContactPoint::default()
         };
         let part = edges.iter().flat_map(|&e| mesh.ends(e)).map(sample).collect();
         Scene {
@@ -258,6 +258,7 @@ mod tests {
             contact: vec![ContactSurface {
                 name: "floor".into(),
                 rigid: true,
+                rough: false,
                 parts: vec![part],
                 zones: None,
                 reserved: false,
@@ -270,7 +271,7 @@ mod tests {
         }
     }
 
-    fn samples(scene: &mut Scene) -> impl Iterator<Item = &mut ContactSample> {
+    fn samples(scene: &mut Scene) -> impl Iterator<Item = &mut ContactPoint> {
         scene.contact.iter_mut().flat_map(|surface| surface.parts.iter_mut().flatten())
     }
 
@@ -279,12 +280,12 @@ mod tests {
         let sample = |i: i32| {
             let angle = from + (to - from) * f64::from(i) / 24.0;
             let (sin, cos) = angle.sin_cos();
-            ContactSample {
+            ContactPoint {
                 arc: radius * (angle - from).abs(),
-                position: [0.5 + radius * cos, 0.5 + radius * sin],
-                normal: [-cos, -sin],
+                place: [0.5 + radius * cos, 0.5 + radius * sin],
+                direction: [-cos, -sin],
                 pressure: pressure(angle),
-                ..ContactSample::default()
+                ..ContactPoint::default()
             }
         };
         let mut block = block(4);
@@ -396,13 +397,19 @@ mod tests {
                 &["0.8"],
             ),
             (
-                |s| samples(s).for_each(|s| (s.pressure, s.gap, s.shear) = (0.0, 1.0, Some(0.1))),
+                |s| {
+                    s.contact[0].rough = true;
+                    samples(s).for_each(|s| (s.pressure, s.gap, s.shear) = (0.0, 1.0, 0.1));
+                },
                 &["no contact pressure, no contact"],
                 &["peak 0, rigid obstacle, size of the friction"],
             ),
             (|s| s.contact.clear(), &["no contact pressure"], &["no contact"]),
             (
-                |s| samples(s).for_each(|s| s.shear = Some(0.5 * s.pressure)),
+                |s| {
+                    s.contact[0].rough = true;
+                    samples(s).for_each(|s| s.shear = 0.5 * s.pressure);
+                },
                 &["size of the friction", "contact pressure"],
                 &["floor: contact pressure"],
             ),
@@ -451,8 +458,8 @@ mod tests {
             hole(0.0, -std::f64::consts::TAU, 0.3, |angle| angle.sin().max(0.0)),
             block(4),
         ];
-        let at_left = |(i, s): (usize, &mut ContactSample)| {
-            (s.position, s.normal) = ([0.0, 1.0 - 0.25 * i as f64], [-1.0, 0.0]);
+        let at_left = |(i, s): (usize, &mut ContactPoint)| {
+            (s.place, s.direction) = ([0.0, 1.0 - 0.25 * i as f64], [-1.0, 0.0]);
         };
         samples(&mut scenes[2]).enumerate().for_each(at_left);
         for scene in &mut scenes {
@@ -472,7 +479,7 @@ mod tests {
             for sample in samples(&mut scene) {
                 sample.pressure = (0.3 - (sample.arc - arc).abs()).max(0.0);
                 if to_the_left {
-                    sample.position[0] = 1.0 - sample.position[0];
+                    sample.place[0] = 1.0 - sample.place[0];
                 }
             }
             let svg = drawn(&scene);

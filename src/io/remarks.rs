@@ -13,7 +13,7 @@ use crate::model::space::Space;
 use crate::model::tree::Bounds;
 use crate::model::{Degree, Problem};
 use crate::quote;
-use crate::results::solution::ContactValues;
+use crate::results::solution::ContactEdge;
 use crate::results::{ContactBoundary, Solution};
 
 /// The largest strain that small-strain theory is for.
@@ -184,9 +184,9 @@ fn nearest(
     words: &Words,
     boundary: &str,
 ) -> Option<String> {
-    let edges = solution.contact.iter().filter(|edge| &*edge.boundary == boundary);
-    let distance = |point: &ContactValues| (point.gap - point.u_n, solution.nodes[point.node]);
-    let points = edges.flat_map(|edge| edge.points.iter().map(distance));
+    let to_obstacle = |edge: &&ContactEdge| edge.partner.is_none() && &*edge.boundary == boundary;
+    let edges = solution.contact.iter().filter(to_obstacle);
+    let points = edges.flat_map(|edge| &edge.points).map(|p| (p.gap - p.u_n, p.place));
     let (gap, at) = points.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(format!(
         "{} touches nothing: it is nearest to {} at {}, where a gap of {} is left",

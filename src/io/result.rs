@@ -25,7 +25,7 @@ use crate::proof::enclosure::{Enclosure, Isolation, Unproved};
 use crate::quote;
 use crate::results::whole::Times;
 use crate::results::{
-    ContactBoundary, EnergyBalance, GammaReport, MethodReport, Quantities, Status,
+    ContactBoundary, EnergyBalance, GammaReport, MethodReport, NewtonReport, Quantities,
 };
 
 /// The content of result.json, in its order.
@@ -33,6 +33,7 @@ use crate::results::{
 pub struct Results {
     pub(crate) version: String,
     #[serde(skip_serializing_if = "Option::is_none")]
+    /// The case file as it was read, with the settings over it; none in an older result.
     pub case: Option<String>,
     #[serde(default = "first")]
     pub(crate) schema: u32,
@@ -62,6 +63,7 @@ pub struct Results {
     pub(crate) method: Option<MethodReport>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) play: Vec<Play>,
+    /// Energies, forces, lengths.
     pub quantities: Quantities,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) contact: Vec<ContactBoundary>,
@@ -162,21 +164,30 @@ pub(crate) struct StressPeak {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct NewtonHistory {
     pub(crate) iterations: usize,
-    pub(crate) residuals: Vec<f64>,
-    pub(crate) residual: f64,
-    pub(crate) factorizations: usize,
-    pub(crate) status: Status,
+    #[serde(flatten)]
+    pub(crate) report: NewtonReport,
 }
 
+impl From<&NewtonReport> for NewtonHistory {
+    fn from(report: &NewtonReport) -> Self {
+        NewtonHistory { iterations: report.iterations(), report: report.clone() }
+    }
+}
+
+/// How the mesh was adapted to a target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adaptation {
     pub(crate) target: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) force: Option<String>,
+    /// The target is met.
     pub met: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
+    /// The reason why it is not.
     pub reason: Option<String>,
+    /// The level that the results are of.
     pub level: usize,
+    /// All levels, the given mesh first.
     pub levels: Vec<AdaptedLevel>,
 }
 
@@ -233,15 +244,6 @@ impl Results {
         };
         let missing = self.missing.iter().map(|what| format!("; NO {what}"));
         Some(verdict + &missing.collect::<String>())
-    }
-}
-
-impl NewtonHistory {
-    pub(crate) fn verdict(&self) -> &'static str {
-        match self.status {
-            Status::Converged => "converged",
-            Status::ConvergedToRounding => "converged to rounding",
-        }
     }
 }
 
@@ -373,10 +375,12 @@ impl From<&Result<Enclosure, Unproved>> for DiscreteCertificate {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContinuousCertificate {
     #[serde(skip_serializing_if = "Option::is_none")]
+    /// The bound of the distance of v from u in the energy norm.
     pub bound: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) relative: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    /// That of the solution itself.
     pub of_solution: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) potential_energy: Option<[f64; 2]>,
@@ -637,7 +641,7 @@ pub(super) mod tests {
         let spoils: [(Spoil, &str); 5] = [
             (|r| r.gamma.kappa = f64::NAN, "gamma.kappa"),
             (|r| r.gamma.limiting_edge[1][0] = f64::INFINITY, "gamma.limiting_edge[1][0]"),
-            (|r| r.newton.residuals[1] = f64::NAN, "newton.residuals[1]"),
+            (|r| r.newton.report.residuals[1] = f64::NAN, "newton.residuals[1]"),
             (
                 |r| {
                     r.quantities.reactions.insert("left".to_owned(), [0.0, f64::NEG_INFINITY]);

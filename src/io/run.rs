@@ -10,6 +10,7 @@ use crate::certificates::{CertifyError, Continuous, adapt, certify_with};
 use crate::results::Solution;
 use crate::solve::{Course, SolveError, Times, solve_along};
 
+/// A case that is solved.
 #[derive(Debug)]
 pub struct Solved {
     /// The solution, on the mesh that the case has now.

@@ -12,7 +12,7 @@ use super::sweep::{Names, Sweep, clear, of_run};
 use crate::certificates::adapt::Stage;
 
 /// The table, and force and peak of each step.
-pub const FILES: [&str; 2] = ["steps.csv", "steps.svg"];
+pub(crate) const FILES: [&str; 2] = ["steps.csv", "steps.svg"];
 
 const NAMES: &Names = &[FILES[0], FILES[1], "steps.pvd"];
 
@@ -22,7 +22,7 @@ const NAMES: &Names = &[FILES[0], FILES[1], "steps.pvd"];
 ///
 /// # Errors
 /// Files that can't be written. A step that has no solution is none: its entry in [`Sweep::results`] says why.
-pub fn run(
+pub(crate) fn run(
     case: Case,
     folder: &Path,
     extra: Extra,

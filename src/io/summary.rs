@@ -40,6 +40,7 @@ impl Lines {
 /// The size from which a contact residual, a relative error or an imbalance is always shown.
 const WORTH_SHOWING: f64 = 1e-8;
 
+/// The summary of a result, which names the `files` that were written.
 pub fn solved(r: &Results, files: &[PathBuf], verbose: bool) -> String {
     let mut lines = Lines(lines_of(r, verbose));
     if !files.is_empty() {
@@ -295,7 +296,7 @@ fn how_it_was_solved(r: &Results, shown: &QuantityFormat, verbose: bool, lines: 
     if verbose || !(r.gamma.kappa < 1.0) {
         lines.line("coercivity", coercivity(&r.gamma));
     }
-    if verbose || r.newton.status != Status::Converged {
+    if verbose || r.newton.report.status != Status::Converged {
         lines.line("newton", newton(&r.newton));
     }
     if let Some(method) = &r.method
@@ -347,7 +348,7 @@ fn times(s: &Seconds) -> String {
 }
 
 /// The summary of what is certified of a displacement from elsewhere.
-pub fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -> String {
+pub(crate) fn certified(case: &Case, field: &Path, c: &Continuous, files: &[PathBuf]) -> String {
     let mut lines = Lines::default();
     lines.line("field", quote::path(field));
     let norm = c.proof.norm;
@@ -393,17 +394,17 @@ fn of_problem(problem: Option<&str>) -> String {
 }
 
 /// The case that a certificate is of, in the summary of an audit.
-pub struct AuditedCase {
+pub(crate) struct AuditedCase {
     /// Its file.
-    pub file: PathBuf,
+    pub(crate) file: PathBuf,
     /// Its title.
-    pub title: String,
+    pub(crate) title: String,
     /// Its units.
-    pub units: Option<Units>,
+    pub(crate) units: Option<Units>,
 }
 
 /// The summary of a certificate that was verified, and compared with a case; `reason` says why it is not rigorous for that.
-pub fn audited(audit: &Audit, case: Option<(&AuditedCase, Option<&str>)>) -> String {
+pub(crate) fn audited(audit: &Audit, case: Option<(&AuditedCase, Option<&str>)>) -> String {
     let Audit { header, certificate, proof, reservations, .. } = audit;
     let mut lines = Lines::default();
     let (triangles, edges) = (certificate.pieces.len(), certificate.edges.len());
@@ -607,13 +608,14 @@ pub(super) fn coercivity(gamma: &GammaChoice) -> String {
 }
 
 fn newton(newton: &NewtonHistory) -> String {
-    let first = newton.residuals.first().copied().unwrap_or(newton.residual);
+    let NewtonHistory { iterations, report } = newton;
+    let first = report.residuals.first().copied().unwrap_or(report.residual);
     format!(
         "{} in {}, {}, relative residual from {first:.0e} to {:.1e}",
-        newton.verdict(),
-        count(newton.iterations, "step"),
-        count(newton.factorizations, "factorisation"),
-        newton.residual
+        report.status.name(),
+        count(*iterations, "step"),
+        count(report.factorizations, "factorisation"),
+        report.residual
     )
 }
 

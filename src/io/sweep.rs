@@ -34,7 +34,7 @@ const MOST_REMARKS: usize = 20;
 /// A key of the case file and the values that it takes, such as `method.gamma0=1e-3,1e-2`, or `material.young=1000:3000:5`: five
 /// values from 1000 to 3000, as far from one to the next.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ParameterAxis {
+pub(crate) struct ParameterAxis {
     /// The key with its dots.
     pub(crate) key: String,
     /// The values as TOML has them; at least one.
@@ -105,7 +105,7 @@ fn expanded(item: &str) -> Vec<String> {
 const NOT_SOLVED: &str = "not solved";
 
 /// The table, and force and peak over what varies.
-pub const FILES: [&str; 2] = ["sweep.csv", "sweep.svg"];
+pub(crate) const FILES: [&str; 2] = ["sweep.csv", "sweep.svg"];
 
 /// The names of the files of a table of runs: the table, force and peak over what varies, and what ParaView opens, where the runs have
 /// files.
@@ -116,13 +116,13 @@ const NAMES: &Names = &[FILES[0], FILES[1], "sweep.pvd"];
 
 /// A case and its results for the combinations of the values of some keys.
 #[derive(Clone, Debug)]
-pub struct Sweep {
+pub(crate) struct Sweep {
     pub(crate) title: String,
     pub(crate) keys: Vec<String>,
     /// The values of the keys in each run; those of the last key change first.
     pub(crate) values: Vec<Vec<String>>,
     /// The results of the runs so far, or why there are none.
-    pub results: Vec<Result<Results, Failure>>,
+    pub(crate) results: Vec<Result<Results, Failure>>,
     /// The files of each run are written, too.
     pub(crate) with_files: bool,
     /// The names of the files.
@@ -130,7 +130,7 @@ pub struct Sweep {
 }
 
 /// The number of runs that these axes make.
-pub fn count(axes: &[ParameterAxis]) -> Result<usize, Failure> {
+pub(crate) fn count(axes: &[ParameterAxis]) -> Result<usize, Failure> {
     let twice = |(i, axis): (usize, &ParameterAxis)| axes[..i].iter().any(|a| a.key == axis.key);
     if let Some(axis) = axes.iter().enumerate().find(|&axis| twice(axis)).map(|(_, axis)| axis) {
         let key = &axis.key;
@@ -148,11 +148,11 @@ pub fn count(axes: &[ParameterAxis]) -> Result<usize, Failure> {
 
 /// Options of a sweep beside the table.
 #[derive(Clone, Copy, Debug)]
-pub struct Extent {
+pub(crate) struct Extent {
     /// The files of each run are written, too.
-    pub files: bool,
+    pub(crate) files: bool,
     /// The number of runs that are solved at the same time, at least 1.
-    pub jobs: usize,
+    pub(crate) jobs: usize,
 }
 
 /// The stack of a run: that of the first thread of a program.
@@ -166,7 +166,7 @@ const STACK: usize = 8 << 20;
 /// # Errors
 /// A mistake in the case or in one of the values, found before anything is solved; files that can't be written; what `done`
 /// gives. A run that has no solution is none: its entry in [`Sweep::results`] says why.
-pub fn run(
+pub(crate) fn run(
     file: &Path,
     text: &str,
     axes: &[ParameterAxis],
@@ -382,7 +382,7 @@ impl Sweep {
     /// The heading and a line for each run: the values, the numbers of any run in the order of [`cells`], and how it ended.
     fn lines(&self, brief: bool, shown: NumberFormat) -> Vec<Vec<String>> {
         let of_run = |result: &Result<Results, Failure>| match result {
-            Ok(results) => (cells(results, shown), results.newton.verdict().to_owned()),
+            Ok(results) => (cells(results, shown), results.newton.report.status.name().to_owned()),
             Err(error) => (Vec::new(), error.to_string()),
         };
         let mut runs: Vec<(Vec<(String, String)>, String)> =
@@ -453,7 +453,7 @@ impl Sweep {
     }
 
     /// The table, the remarks and the names of the `files` that were written, as the command prints them.
-    pub fn summary(&self, files: &[PathBuf]) -> String {
+    pub(crate) fn summary(&self, files: &[PathBuf]) -> String {
         let (title, remarks) = (quote::line(&self.title), self.remarks());
         let remarks = if remarks.is_empty() { remarks } else { format!("\n{remarks}") };
         let written = summary::written(files);
@@ -549,7 +549,7 @@ impl Sweep {
 
     /// Writes the table into `folder`, the curves where a number varies, and the collection where the runs have files; returns their
     /// paths.
-    pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    pub(crate) fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
         let &[table, curves, collection] = self.names;
         let mut output = Output::new(folder)?;
         if let Some(drawn) = self.curves() {

@@ -1,5 +1,6 @@
 //! Singular values and projections for few columns, as accurate as their data: a part of the body has three rigid motions. faer
-//! has both, at seven seconds of compiling (bidiagonal forms, divide and conquer, QR), a twentieth of a release build.
+//! has both, in 48 lines less, for 6 of the 121 seconds that a release build compiles this crate for (bidiagonal forms, divide and
+//! conquer, QR) and 2 % of the program.
 
 /// The sum of the products of two lists.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -34,5 +34,8 @@ pub use mesh::{BoundaryEdge, Mesh, MeshError};
 pub use obstacle::{Closest, Distance, Hand, Obstacle, Side};
 pub use path::{Path, PathError};
 pub use problem::{Condition, PointSupport, Problem, SurfaceForce};
+pub use rigid::{FreeMotion, Parts};
 pub use space::Space;
 pub use structured::{Diagonal, Perturbation, Rectangle, Structured, Trapezoid};
+
+pub use crate::memory::OutOfMemory;

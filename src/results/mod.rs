@@ -2,12 +2,13 @@
 
 pub mod answers;
 pub(crate) mod report;
-#[doc(hidden)]
-pub mod solution;
+pub(crate) mod solution;
 pub(crate) mod stresses;
 pub(crate) mod whole;
 
 pub use answers::{ContactBoundary, EnergyBalance};
 pub use report::{MethodReport, NewtonReport, Report, RouteName, Status, Verdict};
-pub use solution::{GammaReport, Quantities, Solution};
+pub use solution::{ContactEdge, ContactPoint, GammaReport, Quantities, Solution};
+
+pub use crate::held::solvability::Play;
 pub use stresses::{Extreme, LargestStresses};

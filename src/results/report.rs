@@ -75,11 +75,20 @@ pub enum Status {
     ConvergedToRounding,
 }
 
+impl Status {
+    /// "converged" or "converged to rounding".
+    pub fn name(self) -> &'static str {
+        match self {
+            Status::Converged => "converged",
+            Status::ConvergedToRounding => "converged to rounding",
+        }
+    }
+}
+
 /// The course of Newton's method.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 pub struct NewtonReport {
-    /// How the iteration ended.
-    pub status: Status,
     /// The residual of (8), as Newton's method saw it, before the first step and after each one: Euclidean norms over the
     /// free degrees of freedom, relative to |L| + |residual of the prescribed data|.
     pub residuals: Vec<f64>,
@@ -87,6 +96,8 @@ pub struct NewtonReport {
     pub residual: f64,
     /// How many sparse factorisations it took.
     pub factorizations: usize,
+    /// How the iteration ended.
+    pub status: Status,
 }
 
 impl NewtonReport {

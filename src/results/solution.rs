@@ -12,7 +12,7 @@ use super::{MethodReport, NewtonReport, Report, Verdict};
 use crate::contact::Piece;
 use crate::contact::contact_line::{Coercivity, Gamma};
 use crate::contact::discretization::Discretization;
-use crate::contact::piece::PieceNode;
+use crate::contact::piece::{PieceNode, Stretch};
 use crate::held::solvability::Play;
 use crate::kernel::DoubleDouble;
 use crate::kernel::Stress;
@@ -41,10 +41,9 @@ pub struct Solution {
     pub stress: Vec<(Stress<f64>, f64)>,
     /// The von Mises stress of the mean stress on each triangle.
     pub von_mises: Vec<f64>,
-    /// The edges of Gamma_C that face obstacles, chained along the boundary.
-    pub contact: Vec<ContactEdgeValues>,
-    /// The pieces of Gamma_C between two bodies, along the boundaries of the first ones.
-    pub between: Vec<PieceValues>,
+    /// The edges of Gamma_C, chained along the boundary: those that face obstacles, then of each pair of bodies those of the first side
+    /// and those of the second, which have the same numbers at places of their own.
+    pub contact: Vec<ContactEdge>,
     /// The pieces of Gamma_C with what method (8) has on them.
     pub pieces: Vec<Piece>,
     /// gamma0, kappa and where the limit comes from.
@@ -85,95 +84,25 @@ pub struct GammaReport {
     pub coercivity: Coercivity,
 }
 
-/// One edge of Gamma_C: its nodes and the values there, in order along the edge.
+/// An edge of Gamma_C: one that faces an obstacle, or a side of a piece between two bodies.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct ContactEdgeValues {
-    /// The triangle that owns the edge.
-    pub triangle: usize,
+pub struct ContactEdge {
     /// The name of its boundary.
     pub boundary: Arc<str>,
-    /// The unit outward normal n.
-    pub normal: [f64; 2],
-    /// The nodes in order along the edge (for P2 with the midpoint in the middle).
-    pub points: Vec<ContactValues>,
-}
-
-/// The values at a node of a contact edge, as its edge has them: sigma_n jumps from edge to edge.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct ContactValues {
-    /// The node.
-    pub node: usize,
-    /// n~, the direction of contact.
-    pub(crate) direction: [f64; 2],
-    /// Arc length along the boundary from the start of its first edge.
-    pub arc: f64,
-    /// u_n = u . n~
-    pub u_n: f64,
-    /// g
-    pub gap: f64,
-    /// n~ . sigma(u^h) n
-    pub sigma_n: f64,
-    /// lambda^h = -(1/gamma) \[P(u^h)\]+
-    pub lambda: f64,
-    /// The recovered pressure ([`super::answers`]), the one to report.
-    pub pressure: f64,
-    /// u_t = u . t, t being n~ turned to the left.
-    pub u_t: f64,
-    /// The shear stress of friction along t.
-    pub shear: f64,
-}
-
-/// A piece of Gamma_C between two bodies.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct PieceValues {
-    /// The names of the two boundaries.
-    pub(crate) boundaries: [Arc<str>; 2],
-    /// The nodes in order along the first one (for P2 with the middle in the middle).
-    pub points: Vec<PieceNodeValues>,
-}
-
-/// The values at a node of a piece between two bodies.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct PieceNodeValues {
-    /// The places on the edges of the two bodies, undeformed.
-    pub at: [[f64; 2]; 2],
-    /// u^h there, of each body.
-    pub(crate) displacement: [[f64; 2]; 2],
-    /// n~, the direction of contact, from the first body to the second.
-    pub(crate) direction: [f64; 2],
-    /// Arc length along the pieces of the pair from the start of the first one.
-    pub(crate) arc: f64,
-    /// The jump of u . n~
-    pub u_n: f64,
-    /// g
-    pub gap: f64,
-    /// The mean of n~ . sigma(u^h) n on the two sides that (8) has.
-    pub sigma_n: f64,
-    /// lambda^h
-    pub lambda: f64,
-    /// The recovered pressure ([`super::answers`]), the one to report.
-    pub pressure: f64,
-    /// u_t, the jump of u . t, t being n~ turned to the left.
-    pub u_t: f64,
-    /// The shear stress of friction on the first body along t.
-    pub shear: f64,
-}
-
-/// A point of a contact boundary, of an edge that faces an obstacle or of a side of a pair of bodies.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct ContactPoint<'s> {
-    /// The name of the boundary.
-    pub boundary: &'s str,
     /// The name of the other boundary of a pair.
-    pub partner: Option<&'s str>,
+    pub partner: Option<Arc<str>>,
+    /// The nodes, or the places on the edge of those of the piece, in order along it (for P2 with the midpoint in the middle).
+    pub points: Vec<ContactPoint>,
+}
+
+/// A point of a contact edge, with the values that its edge has there: sigma_n jumps from edge to edge.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct ContactPoint {
     /// The node, if it is one.
     pub node: Option<usize>,
-    /// Arc length along the boundary, or along the pieces of the pair.
+    /// Arc length along the boundary, or along the pieces of the pair, from the start of its first edge.
     pub arc: f64,
     /// The place in the undeformed body.
     pub place: [f64; 2],
@@ -181,20 +110,20 @@ pub struct ContactPoint<'s> {
     pub displacement: [f64; 2],
     /// n~, the direction of contact, out of the body.
     pub direction: [f64; 2],
-    /// u . n~, or the jump of that.
+    /// u_n = u . n~, or the jump of that.
     pub u_n: f64,
     /// g
     pub gap: f64,
-    /// n~ . sigma(u^h) n, or the mean of it that (8) has.
+    /// n~ . sigma(u^h) n, or the mean of it on the two sides that (8) has.
     pub sigma_n: f64,
-    /// lambda^h
+    /// lambda^h = -(1/gamma) \[P(u^h)\]+
     pub lambda: f64,
-    /// The recovered pressure.
+    /// The recovered pressure ([`super::answers`]), the one to report.
     pub pressure: f64,
-    /// u . t, or the jump of that, t being n~ turned to the left.
+    /// u_t = u . t, or the jump of that, t being n~ turned to the left.
     pub u_t: f64,
-    /// The shear stress of friction along t.
-    pub(crate) shear: f64,
+    /// The shear stress of friction along t; on both sides of a pair that on the first body.
+    pub shear: f64,
 }
 
 /// Scalars of a solution, in the units of the case.
@@ -265,8 +194,7 @@ impl Solution {
             nodes_per_triangle: d.space.degree().nodes_per_triangle(),
             von_mises: stress.iter().map(|(s, zz)| s.von_mises_squared(*zz).sqrt()).collect(),
             stress,
-            contact: contact_values(d, &u, &p, &recovered),
-            between: piece_values(d, &u, &p, &recovered),
+            contact: contact_edges(d, &u, &p, &recovered),
             boundaries,
             largest_strain,
             largest_strain_at,
@@ -282,53 +210,6 @@ impl Solution {
             displacement: u,
         };
         if of_revolution { of_the_whole(solution) } else { solution }
-    }
-
-    /// The points of all contact boundaries, edge by edge in order along each, for sigma_n and lambda^h jump from edge to edge; of a
-    /// pair of bodies the first side and then the second, which has the same numbers at places of its own.
-    pub fn contact_points(&self) -> Vec<Vec<ContactPoint<'_>>> {
-        let obstacles = self.contact.iter().map(|edge| {
-            let point = |p: &ContactValues| ContactPoint {
-                boundary: &edge.boundary,
-                partner: None,
-                node: Some(p.node),
-                arc: p.arc,
-                place: self.nodes[p.node],
-                displacement: self.displacement[p.node],
-                direction: p.direction,
-                u_n: p.u_n,
-                gap: p.gap,
-                sigma_n: p.sigma_n,
-                lambda: p.lambda,
-                pressure: p.pressure,
-                u_t: p.u_t,
-                shear: p.shear,
-            };
-            edge.points.iter().map(point).collect()
-        });
-        let pairs = self.between.chunk_by(|a, b| a.boundaries == b.boundaries);
-        let sides = pairs.flat_map(|pair| [0, 1].map(|i| (pair, i))).flat_map(|(pair, i)| {
-            pair.iter().map(move |piece| {
-                let point = |p: &PieceNodeValues| ContactPoint {
-                    boundary: &piece.boundaries[i],
-                    partner: Some(&piece.boundaries[1 - i]),
-                    node: None,
-                    arc: p.arc,
-                    place: p.at[i],
-                    displacement: p.displacement[i],
-                    direction: if i == 0 { p.direction } else { p.direction.map(|c| -c) },
-                    u_n: p.u_n,
-                    gap: p.gap,
-                    sigma_n: p.sigma_n,
-                    lambda: p.lambda,
-                    pressure: p.pressure,
-                    u_t: p.u_t,
-                    shear: p.shear,
-                };
-                piece.points.iter().map(point).collect()
-            })
-        });
-        obstacles.chain(sides).collect()
     }
 
     /// The jumps across the direction of contact at the nodes of each piece of Gamma_C with friction: where the friction of a next load
@@ -404,98 +285,73 @@ fn mean_stresses(d: &Discretization, u: &[[f64; 2]]) -> Vec<(Stress<f64>, f64)> 
     (0..d.space.mesh().triangles().len()).map(stress).collect()
 }
 
-fn contact_values(
+/// The edges of Gamma_C, line by line; of a line between two bodies the first side and then the second.
+fn contact_edges(
     d: &Discretization,
     u: &[[f64; 2]],
     p: &[Vec<DoubleDouble>],
     recovered: &[Vec<f64>],
-) -> Vec<ContactEdgeValues> {
-    let mut start = 0.0;
-    let mut line = Vec::with_capacity(d.contact.len());
-    for ((edge, p), recovered) in d.contact.iter().zip(p).zip(recovered) {
-        if edge.partner().is_some() {
-            continue;
+) -> Vec<ContactEdge> {
+    let mut edges = Vec::with_capacity(d.contact.len());
+    let pieces: Vec<_> = d.contact.iter().zip(p.iter().zip(recovered)).collect();
+    for line in pieces.chunk_by(|(piece, _), (next, _)| piece.is_of_same_boundary(next)) {
+        for side in 0..line[0].0.geometry.stretches.len() {
+            let mut start = 0.0;
+            for &(piece, (p, recovered)) in line {
+                edges.push(contact_edge(d, u, (piece, side), (p, recovered), start));
+                start += piece.length;
+            }
         }
-        if line.last().is_none_or(|last: &ContactEdgeValues| last.boundary != *edge.boundary()) {
-            start = 0.0;
-        }
-        let triangle = edge.edge().triangle;
-        let sigma_n = edge.sigma_n(u);
-        let nodes = d.space.edge_nodes(edge.edge());
-        let positions = d.space.degree().edge_positions();
-        let mut points: Vec<ContactValues> = (0..nodes.len())
-            .map(|a| {
-                let [x, y] = u[nodes[a]];
-                let PieceNode { direction, gap, .. } = edge.geometry.nodes[a];
-                ContactValues {
-                    node: nodes[a],
-                    direction: direction.into(),
-                    arc: start + positions[a] * edge.length,
-                    u_n: x * direction[0] + y * direction[1],
-                    gap,
-                    sigma_n: (1.0 - positions[a]) * sigma_n[0] + positions[a] * sigma_n[1],
-                    lambda: pressure(p[a].head(), edge.gamma) + 0.0,
-                    pressure: recovered[a],
-                    u_t: y * direction[0] - x * direction[1],
-                    shear: edge.shear_at(p, a) + 0.0,
-                }
-            })
-            .collect();
-        points.sort_by(|a, b| a.arc.total_cmp(&b.arc));
-        let (boundary, normal) = (Arc::clone(edge.boundary()), edge.normal().into());
-        line.push(ContactEdgeValues { triangle, boundary, normal, points });
-        start += edge.length;
     }
-    line
+    edges
 }
 
-fn piece_values(
+fn contact_edge(
     d: &Discretization,
     u: &[[f64; 2]],
-    p: &[Vec<DoubleDouble>],
-    recovered: &[Vec<f64>],
-) -> Vec<PieceValues> {
-    let mut start = 0.0;
-    let mut all: Vec<PieceValues> = Vec::new();
-    for ((piece, p), recovered) in d.contact.iter().zip(p).zip(recovered) {
-        let [first, second] = &piece.geometry.stretches[..] else { continue };
-        let boundaries = [first, second].map(|stretch| Arc::clone(&stretch.boundary));
-        if all.last().is_none_or(|last| last.boundaries != boundaries) {
-            start = 0.0;
-        }
-        let (sigma_n, jumps) = (piece.sigma_n(u), piece.jumps(u));
-        let response = piece.geometry.law.responses()[0];
-        let value = |(a, s): (usize, f64)| {
-            let PieceNode { direction, gap, .. } = piece.geometry.nodes[a];
-            let displacement = [first, second].map(|stretch| {
-                let nodes = d.space.edge_nodes(stretch.edge);
-                [0, 1].map(|c| {
-                    let values: Vec<f64> = nodes.iter().map(|&node| u[node][c]).collect();
-                    d.space.degree().value_at(&values, stretch.positions[a])
-                })
-            });
-            let [x, y] = [0, 1].map(|c| displacement[0][c] - displacement[1][c]);
-            PieceNodeValues {
-                at: [first, second].map(|stretch| stretch.place(d.space.mesh(), a)),
-                displacement,
-                direction: direction.into(),
-                arc: start + s * piece.length,
-                u_n: jumps[a],
-                gap,
-                sigma_n: (1.0 - s) * sigma_n[0] + s * sigma_n[1],
-                lambda: -(response.q(p[a].head()) / piece.gamma) + 0.0,
-                pressure: recovered[a],
-                u_t: y * direction[0] - x * direction[1],
-                shear: piece.shear_at(p, a) + 0.0,
-            }
+    (piece, side): (&Piece, usize),
+    (p, recovered): (&[DoubleDouble], &[f64]),
+    start: f64,
+) -> ContactEdge {
+    let (degree, stretches) = (d.space.degree(), &piece.geometry.stretches);
+    let (sigma_n, jumps) = (piece.sigma_n(u), piece.jumps(u));
+    let response = piece.geometry.law.responses()[0];
+    let displacement = |stretch: &Stretch, a: usize| {
+        let nodes = d.space.edge_nodes(stretch.edge);
+        [0, 1].map(|c| {
+            let values: Vec<f64> = nodes.iter().map(|&node| u[node][c]).collect();
+            degree.value_at(&values, stretch.positions[a])
+        })
+    };
+    let value = |(a, s): (usize, f64)| {
+        let PieceNode { direction, gap, .. } = piece.geometry.nodes[a];
+        let node = match &stretches[..] {
+            [only] => Some(d.space.edge_nodes(only.edge)[a]),
+            _ => None,
         };
-        let mut points: Vec<PieceNodeValues> =
-            d.space.degree().edge_positions().into_iter().enumerate().map(value).collect();
-        points.sort_by(|a, b| a.arc.total_cmp(&b.arc));
-        all.push(PieceValues { boundaries, points });
-        start += piece.length;
-    }
-    all
+        let each = stretches.iter().map(|stretch| displacement(stretch, a));
+        let [x, y] = each.reduce(|u, v| [u[0] - v[0], u[1] - v[1]]).unwrap_or_default();
+        let own = &stretches[side];
+        ContactPoint {
+            node,
+            arc: start + s * piece.length,
+            place: node.map_or_else(|| own.place(d.space.mesh(), a), |node| d.space.nodes()[node]),
+            displacement: displacement(own, a),
+            direction: if side == 0 { direction } else { -direction }.into(),
+            u_n: jumps[a],
+            gap,
+            sigma_n: (1.0 - s) * sigma_n[0] + s * sigma_n[1],
+            lambda: -(response.q(p[a].head()) / piece.gamma) + 0.0,
+            pressure: recovered[a],
+            u_t: y * direction[0] - x * direction[1],
+            shear: piece.shear_at(p, a) + 0.0,
+        }
+    };
+    let mut points: Vec<ContactPoint> =
+        degree.edge_positions().into_iter().enumerate().map(value).collect();
+    points.sort_by(|a, b| a.arc.total_cmp(&b.arc));
+    let name = |k: usize| stretches.get(k).map(|stretch| Arc::clone(&stretch.boundary));
+    ContactEdge { boundary: Arc::clone(&stretches[side].boundary), partner: name(1 - side), points }
 }
 
 fn quantities(d: &Discretization, Evaluated { u, p, residual }: &Evaluated) -> Quantities {

@@ -4,9 +4,8 @@
 use std::path::{Path, PathBuf};
 
 use signorini::exact::Errors;
-use signorini::io::files::Output;
 use signorini::io::picture::plot::{COLOURS, Figure, Panel, Style, figure};
-use signorini::io::{Case, Failure};
+use signorini::io::{Case, Failure, Output};
 use signorini::model::{Degree, Perturbation};
 use signorini::solve::Method;
 

@@ -8,10 +8,8 @@ mod command {
     use std::process::ExitCode;
 
     use clap::{Args, Parser, Subcommand};
-    use signorini::io::files::spare;
-    use signorini::io::{Case, Failure};
+    use signorini::io::{Case, Failure, printable, spare};
     use signorini::model::Degree;
-    use signorini::quote;
     use study::convergence::{self, Study};
     use study::document;
 
@@ -62,7 +60,7 @@ mod command {
         match done {
             Ok(()) => ExitCode::SUCCESS,
             Err(failure) => {
-                eprintln!("error: {}", quote::lines(&failure.to_string()));
+                eprintln!("error: {}", printable(&failure.to_string()));
                 ExitCode::from(if failure.is_wrong() { 2 } else { 1 })
             }
         }
@@ -89,9 +87,9 @@ mod command {
         }
         let written = convergence::write(&folder, &case.title, &studies)?;
         let tables: Vec<String> = studies.iter().map(Study::table).collect();
-        let files: Vec<String> = written.iter().map(|file| quote::path(file)).collect();
-        let (title, files) = (quote::line(&case.title), files.join(", "));
-        Ok(quote::lines(&format!("{title}\n\n{}\nwritten: {files}\n", tables.join("\n"))))
+        let files: Vec<String> = written.iter().map(|file| file.display().to_string()).collect();
+        let (title, files) = (&case.title, files.join(", "));
+        Ok(printable(&format!("{title}\n\n{}\nwritten: {files}\n", tables.join("\n"))))
     }
 
     /// The wanted ones, or one that the case decides.

@@ -309,15 +309,15 @@ fn on_a_round_obstacle_u_n_and_gap_are_along_the_radius() {
         let problem = unloaded(unit_square(6).mesh().unwrap(), parts);
         let (s, _) = solve(&problem, &method(degree, EXACT), &Settings::default()).unwrap();
         let mut off_the_normal = 0.0_f64;
-        for edge in &s.contact {
+        for (edge, piece) in s.contact.iter().zip(&s.pieces) {
             for point in &edge.points {
-                let (x, u) = (s.nodes[point.node], s.displacement[point.node]);
+                let (x, u) = (point.place, point.displacement);
                 let to = [center[0] - x[0], center[1] - x[1]];
                 let far = to[0].hypot(to[1]);
                 let u_n = (u[0] * to[0] + u[1] * to[1]) / far;
                 assert_abs_diff_eq!(point.u_n, u_n, epsilon = SOLVED);
                 assert_abs_diff_eq!(point.gap, far - radius, epsilon = SOLVED);
-                let along_normal = u[0] * edge.normal[0] + u[1] * edge.normal[1];
+                let along_normal = u[0] * piece.normal()[0] + u[1] * piece.normal()[1];
                 off_the_normal = off_the_normal.max((u_n - along_normal).abs());
             }
         }

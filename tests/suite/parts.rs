@@ -12,8 +12,8 @@ use signorini::model::{
     Condition, Diagonal, Materials, Mesh, Obstacle, PointSupport, Problem, Rectangle, Side,
 };
 use signorini::nalgebra::Vector2;
+use signorini::results::ContactPoint;
 use signorini::results::Solution;
-use signorini::results::solution::ContactValues;
 use signorini::solve::solve;
 
 use super::common::*;
@@ -139,8 +139,8 @@ fn a_shaft_pressed_into_a_bearing_has_the_constant_pressure_of_its_closed_form()
             assert_relative_eq!(least, p, max_relative = PEAK);
             assert!(rim.resultant[0].hypot(rim.resultant[1]) < 1e-12 * rim.force + 1e-16);
             // Each edge is a chord, whose wave in lambda^h of P2 is not in the recovered pressure.
-            let wave = |value: fn(&ContactValues) -> f64| {
-                let off = |v: &ContactValues| (value(v) / p - 1.0).abs();
+            let wave = |value: fn(&ContactPoint) -> f64| {
+                let off = |v: &ContactPoint| (value(v) / p - 1.0).abs();
                 s.contact.iter().flat_map(|edge| &edge.points).map(off).fold(0.0, f64::max)
             };
             let [of_lambda, of_pressure] = [wave(|v| -v.lambda), wave(|v| v.pressure)];

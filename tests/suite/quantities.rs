@@ -353,20 +353,14 @@ fn no_more_contact_and_no_more_opening_than_the_zones_say() {
                     zone.from < middle && middle < zone.to
                 });
             let sum = |of: &dyn Fn(usize, &[_]) -> f64| {
-                within.clone().fold(
-                    0.0,
-                    |sum, pair: &[signorini::results::solution::ContactValues]| {
-                        sum + (of(0, pair) + of(1, pair)) / 2.0 * (pair[1].arc - pair[0].arc)
-                    },
-                )
+                within.clone().fold(0.0, |sum, pair: &[signorini::results::ContactPoint]| {
+                    sum + (of(0, pair) + of(1, pair)) / 2.0 * (pair[1].arc - pair[0].arc)
+                })
             };
             let (found, most) = match zone.limit {
                 Limit::Force(most) => {
                     limits[0] += 1;
-                    (
-                        sum(&|k, p: &[signorini::results::solution::ContactValues]| -p[k].lambda),
-                        most,
-                    )
+                    (sum(&|k, p: &[signorini::results::ContactPoint]| -p[k].lambda), most)
                 }
                 Limit::Slip(_) => panic!("there is no friction"),
                 Limit::Opening(most) => {
@@ -624,7 +618,7 @@ fn the_value_beside_the_interval_of_a_weighted_force_is_that_of_the_discrete_pre
         for edge in &solution.contact {
             for pair in edge.points.windows(2) {
                 let [a, b] = [0, 1].map(|k| {
-                    let x = solution.nodes[pair[k].node][0];
+                    let x = pair[k].place[0];
                     -pair[k].lambda * (4.0 * x).min(1.0)
                 });
                 expected += (a + b) / 2.0 * (pair[1].arc - pair[0].arc);
@@ -635,7 +629,7 @@ fn the_value_beside_the_interval_of_a_weighted_force_is_that_of_the_discrete_pre
         let of_the_start: f64 = (solution.contact.iter())
             .flat_map(|edge| edge.points.windows(2))
             .map(|pair| {
-                let [a, b] = [0, 1].map(|k| (4.0 * solution.nodes[pair[k].node][0]).min(1.0));
+                let [a, b] = [0, 1].map(|k| (4.0 * pair[k].place[0]).min(1.0));
                 -pair[0].lambda * (a + b) / 2.0 * (pair[1].arc - pair[0].arc)
             })
             .sum();

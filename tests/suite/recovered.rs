@@ -254,7 +254,7 @@ fn errors(family: &Family, n: usize, moved: bool, degree: Degree) -> Vec<[f64; 2
     let solution = solve(&problem, &method(degree, EXACT), &Default::default()).unwrap().0;
     let mut largest = vec![[0.0_f64; 2]; family.parts.len()];
     for point in solution.contact.iter().flat_map(|edge| &edge.points) {
-        let x = solution.nodes[point.node];
+        let x = point.place;
         let exact = (family.pressure)(x[0]);
         let off = [point.pressure, point.pressure * (1.0 + 1.0 / n as f64)]
             .map(|p| (p - exact).abs() / (family.scale)());

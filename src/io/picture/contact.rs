@@ -9,7 +9,8 @@ use super::draw::{
     places, red_area, stroke, thinned,
 };
 use super::scale::Scale;
-use super::scene::{ContactSample, Scene};
+use super::scene::Scene;
+use crate::results::solution::ContactPoint;
 
 /// A connected part of a contact boundary as it is drawn: for each sample the deformed point, the end of its pressure, and
 /// the point of the obstacle.
@@ -40,10 +41,10 @@ impl ContactLine {
     pub(super) fn all(scene: &Scene, scale: &Scale) -> Vec<ContactLine> {
         let factor = scale.factor;
         let size = scene.size();
-        let base = |s: &ContactSample| moved(s.position, s.displacement, factor);
+        let base = |s: &ContactPoint| moved(s.place, s.displacement, factor);
         let mut lines = Vec::new();
         for (surface, boundary) in scene.contact.iter().enumerate() {
-            let parts: Vec<(&[ContactSample], Vec<Point>)> = boundary
+            let parts: Vec<(&[ContactPoint], Vec<Point>)> = boundary
                 .parts
                 .iter()
                 .map(|samples| (&samples[..], smooth_normals(samples)))
@@ -69,12 +70,11 @@ impl ContactLine {
                 let furthest = size * if bent { FURTHEST_WHERE_BENT } else { FURTHEST };
                 // An obstacle with a shape of its own keeps shape and place.
                 let factor = if turns && boundary.rigid { 1.0 } else { factor };
-                let wall = |(s, &n): (&ContactSample, &Point)| {
+                let wall = |(s, &n): (&ContactPoint, &Point)| {
                     let gap = factor * s.gap;
-                    (gap.abs() <= furthest).then(|| moved(s.position, n, gap))
+                    (gap.abs() <= furthest).then(|| moved(s.place, n, gap))
                 };
-                let tip =
-                    |(s, &n): (&ContactSample, &Point)| moved(base(s), n, height * s.pressure);
+                let tip = |(s, &n): (&ContactPoint, &Point)| moved(base(s), n, height * s.pressure);
                 let with_normals = || samples.iter().zip(&normals);
                 lines.push(ContactLine {
                     surface,
@@ -115,23 +115,23 @@ impl ContactLine {
 }
 
 /// The line is no straight one with one direction.
-pub(super) fn turns(samples: &[ContactSample]) -> bool {
-    let step = |pair: &[ContactSample]| direction(pair[0].position, pair[1].position);
+pub(super) fn turns(samples: &[ContactPoint]) -> bool {
+    let step = |pair: &[ContactPoint]| direction(pair[0].place, pair[1].place);
     let first = samples.windows(2).find_map(step);
     let differs = |a: Point, b: Point| distance(a, b) > 1e-6;
     samples.windows(2).any(|pair| {
         let along = step(pair).zip(first).is_some_and(|(a, b)| differs(a, b));
-        along || differs(pair[0].normal, pair[1].normal)
+        along || differs(pair[0].direction, pair[1].direction)
     })
 }
 
 /// The normals, except that two samples at one place share the mean of theirs: the facets of a curved line would otherwise
 /// show as steps. A true corner (more than 45 degrees) stays one.
-fn smooth_normals(samples: &[ContactSample]) -> Vec<Point> {
-    let mut normals: Vec<Point> = samples.iter().map(|s| s.normal).collect();
+fn smooth_normals(samples: &[ContactPoint]) -> Vec<Point> {
+    let mut normals: Vec<Point> = samples.iter().map(|s| s.direction).collect();
     for i in 1..samples.len() {
         let ([a, b], [c, d]) = (normals[i - 1], normals[i]);
-        if samples[i - 1].position == samples[i].position && a * c + b * d > 0.7 {
+        if samples[i - 1].place == samples[i].place && a * c + b * d > 0.7 {
             let length = (a + c).hypot(b + d);
             normals[i - 1] = [(a + c) / length, (b + d) / length];
             normals[i] = normals[i - 1];
@@ -246,7 +246,7 @@ mod tests {
     #[test]
     fn facets_share_their_normal_and_corners_do_not() {
         let sample =
-            |position, normal| ContactSample { position, normal, ..ContactSample::default() };
+            |place, direction| ContactPoint { place, direction, ..ContactPoint::default() };
         let line = [
             sample([0.0, 0.0], [0.6, -0.8]),
             sample([0.0, 0.0], [0.8, -0.6]),

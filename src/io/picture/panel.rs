@@ -13,9 +13,10 @@ use super::draw::{
     rectangle, red_area, short, stroke, text, thinned, width_of,
 };
 use super::scale::Scale;
-use super::scene::{ContactSample, ContactSurface, Scene};
+use super::scene::{ContactSurface, Scene};
 use crate::certificates::quantities::{Limit, Zone};
 use crate::io::numbers::{self, ticks};
+use crate::results::solution::ContactPoint;
 
 /// The height of a panel on the page, and the space between two in a row.
 const HEIGHT: f64 = 214.0;
@@ -74,20 +75,15 @@ fn shown(surface: &ContactSurface) -> [f64; 2] {
 fn runs_left(surface: &ContactSurface) -> bool {
     let [first, last] = shown(surface);
     let mut samples = surface.parts.iter().flatten().filter(|s| (first..=last).contains(&s.arc));
-    let start = samples.next().map(|s| s.position);
-    let end = samples.next_back().map(|s| s.position);
+    let start = samples.next().map(|s| s.place);
+    let end = samples.next_back().map(|s| s.place);
     let (Some([x, y]), Some([to_x, to_y])) = (start, end) else { return false };
     x - to_x > (y - to_y).abs()
 }
 
-/// Returns whether samples of the boundary have friction.
-fn is_rough(surface: &ContactSurface) -> bool {
-    surface.parts.iter().flatten().any(|sample| sample.shear.is_some())
-}
-
 /// Returns whether a panel has the line of the shear stress.
 pub(super) fn has_shear(scene: &Scene) -> bool {
-    scene.contact.iter().any(|surface| is_rough(surface) && surface.peak().is_some())
+    scene.contact.iter().any(|surface| surface.rough && surface.peak().is_some())
 }
 
 /// The panel of a boundary, whose plot ends at the pressure `top`.
@@ -110,8 +106,7 @@ fn panel(
     let pressures = if top > 0.0 { ticks(0.0, top) } else { Vec::new() };
     let grid = axes.grid([ticks(first, last), pressures]);
     let in_brackets = |i: usize| units.as_ref().map_or(String::new(), |u| format!(" ({})", u[i]));
-    let is_rough = is_rough(surface);
-    let what = if is_rough { "contact pressure, friction (blue)" } else { "contact pressure" };
+    let what = if surface.rough { "contact pressure, friction (blue)" } else { "contact pressure" };
     let title = clean(&format!("{}: {what}{}", surface.name, in_brackets(0)));
     let title = text(&title, [left, y + 16.0])
         .set("font-size", fitting(&title, 14.0 / 0.9, width) * 0.9)
@@ -127,7 +122,7 @@ fn panel(
         Some(peak) => {
             let stress = units.as_ref().map_or("", |[stress, _]| stress);
             group = group.add(curve(surface, &axes));
-            if is_rough {
+            if surface.rough {
                 group = group.add(shear(surface, &axes));
             }
             group = group.add(axes.frame()).add(mark(peak, stress, &axes));
@@ -206,14 +201,14 @@ fn shear(surface: &ContactSurface, axes: &Axes) -> Group {
     let mut line = PathData::default();
     for part in &surface.parts {
         let shown = part.iter().filter(|s| (first..=last).contains(&s.arc));
-        let point = |s: &ContactSample| Some(axes.at([s.arc, s.shear?.min(highest)]));
-        line.line(thinned(&shown.filter_map(point).collect::<Vec<Point>>()));
+        let point = |s: &ContactPoint| axes.at([s.arc, s.shear.min(highest)]);
+        line.line(thinned(&shown.map(point).collect::<Vec<Point>>()));
     }
     Group::new().add(stroke(line, OPEN, 1.6).set("stroke-linejoin", "round"))
 }
 
 /// A dot at the peak, and its value above it.
-fn mark(peak: &ContactSample, stress: &str, axes: &Axes) -> Group {
+fn mark(peak: &ContactPoint, stress: &str, axes: &Axes) -> Group {
     let capped = peak.pressure > axes.y.range[1];
     let [x, y] = axes.at([peak.arc, peak.pressure.min(axes.y.range[1])]);
     let beyond = if capped { ", beyond the plot" } else { "" };

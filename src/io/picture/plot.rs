@@ -12,13 +12,16 @@ use super::draw::{
 use crate::io::files::{NotFinite, check_finite};
 use crate::io::numbers::{self, short};
 
+/// Lines over a quantity that panels side by side share.
 #[derive(Clone, Debug)]
 pub struct Figure {
+    /// The headline.
     pub title: String,
     /// The label of the x axis, which all panels share.
     pub x_label: String,
     /// Both axes are logarithmic.
     pub logarithmic: bool,
+    /// The panels, from the left.
     pub panels: Vec<Panel>,
     /// The lines by name, for the legend and their looks.
     pub styles: Vec<Style>,
@@ -35,9 +38,12 @@ pub struct Panel {
     pub slopes: Vec<(usize, f64)>,
 }
 
+/// How a line looks.
 #[derive(Clone, Debug)]
 pub struct Style {
+    /// Its name in the legend.
     pub name: String,
+    /// Its colour, as SVG writes it.
     pub colour: &'static str,
     /// The line is dashed, its points are hollow.
     pub dashed: bool,
@@ -54,6 +60,10 @@ const RIGHT: f64 = 18.0;
 const TOP: f64 = 74.0;
 const BELOW: f64 = 48.0;
 
+/// The figure as SVG.
+///
+/// # Errors
+/// A number that is not finite.
 pub fn figure(figure: &Figure) -> Result<String, NotFinite> {
     for panel in &figure.panels {
         for (line, style) in panel.lines.iter().zip(&figure.styles) {

@@ -11,7 +11,7 @@ use crate::model::mesh::ROUNDED;
 use crate::model::tree::Bounds;
 use crate::model::{BoundaryEdge, Condition, Degree, Obstacle};
 use crate::quote;
-use crate::results::solution::ContactPoint;
+use crate::results::solution::{ContactEdge, ContactPoint};
 use crate::results::{ContactBoundary, Solution, Verdict};
 
 /// The content of the picture of a solved case.
@@ -63,28 +63,15 @@ pub(super) struct ContactSurface {
     pub(super) name: String,
     /// The obstacle has a shape of its own (a plane, a circle), which a magnified gap would bend.
     pub(super) rigid: bool,
-    /// Its connected parts, each from start to end, the body on its left. Where the pressure jumps there are two samples at
+    /// There is friction.
+    pub(super) rough: bool,
+    /// Its connected parts with the sizes of the shear stress, without the gap of a pair; each from start to end, the body on its left. Where the pressure jumps there are two samples at
     /// one place.
-    pub(super) parts: Vec<Vec<ContactSample>>,
+    pub(super) parts: Vec<Vec<ContactPoint>>,
     /// The zones of its certificate, if it has one.
     pub(super) zones: Option<Vec<Zone>>,
     /// The certificate has a reservation, or is one of another problem than is meant.
     pub(super) reserved: bool,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct ContactSample {
-    /// Arc length along the boundary.
-    pub(super) arc: f64,
-    /// The place in the undeformed body, and the unit outward normal there.
-    pub(super) position: Point,
-    pub(super) normal: Point,
-    pub(super) displacement: Point,
-    pub(super) gap: f64,
-    /// The recovered pressure, >= 0.
-    pub(super) pressure: f64,
-    /// The size of the shear stress, where there is friction.
-    pub(super) shear: Option<f64>,
 }
 
 /// A pressure this many times that of all but this share of the length in contact is a spike.
@@ -111,7 +98,7 @@ impl ContactSurface {
     }
 
     /// The sample with the largest pressure, if that is positive.
-    pub(super) fn peak(&self) -> Option<&ContactSample> {
+    pub(super) fn peak(&self) -> Option<&ContactPoint> {
         let largest = self.parts.iter().flatten().max_by(|a, b| a.pressure.total_cmp(&b.pressure));
         largest.filter(|sample| sample.pressure > 0.0)
     }
@@ -188,7 +175,7 @@ impl Scene {
     fn bends(&self, factor: f64) -> bool {
         let (size, rigid) = (self.size(), |surface: &&ContactSurface| surface.rigid);
         self.contact.iter().filter(rigid).flat_map(|surface| &surface.parts).any(|part| {
-            let shown = |s: &&ContactSample| (factor * s.gap).abs() <= FURTHEST_WHERE_BENT * size;
+            let shown = |s: &&ContactPoint| (factor * s.gap).abs() <= FURTHEST_WHERE_BENT * size;
             let most = part.iter().filter(shown).fold(0.0, |most: f64, s| most.max(s.gap.abs()));
             turns(part) && (factor - 1.0).abs() * most > BENT * size
         })
@@ -231,10 +218,10 @@ impl Scene {
 
 /// Takes the wave out of a pressure of quadratic triangles that rises and falls from node to node: each value inside a stretch of
 /// contact becomes the mean of itself and of the mean of its neighbours.
-fn smooth(part: &mut [ContactSample]) {
+fn smooth(part: &mut [ContactPoint]) {
     let before = part.to_vec();
     for (i, sample) in part.iter_mut().enumerate() {
-        let is_other = |other: &&ContactSample| other.arc != before[i].arc;
+        let is_other = |other: &&ContactPoint| other.arc != before[i].arc;
         let neighbours =
             [before[..i].iter().rev().find(is_other), before[i..].iter().find(is_other)];
         if let [Some(a), Some(b)] = neighbours
@@ -250,7 +237,8 @@ const HARDLY_SEEN: f64 = 0.002;
 
 /// The largest initial distance of bodies where they press on each other.
 fn apart(s: &Solution) -> f64 {
-    let points = s.between.iter().flat_map(|piece| &piece.points);
+    let between = s.contact.iter().filter(|edge| edge.partner.is_some());
+    let points = between.flat_map(|edge| &edge.points);
     let pressed = points.filter(|point| point.pressure > 0.0);
     pressed.map(|point| point.gap.abs()).fold(0.0, f64::max)
 }
@@ -276,28 +264,23 @@ fn interfaces(case: &Case) -> Vec<BoundaryEdge> {
 fn contact_surfaces(case: &Case, s: &Solution, results: &Results) -> Vec<ContactSurface> {
     let certificate = results.certificate.as_ref().and_then(|c| c.continuous.as_ref());
     let proved = certificate.filter(|certificate| certificate.bound.is_some());
-    let edges = s.contact_points();
     let mut surfaces: Vec<ContactSurface> = Vec::new();
-    for edges in edges.chunk_by(|a, b| names(a) == names(b)) {
-        let is_this = |part: &&ContactBoundary| {
-            names(&edges[0]) == Some((&part.boundary, part.partner.as_deref()))
-        };
+    for edges in s.contact.chunk_by(|a, b| names(a) == names(b)) {
+        let is_this =
+            |part: &&ContactBoundary| names(&edges[0]) == (&part.boundary, part.partner.as_deref());
         // The second side of a pair has no entry of its own.
         let Some(part) = results.contact.iter().find(is_this) else { continue };
         let (name, presses) = (&part.boundary, results.is_in_contact(part));
         let of_obstacle = part.partner.is_none();
-        let sample = |p: &ContactPoint| ContactSample {
-            arc: p.arc,
-            position: p.place,
-            normal: p.direction,
-            displacement: p.displacement,
+        let sample = |p: &ContactPoint| ContactPoint {
             gap: if of_obstacle { p.gap } else { f64::INFINITY },
             pressure: if presses { p.pressure } else { 0.0 },
-            shear: part.friction.map(|_| p.shear.abs()),
+            shear: p.shear.abs(),
+            ..*p
         };
-        let mut parts: Vec<Vec<ContactSample>> = edges
-            .chunk_by(|a, b| meet(a.last(), b.first()))
-            .map(|part| part.iter().flatten().map(sample).collect())
+        let mut parts: Vec<Vec<ContactPoint>> = edges
+            .chunk_by(|a, b| meet(a.points.last(), b.points.first()))
+            .map(|part| part.iter().flat_map(|edge| &edge.points).map(sample).collect())
             .collect();
         if s.degree == Degree::Two {
             parts.iter_mut().for_each(|part| smooth(part));
@@ -312,6 +295,7 @@ fn contact_surfaces(case: &Case, s: &Solution, results: &Results) -> Vec<Contact
                 case.problem.conditions.get(name),
                 Some(Condition::Obstacle(_, Obstacle::Plane { .. } | Obstacle::Circle { .. }))
             ),
+            rough: part.friction.is_some(),
             parts,
             zones: proved.map(zones),
             reserved: proved.is_some_and(|c| !c.rigorous || c.problem.is_some()),
@@ -322,8 +306,8 @@ fn contact_surfaces(case: &Case, s: &Solution, results: &Results) -> Vec<Contact
 }
 
 /// The boundary that an edge is of, and the other one of a pair.
-fn names<'p>(edge: &[ContactPoint<'p>]) -> Option<(&'p str, Option<&'p str>)> {
-    edge.first().map(|p| (p.boundary, p.partner))
+fn names(edge: &ContactEdge) -> (&str, Option<&str>) {
+    (&edge.boundary, edge.partner.as_deref())
 }
 
 /// Returns whether the end of one edge and the start of the next are one place, up to rounding.

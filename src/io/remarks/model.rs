@@ -150,11 +150,11 @@ const LARGE_OVERLAP: f64 = 0.01;
 pub(super) fn interference(problem: &Problem, solution: &Solution, words: &Words) -> Vec<String> {
     let smooth = SmoothBoundary::new(&problem.mesh);
     let of_pair = |pair: &Pair| {
-        let own = solution
-            .between
-            .iter()
-            .filter(|piece| piece.boundaries.iter().zip(&pair.boundaries).all(|(a, b)| **a == **b));
-        let points = own.flat_map(|piece| &piece.points);
+        let [first, second] = &pair.boundaries;
+        let own = solution.contact.iter().filter(|edge| {
+            *edge.boundary == **first && edge.partner.as_ref().is_some_and(|p| **p == **second)
+        });
+        let points = own.flat_map(|edge| &edge.points);
         let deepest = points.min_by(|a, b| a.gap.total_cmp(&b.gap))?;
         let share = -deepest.gap / pair.scale(&problem.mesh, &smooth).ok()?;
         let [first, second] = pair.boundaries.each_ref().map(|name| quote::quoted(name, '\''));
@@ -162,7 +162,7 @@ pub(super) fn interference(problem: &Problem, solution: &Solution, words: &Words
             format!(
                 "the bodies of {first} and {second} overlap by {} at {} before loading, {} % of their least radius or width: strains are taken to be small",
                 words.length(-deepest.gap),
-                place(deepest.at[0]),
+                place(deepest.place),
                 short(100.0 * share, 2)
             )
         })

@@ -7,6 +7,7 @@ use super::{NO_LENGTH, Words, obstacle_of, place, size};
 use crate::model::{Condition, Obstacle, Problem};
 use crate::quote;
 use crate::results::Solution;
+use crate::results::solution::ContactPoint;
 
 /// The allowed difference between the distance from the obstacle and the linearised gap, as a share of the motion.
 const MOST_OFF: f64 = 0.1;
@@ -21,8 +22,7 @@ fn distance(obstacle: &Obstacle, x: [f64; 2]) -> Option<f64> {
     obstacle.closest(x, String::new).ok().map(|closest| closest.gap)
 }
 
-fn moved(solution: &Solution, node: usize) -> ([f64; 2], f64) {
-    let (x, u) = (solution.nodes[node], solution.displacement[node]);
+fn moved(x: [f64; 2], u: [f64; 2]) -> ([f64; 2], f64) {
     ([x[0] + u[0], x[1] + u[1]], u[0].hypot(u[1]))
 }
 
@@ -38,29 +38,29 @@ pub(super) fn off_the_obstacle(
         let Some(Condition::Obstacle(_, obstacle)) = problem.conditions.get(name) else {
             continue;
         };
-        let mut worst: Option<(f64, usize, f64, f64)> = None;
+        let mut worst: Option<(f64, ContactPoint, f64, f64)> = None;
         for edge in edges {
             // Vertices only: on a curved edge the gap in the middle is that of a place off the chord.
-            for point in [edge.points.first(), edge.points.last()].into_iter().flatten() {
-                let (x, motion) = moved(solution, point.node);
+            for &point in [edge.points.first(), edge.points.last()].into_iter().flatten() {
+                let (x, motion) = moved(point.place, point.displacement);
                 let Some(found) = distance(obstacle, x) else { continue };
                 let meant = point.gap - point.u_n;
                 let off = (found - meant).abs();
                 let counts = point.pressure > 0.0 || found < 0.0;
                 if counts && off > MOST_OFF * motion && off > worst.map_or(0.0, |worst| worst.0) {
-                    worst = Some((off, point.node, found, meant));
+                    worst = Some((off, point, found, meant));
                 }
             }
         }
-        let Some((off, node, found, meant)) = worst else { continue };
+        let Some((off, point, found, meant)) = worst else { continue };
         if off <= NO_LENGTH * size(problem) {
             continue;
         }
-        let motion = moved(solution, node).1;
+        let motion = moved(point.place, point.displacement).1;
         remarks.push(format!(
             "{} at {} moves by {}: its distance from {} is then {}, not {} as the gap at the undeformed place has it. Large motions beside a curved obstacle are not computed: expected a motion for which both differ by less than {} % of it, or a mesh of the body nearer to where it ends",
             quote::quoted(name, '\''),
-            place(solution.nodes[node]),
+            place(point.place),
             words.length(motion),
             obstacle_of(problem, name),
             words.length(found),
@@ -88,7 +88,7 @@ pub(super) fn beside_the_line(
             let (x, u) = (solution.nodes[node], solution.displacement[node]);
             let (before, after) = match problem.conditions.get(name)? {
                 Condition::Obstacle(_, obstacle) => {
-                    (distance(obstacle, x)?, distance(obstacle, moved(solution, node).0)?)
+                    (distance(obstacle, x)?, distance(obstacle, moved(x, u).0)?)
                 }
                 Condition::Contact { gap } => {
                     let gap = gap.at(x);

@@ -6,7 +6,7 @@ use super::{Known, NO_LENGTH, Words, model, place, size};
 use crate::contact::piece::PieceGeometry;
 use crate::model::{Condition, Problem};
 use crate::quote;
-use crate::results::solution::ContactEdgeValues;
+use crate::results::solution::{ContactEdge, ContactPoint};
 use crate::results::{ContactBoundary, Solution};
 
 /// A stretch of fewer edges than this gives a peak that is 2 % off Hertz's, of two edges 3 %, of less than one 20 % and more.
@@ -33,8 +33,7 @@ const NEXT: f64 = 1.0;
 
 /// The edges of one contact boundary, in the order of the boundary.
 struct Line<'s> {
-    edges: &'s [ContactEdgeValues],
-    nodes: &'s [[f64; 2]],
+    edges: &'s [ContactEdge],
 }
 
 /// A stretch of contact on a line.
@@ -51,13 +50,13 @@ struct Stretch {
 }
 
 impl Line<'_> {
-    fn ends(&self, e: usize) -> [usize; 2] {
+    fn ends(&self, e: usize) -> [&ContactPoint; 2] {
         let points = &self.edges[e].points;
-        [0, points.len() - 1].map(|p| points[p].node)
+        [0, points.len() - 1].map(|p| &points[p])
     }
 
     fn length(&self, e: usize) -> f64 {
-        let [[a, b], [c, d]] = self.ends(e).map(|node| self.nodes[node]);
+        let [[a, b], [c, d]] = self.ends(e).map(|end| end.place);
         (c - a).hypot(d - b)
     }
 
@@ -65,7 +64,7 @@ impl Line<'_> {
     /// `ends` there.
     fn position(&self, [x, y]: [f64; 2], ends: bool) -> Option<f64> {
         let on = |e: usize| {
-            let [[a, b], [c, d]] = self.ends(e).map(|node| self.nodes[node]);
+            let [[a, b], [c, d]] = self.ends(e).map(|end| end.place);
             let (along, length) = ([c - a, d - b], self.length(e));
             let s = ((x - a) * along[0] + (y - b) * along[1]) / (length * length);
             let s = if s < NO_LENGTH {
@@ -93,10 +92,10 @@ impl Line<'_> {
             force += mean * self.length(e);
         }
         let goes_on =
-            |node: usize, end: usize| (0..self.edges.len()).any(|e| self.ends(e)[1 - end] == node);
+            |node, end: usize| (0..self.edges.len()).any(|e| self.ends(e)[1 - end].node == node);
         let [first, last] = [at.start as usize, (at.end.ceil() as usize).saturating_sub(1)];
-        let start_free = at.start.fract() > 0.0 || goes_on(self.ends(first)[0], 0);
-        let end_free = at.end.fract() > 0.0 || goes_on(self.ends(last)[1], 1);
+        let start_free = at.start.fract() > 0.0 || goes_on(self.ends(first)[0].node, 0);
+        let end_free = at.end.fract() > 0.0 || goes_on(self.ends(last)[1].node, 1);
         (at.end > at.start).then_some(Stretch {
             at,
             length,
@@ -118,7 +117,7 @@ impl Line<'_> {
         }
         // A closed line goes on where it starts.
         let count = self.edges.len();
-        let closed = self.ends(count - 1)[1] == self.ends(0)[0];
+        let closed = self.ends(count - 1)[1].node == self.ends(0)[0].node;
         if let [first, .., last] = &stretches[..]
             && closed
             && last.at.end + NEXT >= count as f64 + first.at.start
@@ -134,7 +133,7 @@ impl Line<'_> {
     /// Returns whether what ends at one place of a line goes on at another, in edges.
     fn are_next(&self, end: f64, start: f64) -> bool {
         let [last, first] = [(end.ceil() as usize).saturating_sub(1), start as usize];
-        let joined = (last..first).all(|e| self.ends(e)[1] == self.ends(e + 1)[0]);
+        let joined = (last..first).all(|e| self.ends(e)[1].node == self.ends(e + 1)[0].node);
         joined && (0.0..=NEXT).contains(&(start - end))
     }
 
@@ -142,7 +141,7 @@ impl Line<'_> {
     fn middle(&self, stretch: &Stretch) -> [f64; 2] {
         let middle = (stretch.at.start + stretch.at.end) / 2.0;
         let e = middle as usize % self.edges.len();
-        let [a, b] = self.ends(e).map(|node| self.nodes[node]);
+        let [a, b] = self.ends(e).map(|end| end.place);
         [0, 1].map(|c| a[c] + middle.fract() * (b[c] - a[c]))
     }
 }
@@ -173,6 +172,7 @@ pub(super) fn short_stretches(
     words: &Words,
 ) -> Vec<String> {
     let lines = solution.contact.chunk_by(|a, b| a.boundary == b.boundary);
+    let lines = lines.filter(|edges| edges[0].partner.is_none());
     let is_plane = !problem.material.are_of_revolution();
     lines.filter_map(|edges| short_stretch(solution, words, edges, is_plane)).collect()
 }
@@ -180,10 +180,10 @@ pub(super) fn short_stretches(
 fn short_stretch(
     solution: &Solution,
     words: &Words,
-    edges: &[ContactEdgeValues],
+    edges: &[ContactEdge],
     is_plane: bool,
 ) -> Option<String> {
-    let line = Line { edges, nodes: &solution.nodes };
+    let line = Line { edges };
     let name = &*edges.first()?.boundary;
     let part = solution.boundaries.iter().find(|part| part.boundary == *name)?;
     let stretches = line.stretches(part);

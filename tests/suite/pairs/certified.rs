@@ -221,9 +221,14 @@ fn a_solution_that_the_space_has_is_proved_to_rounding() {
 
 /// The tilted squares, the nodes of each moved along the line of contact by at most so much.
 fn moved_along(cells: [usize; 2], by: [f64; 2]) -> Problem {
-    let moved = |k: usize, s: f64| s + by[k] * 4.0 * s * (1.0 - s);
-    let upper = move |[s, t]: [f64; 2]| [moved(0, s), t];
-    let lower = move |[s, t]: [f64; 2]| [moved(1, s), t - 1.0];
+    graded_along(cells, by, &|s| s)
+}
+
+/// The same, with nodes at the places that `graded` gives to evenly spaced ones, before they are moved.
+fn graded_along(cells: [usize; 2], by: [f64; 2], graded: &dyn Fn(f64) -> f64) -> Problem {
+    let moved = |k: usize, s: f64| graded(s) + by[k] * 4.0 * s * (1.0 - s);
+    let upper = |[s, t]: [f64; 2]| [moved(0, s), t];
+    let lower = |[s, t]: [f64; 2]| [moved(1, s), t - 1.0];
     let material = Material::lame(1.0, 1.0, Plane::Strain);
     let block = |name, n: usize, map| Block { name, cells: [n; 2], material, map };
     let pairs = [Pair::new("upper.bottom", "lower.top")];
@@ -252,6 +257,26 @@ fn nodes_that_nearly_face_each_other_may_be_of_longer_and_of_shorter_edges() {
                 let bound = bound(by);
                 println!("{cells:?} {degree:?} {top} {by}: {}", bound / matching);
                 assert!(bound <= most * matching, "{cells:?} {degree:?} {top} {by}: {bound}");
+            }
+        }
+    }
+}
+
+#[test]
+fn nodes_that_nearly_face_each_other_may_be_between_short_and_longer_edges() {
+    // Edges that become longer to the right, or to the left.
+    let graded: [&dyn Fn(f64) -> f64; 2] = [&|s| (2.0 * s).exp_m1() / 2.0_f64.exp_m1(), &|s| {
+        (1.0 - (-2.0 * s).exp()) / -(-2.0_f64).exp_m1()
+    }];
+    for (cells, degree) in [[4, 12], [12, 4]].into_iter().flat_map(|n| DEGREES.map(|d| (n, d))) {
+        for graded in graded {
+            let bound = |by: f64| certified(&graded_along(cells, [0.0, by], graded), degree).bound;
+            let matching = bound(0.0);
+            // Within a millionth of one of the longer edges and beyond that of its neighbour.
+            for by in [-4e-7, -2e-7, 2e-7, 4e-7] {
+                let found = bound(by);
+                println!("{cells:?} {degree:?} {by}: {}", found / matching);
+                assert!(found <= 1.01 * matching, "{cells:?} {degree:?} {by}: {found}");
             }
         }
     }

@@ -77,10 +77,11 @@ fn the_law_holds_and_what_one_body_bears_the_other_does() {
         for degree in DEGREES {
             let s = proved(&dragged([9, 13], 2.0, &friction, false), &method(degree));
             let (mut sticks, mut slides) = (0, 0);
-            for point in s.between.iter().flat_map(|piece| &piece.points) {
+            let first = s.contact.iter().take(s.pieces.len());
+            for point in first.flat_map(|edge| &edge.points) {
                 let most = match friction {
                     Friction::Coulomb(mu) => -mu * point.lambda,
-                    _ => 0.006 + 0.003 * point.at[0][0],
+                    _ => 0.006 + 0.003 * point.place[0],
                 };
                 assert!(point.shear.abs() <= most * (1.0 + 1e-12) + 1e-15, "{point:?} {most}");
                 if point.shear.abs() >= most * (1.0 - 1e-12) && most > 0.0 {
@@ -122,7 +123,7 @@ fn what_sticks_all_along_is_glued() {
         problem.pairs[0] = Pair::new("lower.top", "upper.bottom").with_law(Law::Bonded);
         let glued = proved(&problem, &method(degree));
         // It is pressed all along, so that contact is glue as well.
-        assert!(glued.between.iter().flat_map(|piece| &piece.points).all(|p| p.lambda < 0.0));
+        assert!(glued.contact.iter().flat_map(|edge| &edge.points).all(|p| p.lambda < 0.0));
         let off = |s: &Solution| apart(&s.displacement, &glued.displacement);
         assert!(off(&stuck(10.0)) <= 1e-12 * largest(&glued.displacement));
         assert!(off(&stuck(0.003)) > 1e-3 * largest(&glued.displacement));

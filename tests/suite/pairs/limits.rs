@@ -38,18 +38,19 @@ fn a_stiff_body_acts_as_a_rigid_obstacle() {
 fn both_sides_of_a_pair_have_the_same_numbers_and_opposite_directions() {
     for degree in DEGREES {
         let s = proved(&tilted([4, 3], 2.0, false), &method(degree));
-        let points = s.contact_points();
-        let (first, second) = points.split_at(s.pieces.len());
+        let (first, second) = s.contact.split_at(s.pieces.len());
         assert_eq!(first.len(), second.len());
         let (mut opening, mut varies) = (f64::NEG_INFINITY, 0.0_f64);
         for ((a, b), piece) in first.iter().zip(second).zip(&s.pieces) {
             let stress = piece.sigma_n(&s.displacement);
             // The points go along the piece: its stress at the ends is that of the first and of the last.
+            let names = [a, b].map(|edge| &*edge.boundary);
+            assert_eq!(names, ["lower.top", "upper.bottom"]);
+            let (a, b) = (&a.points, &b.points);
             let ends = [a[0].sigma_n, a[a.len() - 1].sigma_n];
             assert_abs_diff_eq!(ends[..], stress[..], epsilon = 1e-14);
             varies = varies.max((stress[1] - stress[0]).abs());
             for (a, b) in a.iter().zip(b) {
-                assert_eq!((a.boundary, b.boundary), ("lower.top", "upper.bottom"));
                 let [d, e] = [a.direction, b.direction];
                 assert_eq!(d, e.map(|c| -c));
                 let [u, v] = [a.displacement, b.displacement];

@@ -115,7 +115,7 @@ fn free(problem: &Problem, x: [f64; 2]) -> Result<Vec<(String, f64)>, String> {
     let space = Space::new(&problem.mesh, Degree::One);
     let constraints = Constraints::new(problem, &space).map_err(text)?;
     let (_, motions) = constraints.free_motions(&space);
-    let said = |m: &signorini::held::FreeMotion| {
+    let said = |m: &signorini::model::FreeMotion| {
         let [ux, uy] = m.at(x);
         (format!("{m}: {}", m.remedy()), ux.hypot(uy))
     };

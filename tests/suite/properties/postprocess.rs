@@ -54,7 +54,7 @@ fn stresses_of(d: &Discretization, u: Vec<[f64; 2]>, plane: Option<Plane>) -> Ou
     for part in &solution.boundaries {
         let edges = solution.contact.iter().filter(|edge| *edge.boundary == *part.boundary);
         let points = edges.flat_map(|edge| &edge.points);
-        let inside = points.map(|point| (point.u_n - point.gap, solution.nodes[point.node]));
+        let inside = points.map(|point| (point.u_n - point.gap, point.place));
         let deepest =
             inside.fold(
                 (f64::NEG_INFINITY, [0.0; 2]),

@@ -107,7 +107,7 @@ pub(super) fn beside_hertz(n: usize, degree: Degree) -> [f64; 3] {
     let peak = 2.0 * REDUCED / (PI * 20.0);
     let s = hertz(n, degree);
     let points = s.contact.iter().flat_map(|edge| &edge.points);
-    let on_axis = points.filter(|p| s.nodes[p.node][0] == 0.0).map(|p| -p.lambda);
+    let on_axis = points.filter(|p| p.place[0] == 0.0).map(|p| -p.lambda);
     let on_axis = on_axis.fold(0.0, f64::max);
     [force_of(&s) / force, s.boundaries[0].peak_pressure / peak, on_axis / peak]
 }
@@ -184,7 +184,7 @@ pub(super) fn contact_radius(edges: impl Iterator<Item = Vec<(f64, f64)>>, force
 fn pressures(s: &Solution) -> impl Iterator<Item = Vec<(f64, f64)>> {
     s.contact.iter().map(|edge| {
         let values = edge.points.iter().map(|p| [p.lambda, p.u_n - p.gap, p.sigma_n]);
-        let radii = edge.points.iter().map(|p| s.nodes[p.node][0]);
+        let radii = edge.points.iter().map(|p| p.place[0]);
         radii.zip(before_the_cut(values)).collect()
     })
 }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use signorini::contact::Pair;
 use signorini::model::{Condition, Materials, Mesh, Problem};
-use signorini::results::solution::PieceValues;
+use signorini::results::ContactEdge;
 
 use super::half_space::{before_the_cut, contact_radius, hertz_displacement};
 use super::*;
@@ -47,7 +47,7 @@ fn a_stack_of_two_cylinders_is_exact() {
             assert_abs_diff_eq!(u[..], [0.003 * r, -0.01 * z][..], epsilon = 1e-12);
         }
         assert_relative_eq!(s.quantities.contact_force, 0.01 * PI, max_relative = 1e-12);
-        for point in s.between.iter().flat_map(|piece| &piece.points) {
+        for point in s.contact.iter().flat_map(|edge| &edge.points) {
             assert_relative_eq!(-point.lambda, 0.01, max_relative = 1e-12);
             assert_relative_eq!(point.pressure, 0.01, max_relative = 1e-12);
         }
@@ -132,15 +132,16 @@ pub(super) fn two_spheres(degree: Degree, [n, m]: [usize; 2]) -> OfHertz {
     let s = solved(&problem, degree);
     let found = s.quantities.contact_force;
     let a = (3.0 * found / (4.0 * reduced * curvature)).cbrt();
-    let of_piece = |piece: &PieceValues| -> Vec<(f64, f64)> {
+    let of_piece = |piece: &ContactEdge| -> Vec<(f64, f64)> {
         let values = piece.points.iter().map(|p| [p.lambda, p.u_n - p.gap, p.sigma_n]);
-        piece.points.iter().map(|p| p.at[0][0]).zip(before_the_cut(values)).collect()
+        piece.points.iter().map(|p| p.place[0]).zip(before_the_cut(values)).collect()
     };
-    let highest = s.between.iter().flat_map(|piece| &piece.points).map(|p| p.pressure);
+    let highest = s.contact.iter().flat_map(|edge| &edge.points).map(|p| p.pressure);
+    let first = s.contact.iter().filter(|edge| &*edge.boundary == "top");
     OfHertz {
         force: found / force,
         peak: highest.fold(0.0, f64::max) / (2.0 * reduced * curvature * a / PI),
-        radius: contact_radius(s.between.iter().map(of_piece), found) / a,
+        radius: contact_radius(first.map(of_piece), found) / a,
         alone: found / (4.0 * YOUNG[1] / 0.91 * curvature / 3.0),
     }
 }
