@@ -11,3 +11,14 @@ mod numeric;
 pub mod ordering;
 #[doc(hidden)]
 pub mod system;
+
+/// Evaluates an expression with the instructions of the processor at hand: fewer than with those that every one has.
+macro_rules! on_this_processor {
+    ($expression:expr) => {
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || $expression,
+        )
+    };
+}
+pub(crate) use on_this_processor;

@@ -247,11 +247,14 @@ impl<'d, 'p> System<'d, 'p> {
         };
         let side = [0, 1].map(ends).into_iter().fold(0.0, |most: f64, [a, b]| most.max(b - a));
         let most = u.iter().fold(0.0, |most: f64, u| most.max(u[0].hypot(u[1])));
+        let materials = &self.d.problem.material;
+        let least: Vec<f64> = materials.distinct().iter().map(least_eigenvalue).collect();
         let energy_of_unit = |t: usize| {
-            let (triangle, material) = (mesh.triangle(t), self.d.problem.material.of(t));
+            let triangle = mesh.triangle(t);
             // In a body of revolution integrals have the weight r.
-            let radius = material.radii(&triangle).map_or(1.0, |r| r.iter().sum::<f64>() / 3.0);
-            radius * triangle.double_area() / 2.0 * least_eigenvalue(material)
+            let radii = materials.of(t).radii(&triangle);
+            let radius = radii.map_or(1.0, |r| r.iter().sum::<f64>() / 3.0);
+            radius * triangle.double_area() / 2.0 * least[materials.place_of(t)]
         };
         let square: f64 = (0..mesh.triangles().len()).map(energy_of_unit).sum();
         (most / side).min(1.0) * square.sqrt()
