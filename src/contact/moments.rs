@@ -66,6 +66,9 @@ fn moments_of<E: Element<N, M>, const N: usize, const M: usize>(
         EdgeRule::Exact if degree.bernstein(&p).iter().all(|c| c.upper() <= 0.0) => {
             [PreciseBall::from(0); M]
         }
+        EdgeRule::Exact if degree.bernstein(&p).iter().all(|c| c.lower() >= 0.0) => {
+            bilateral::<E, _, _, _>(p, radii).gradient
+        }
         EdgeRule::Exact => {
             // |N_a| <= 1, and so |int ([P]+ - [Q]+) N_a| <= max |P - Q| <= the sum of the radii.
             let spread = largest(radii) * p.iter().map(|p| p.radius()).sum::<f64>();

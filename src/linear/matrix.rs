@@ -6,6 +6,7 @@
 //! all element entries, sorted by faer (`SymbolicSparseColMat::try_new_from_indices`), took two to four times as long.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use nalgebra::{DMatrix, Matrix2, Vector2};
 use thiserror::Error;
@@ -175,9 +176,9 @@ impl Neighbours {
 #[derive(Clone, Debug)]
 pub struct LowerTriangle {
     /// Where each column starts, and where the last one ends.
-    pub starts: Vec<usize>,
+    pub starts: Arc<[usize]>,
     /// The row of each entry.
-    pub rows: Vec<usize>,
+    pub rows: Arc<[usize]>,
     /// The entries.
     pub values: Vec<f64>,
 }
@@ -194,7 +195,7 @@ impl LowerTriangle {
             starts.push(rows.len());
         }
         let values = vec![0.0; rows.len()];
-        LowerTriangle { starts, rows, values }
+        LowerTriangle { starts: starts.into(), rows: rows.into(), values }
     }
 
     /// Adds the blocks of an element matrix: `block(i, j)` has the rows of `nodes[i]` and the columns of `nodes[j]`.

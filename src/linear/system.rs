@@ -2,6 +2,7 @@
 //! factor, and B, the values of P0 at the nodes of the pieces of Gamma_C. The tangent A + B^T Psi'' B has the pattern of A, which is
 //! joined over the triangles of each piece.
 
+use std::borrow::Cow;
 use std::cell::{Cell, OnceCell};
 use std::ops::Range;
 use std::sync::Arc;
@@ -178,7 +179,8 @@ impl<'d, 'p> System<'d, 'p> {
         springs: Vec<DMatrix<f64>>,
     ) -> Result<Factored, SolveError> {
         let Some(last) = last else {
-            let factor = Factor::with(&self.structure, &self.tangent(&springs)?)?;
+            let tangent = self.tangent(&springs)?;
+            let factor = Factor::with(&self.structure, &tangent)?;
             return Ok(Factored { factor: Arc::new(factor), springs: springs.into() });
         };
         let changed: Vec<usize> =
@@ -187,16 +189,17 @@ impl<'d, 'p> System<'d, 'p> {
             return Ok(last);
         }
         let unknowns = changed.into_iter().flat_map(|e| self.unknowns(e));
-        let factor = last.factor.changed(&self.tangent(&springs)?, unknowns)?;
+        let tangent = self.tangent(&springs)?;
+        let factor = last.factor.changed(&tangent, unknowns)?;
         Ok(Factored { factor, springs: springs.into() })
     }
 
     /// A + B^T h B
-    fn tangent(&self, springs: &[DMatrix<f64>]) -> Result<LowerTriangle, OutsidePattern> {
-        let mut tangent = self.matrix.clone();
+    fn tangent(&self, springs: &[DMatrix<f64>]) -> Result<Cow<'_, LowerTriangle>, OutsidePattern> {
+        let mut tangent = Cow::Borrowed(&self.matrix);
         for (piece, h) in self.d.contact.iter().zip(springs) {
             if h.iter().any(|h| *h != 0.0) {
-                tangent.add_contact_springs(&self.numbering, piece, h)?;
+                tangent.to_mut().add_contact_springs(&self.numbering, piece, h)?;
             }
         }
         Ok(tangent)
@@ -247,11 +250,14 @@ impl<'d, 'p> System<'d, 'p> {
         };
         let side = [0, 1].map(ends).into_iter().fold(0.0, |most: f64, [a, b]| most.max(b - a));
         let most = u.iter().fold(0.0, |most: f64, u| most.max(u[0].hypot(u[1])));
+        let materials = &self.d.problem.material;
+        let least: Vec<f64> = materials.distinct().iter().map(least_eigenvalue).collect();
         let energy_of_unit = |t: usize| {
-            let (triangle, material) = (mesh.triangle(t), self.d.problem.material.of(t));
+            let triangle = mesh.triangle(t);
             // In a body of revolution integrals have the weight r.
-            let radius = material.radii(&triangle).map_or(1.0, |r| r.iter().sum::<f64>() / 3.0);
-            radius * triangle.double_area() / 2.0 * least_eigenvalue(material)
+            let radii = materials.of(t).radii(&triangle);
+            let radius = radii.map_or(1.0, |r| r.iter().sum::<f64>() / 3.0);
+            radius * triangle.double_area() / 2.0 * least[materials.place_of(t)]
         };
         let square: f64 = (0..mesh.triangles().len()).map(energy_of_unit).sum();
         (most / side).min(1.0) * square.sqrt()

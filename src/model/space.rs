@@ -90,8 +90,12 @@ impl<'a> Space<'a> {
 
     /// All triangles with their coordinates and their nodes, of which there are `N`.
     pub fn triangles<const N: usize>(&self) -> impl Iterator<Item = (Triangle<f64>, &[usize; N])> {
-        let (elements, _) = self.elements.as_chunks::<N>();
-        elements.iter().enumerate().map(|(t, nodes)| (self.mesh.triangle(t), nodes))
+        self.elements_of::<N>().iter().enumerate().map(|(t, nodes)| (self.mesh.triangle(t), nodes))
+    }
+
+    /// The nodes of the triangles, for N on each.
+    pub(crate) fn elements_of<const N: usize>(&self) -> &[[usize; N]] {
+        self.elements.as_chunks().0
     }
 
     /// The mean hoop strain of `field` on triangle `t`; 0 where the material is that of a plane body.

@@ -1,75 +1,112 @@
 //! The ingredients of (8) in balls: the pieces of Gamma_C, kappa, the components of fields and functionals in the frames of their
 //! nodes, their products.
 
+use std::cell::OnceCell;
+use std::ops::Index;
+
 use crate::contact::contact_line::{Share, by_triangle};
-use crate::contact::piece::{Side, Stretch};
+use crate::contact::piece::Stretch;
 use crate::contact::{Discretization, Piece, residual};
 use crate::kernel::ball::{PreciseBall, larger, up};
 use crate::kernel::contact_edge::traction_stiffness;
+use crate::kernel::{Ball, Enclosing, Scalar};
 use crate::linear::system::System;
 
-/// The pieces of Gamma_C in balls: lengths and normals as the vertices have them.
-pub fn pieces(d: &Discretization) -> Vec<Piece<PreciseBall>> {
-    let numbers = |side: &Side, stretch: &Stretch| {
-        let triangle = d.space.mesh().triangle(stretch.edge.triangle);
-        let triangle = residual::exactly::<PreciseBall>(triangle);
-        let normal: [PreciseBall; 2] = triangle.scaled_normal(stretch.edge.local).into();
-        let length = dot(normal, normal).sqrt();
-        (length, normal.map(|c| c / length).into(), PreciseBall::from(side.gamma))
-    };
-    d.contact.iter().map(|piece| residual::piece_with(d, piece, numbers)).collect()
+/// The pieces of Gamma_C in balls, lengths and normals as the vertices have them; each is made where it is needed first.
+pub struct Lines<'d> {
+    d: &'d Discretization<'d>,
+    made: Vec<OnceCell<Piece<PreciseBall>>>,
+}
+
+impl<'d> Lines<'d> {
+    /// Those of a discretization.
+    pub fn new(d: &'d Discretization<'d>) -> Self {
+        Lines { d, made: vec![OnceCell::new(); d.contact.len()] }
+    }
+
+    /// All of them.
+    pub(super) fn iter(&self) -> impl Iterator<Item = &Piece<PreciseBall>> {
+        (0..self.made.len()).map(|e| &self[e])
+    }
+
+    /// The same in doubles.
+    pub(super) fn in_doubles(&self) -> &'d [Piece] {
+        &self.d.contact
+    }
+}
+
+impl Index<usize> for Lines<'_> {
+    type Output = Piece<PreciseBall>;
+
+    fn index(&self, e: usize) -> &Piece<PreciseBall> {
+        self.made[e].get_or_init(|| {
+            residual::piece_with(self.d, &self.d.contact[e], |side, stretch| {
+                let (length, normal) = length_and_normal::<PreciseBall>(self.d, stretch);
+                (length, normal.into(), PreciseBall::from(side.gamma))
+            })
+        })
+    }
+}
+
+/// |E| and n
+fn length_and_normal<S: Enclosing + From<f64>>(d: &Discretization, at: &Stretch) -> (S, [S; 2]) {
+    let triangle = residual::exactly::<S>(d.space.mesh().triangle(at.edge.triangle));
+    let normal: [S; 2] = triangle.scaled_normal(at.edge.local).into();
+    let length = dot(normal, normal).sqrt();
+    (length, normal.map(|c| c / length))
 }
 
 /// kappa of Theorem 2.3, rounded up. The directions of contact are doubles, unit vectors to a rounding error only.
-pub(super) fn kappa(d: &Discretization, pieces: &[Piece<PreciseBall>]) -> f64 {
+pub(super) fn kappa(d: &Discretization) -> f64 {
     let degree = d.space.degree();
-    let largest = |a: PreciseBall, b: PreciseBall| if a.upper() < b.upper() { b } else { a };
+    let largest = |a: Ball, b: Ball| if a.upper() < b.upper() { b } else { a };
     let mut shares = Vec::new();
-    for piece in pieces {
+    for piece in &d.contact {
         let geometry = &piece.geometry;
-        let along: Vec<[PreciseBall; 2]> =
-            geometry.directions().map(|n| n.map(PreciseBall::from).into()).collect();
+        let along: Vec<[Ball; 2]> =
+            geometry.directions().map(|n| n.map(Ball::from).into()).collect();
         let both = geometry.law.components() > 1;
-        let lengths: Vec<PreciseBall> = piece.sides.iter().map(|side| side.length).collect();
+        let sides: Vec<(Ball, [Ball; 2])> =
+            geometry.stretches.iter().map(|stretch| length_and_normal(d, stretch)).collect();
+        let lengths: Vec<Ball> = sides.iter().map(|(length, _)| *length).collect();
         let chords = geometry.chords(&lengths);
         for (i, (side, stretch)) in piece.sides.iter().zip(&geometry.stretches).enumerate() {
-            let t = stretch.edge.triangle;
+            let (t, (length, normal)) = (stretch.edge.triangle, sides[i]);
             let direction = if geometry.along_normal {
-                Some(side.normal)
+                Some(normal.into())
             } else {
                 (!geometry.turns()).then_some(along[0].into())
             };
-            let (one, doubles) = (PreciseBall::from(1), d.space.mesh().triangle(t));
+            let (one, doubles) = (Ball::from(1), d.space.mesh().triangle(t));
             let radii = geometry.radii(i, |edge| {
-                let (t, exact) = (edge.triangle, PreciseBall::from);
+                let (t, exact) = (edge.triangle, Ball::from);
                 let triangle = d.space.mesh().triangle(t);
                 d.problem.material.of(t).radii(&triangle).map(|radii| radii.map(exact))
             });
             let of_edge = radii.map(|radii| (radii.of_piece, radii.of_triangle));
-            let counted = |turning| degree.counted_length(one, turning, of_edge, PreciseBall::sqrt);
+            let counted = |turning| degree.counted_length(one, turning, of_edge, Ball::sqrt);
             let factor = if geometry.along_normal {
                 counted(None)
             } else {
-                let off = along.iter().map(|&n| (dot(n, n) - PreciseBall::from(1)).magnitude());
-                let off = PreciseBall::from(8.0 * off.fold(0.0, larger));
+                let off = along.iter().map(|&n| (dot(n, n) - Ball::from(1)).magnitude());
+                let off = Ball::from(8.0 * off.fold(0.0, larger));
                 let cosine = dot(along[0], along[1]);
                 // The square root of the factor is steep where the direction turns little.
                 let cosine = if both && geometry.turns() {
-                    PreciseBall::from((cosine - off).lower())
+                    Ball::from((cosine - off).lower())
                 } else {
                     cosine
                 };
                 let turning = counted(Some((cosine, both && geometry.turns())));
-                turning * (PreciseBall::from(1) + off) + off
+                turning * (Ball::from(1) + off) + off
             };
             let factor = chords.map_or(factor, |chords| factor * chords.share(i, radii, largest));
-            let material = d.problem.material.of(t).map(PreciseBall::from);
+            let material = d.problem.material.of(t).map(Ball::from);
             let direction = direction.filter(|_| !both);
-            let stiffness =
-                traction_stiffness(&material, side.normal, direction, PreciseBall::sqrt);
-            let area = residual::exactly::<PreciseBall>(doubles).double_area();
-            let (length, area) = (factor * side.length, area / PreciseBall::from(2));
-            let value = degree.coercivity_constant(stiffness, side.gamma, length, area);
+            let stiffness = traction_stiffness(&material, normal.into(), direction, Ball::sqrt);
+            let area = residual::exactly::<Ball>(doubles).double_area();
+            let (length, area) = (factor * length, area / Ball::from(2));
+            let value = degree.coercivity_constant(stiffness, side.gamma.into(), length, area);
             shares.push(Share::new(geometry, i, value));
         }
     }
@@ -135,7 +172,7 @@ pub(super) fn strain_energy(d: &Discretization, v: &[[PreciseBall; 2]]) -> Preci
 }
 
 /// a . b
-pub(super) fn dot(a: [PreciseBall; 2], b: [PreciseBall; 2]) -> PreciseBall {
+pub(super) fn dot<S: Scalar>(a: [S; 2], b: [S; 2]) -> S {
     a[0] * b[0] + a[1] * b[1]
 }
 

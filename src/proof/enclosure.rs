@@ -22,11 +22,11 @@ use std::time::Duration;
 use nalgebra::DMatrix;
 use thiserror::Error;
 
-use super::balls::{field, free, kappa, length, pieces, root};
+use super::balls::{Lines, field, free, kappa, length, root};
 use super::intervals::{Arithmetic, EnclosedResidual, Intervals};
 use super::isolated::{self, Isolated};
 use super::pressed::{self, Pressed};
-use crate::contact::{Discretization, Piece};
+use crate::contact::Discretization;
 use crate::held::solvability::Slides;
 use crate::kernel::DoubleDouble;
 use crate::kernel::ball::{PreciseBall, up};
@@ -159,7 +159,7 @@ pub fn enclose(
 pub struct Verifier<'s, 'd, 'p> {
     system: &'s System<'d, 'p>,
     load: &'s [[PreciseBall; 2]],
-    lines: Vec<Piece<PreciseBall>>,
+    lines: Lines<'d>,
     kappa: f64,
     /// The relative radius that is asked for: a bound that is far below is not sharpened.
     proof: f64,
@@ -197,8 +197,8 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         load: &'s [[PreciseBall; 2]],
     ) -> Self {
         let mut watch = Stopwatch::start();
-        let lines = pieces(system.d);
-        let kappa = kappa(system.d, &lines);
+        let lines = Lines::new(system.d);
+        let kappa = kappa(system.d);
         let time = watch.lap();
         let proof = 0.0;
         Verifier {
@@ -307,7 +307,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         let r = coulomb.map_or(r, |for_middles| free(system, for_middles));
         let by_a = match d.slides {
             None => {
-                let nowhere = Pressed::nowhere(self.lines.len());
+                let nowhere = Pressed::nowhere(d.contact.len());
                 self.held_by(&nowhere, &at, fields, (&r, arithmetic))
             }
             Some(_) => Err(Unproved::HeldByContact),
@@ -436,7 +436,7 @@ impl Found {
     fn enclosure(
         self,
         system: &System,
-        lines: &[Piece<PreciseBall>],
+        lines: &Lines,
         (at, reported): (&EnclosedResidual, &[[f64; 2]]),
         korn: &Korn,
     ) -> Result<Enclosure, Unproved> {
@@ -552,7 +552,7 @@ fn slid(
 /// `nodes` say, and by `radius` in the norm of A_S: then the motion changes nothing.
 fn stays_off(
     d: &Discretization,
-    lines: &[Piece<PreciseBall>],
+    lines: &Lines,
     u: &[[PreciseBall; 2]],
     (nodes, radius): (&[f64], f64),
 ) -> bool {
@@ -567,7 +567,7 @@ fn stays_off(
 /// A, with the springs of the pieces that are `pressed`.
 struct Product<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
-    lines: &'a [Piece<PreciseBall>],
+    lines: &'a Lines<'d>,
     pressed: &'a Pressed,
     arithmetic: Arithmetic,
 }
@@ -579,9 +579,7 @@ impl Product<'_, '_, '_> {
         let v = field(self.system, |number, _, _| z[number], |_, _| 0.0);
         let mut forces = vec![[PreciseBall::from(0); 2]; v.len()];
         let off = self.arithmetic.add_small_forces(self.system.d, &v, &mut forces);
-        for line in self.lines {
-            line.add_stresses(&v, &mut forces);
-        }
+        let off = self.arithmetic.add_stresses(self.system.d, self.lines, &v, (&mut forces, off));
         self.pressed.add_springs(self.lines, &v, &mut forces);
         (free(self.system, &forces), off)
     }

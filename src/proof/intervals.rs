@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 #[cfg(feature = "files")]
 use serde::{Deserialize, Serialize};
 
-use super::balls::{field, length, product, root, strain_energy};
+use super::balls::{Lines, field, length, product, root, strain_energy};
 use crate::contact::{Discretization, Piece, residual};
 use crate::kernel::ball::{PreciseBall, up};
 use crate::kernel::{DoubleDouble, Response};
 use crate::linear::system::System;
 use crate::proof::rounded_stress;
+use crate::proof::rounded_stress::{is_plain, surely_open};
 
 /// An interval `[low, high]`.
 pub(crate) type Range = [f64; 2];
@@ -96,6 +97,25 @@ impl Arithmetic {
         }
     }
 
+    /// Adds -int gamma sigma_n(u) sigma_n(v) for every basis function v; returns what the `bound` of the functional by which the forces
+    /// are off becomes by that.
+    pub(super) fn add_stresses(
+        self,
+        d: &Discretization,
+        lines: &Lines,
+        u: &[[PreciseBall; 2]],
+        (forces, bound): (&mut [[PreciseBall; 2]], f64),
+    ) -> f64 {
+        let in_doubles = self == Arithmetic::Doubles;
+        let in_balls = d.contact.iter().enumerate();
+        let in_balls = in_balls.filter(|(_, piece)| !(in_doubles && is_plain(piece)));
+        in_balls.for_each(|(e, _)| lines[e].add_stresses(u, forces));
+        if !in_doubles {
+            return bound;
+        }
+        up((bound * bound + rounded_stress::add_contact_stresses(d, u, forces)).sqrt())
+    }
+
     /// |v|_a at most.
     fn energy_norm(self, d: &Discretization, v: &[[PreciseBall; 2]]) -> f64 {
         match self {
@@ -119,8 +139,8 @@ pub(super) struct EnclosedResidual {
     pub(crate) energy: PreciseBall,
     /// The residual is off by no more than a functional r with |r(v)| <= this times |v|_a.
     pub(crate) off: f64,
-    /// int \[P\]+ N_a / gamma on each piece.
-    pressures: Vec<Vec<PreciseBall>>,
+    /// int \[P\]+ N_a / gamma on all pieces, exactly 0 where they surely do not press.
+    pressures: Vec<PreciseBall>,
     arithmetic: Arithmetic,
 }
 
@@ -128,7 +148,7 @@ impl EnclosedResidual {
     /// None if it over- or underflows double precision.
     pub(crate) fn new(
         system: &System,
-        lines: &[Piece<PreciseBall>],
+        lines: &Lines,
         (u, reported): (&[[f64; 2]], &[[f64; 2]]),
         near: Option<&[[DoubleDouble; 2]]>,
         (load, arithmetic): (&[[PreciseBall; 2]], Arithmetic),
@@ -159,20 +179,25 @@ impl EnclosedResidual {
         // x^2 = a(u~, u~) is off q = u~ . forces by off x at most, so x <= off + q^(1/2).
         let energy = product(&exact, &residual);
         let energy = energy.widened(up(off * (off + root(energy))));
-        let mut pressures = Vec::with_capacity(lines.len());
-        lines.iter().for_each(|line| line.add_stresses(&exact, &mut residual));
+        let mut pressures = vec![PreciseBall::from(0); system.functionals()];
+        let off = arithmetic.add_stresses(d, lines, &exact, (&mut residual, off));
         for (r, &l) in residual.iter_mut().zip(load) {
             *r = [r[0] - l[0], r[1] - l[1]];
         }
         let mut for_middles = d.has_coulomb().then(|| residual.clone());
-        for line in lines {
+        let open = match arithmetic {
+            Arithmetic::Doubles => surely_open(d, &exact),
+            Arithmetic::Balls => vec![false; d.contact.len()],
+        };
+        for (e, _) in open.iter().enumerate().filter(|(_, is_open)| !**is_open) {
+            let line = &lines[e];
             let pressure = line.force(&d.rule, &line.p(&exact));
             line.add_contact(&pressure, &mut residual);
             if let Some(residual) = &mut for_middles {
                 let middle = |p: &PreciseBall| PreciseBall::point(p.centre());
                 line.add_contact(&pressure.iter().map(middle).collect::<Vec<_>>(), residual);
             }
-            pressures.push(pressure);
+            pressures[line.functionals()].copy_from_slice(&pressure);
         }
         let all = residual.iter().chain(&exact).flatten();
         let lengths_are_finite = exact.iter().all(|&u| length(u).is_finite());
@@ -194,7 +219,7 @@ impl EnclosedResidual {
 
     /// The radius of the ball of each functional's force.
     pub(crate) fn spread(&self) -> Vec<f64> {
-        self.pressures.iter().flatten().map(|force| force.radius()).collect()
+        self.pressures.iter().map(|force| force.radius()).collect()
     }
 
     /// Encloses the reported quantities, with |u~ - u^h|_A <= `rho`, |u~ - u^h|_a <= `radius`, the norm of gamma^{1/2}
@@ -203,7 +228,7 @@ impl EnclosedResidual {
     pub(crate) fn intervals(
         &self,
         d: &Discretization,
-        lines: &[Piece<PreciseBall>],
+        lines: &Lines,
         (u, nodes): (&[[PreciseBall; 2]], &[f64]),
         [rho, pressure]: [f64; 2],
         radius: f64,
@@ -223,28 +248,32 @@ impl EnclosedResidual {
             max_displacement = [max_displacement[0].max(low), max_displacement[1].max(high)];
         }
 
-        let mut contact: Vec<(&Piece<PreciseBall>, [PreciseBall; 3], PreciseBall)> = Vec::new();
-        for (line, pressure) in lines.iter().zip(&self.pressures) {
+        let mut contact: Vec<(&Piece, [PreciseBall; 3], f64)> = Vec::new();
+        for (e, piece) in d.contact.iter().enumerate() {
             let zero = PreciseBall::from(0);
-            let along = line.along(pressure).len();
-            let of = pressure.iter().enumerate().fold([zero; 3], |sum, (i, &p)| {
-                let n = line.direction_of(i);
-                let force = if i < along { sum[0] + p } else { sum[0] };
-                [force, sum[1] - p * n[0], sum[2] - p * n[1]]
-            });
-            let weight = line.whole_weight();
-            match contact.iter_mut().find(|(first, ..)| first.is_of_same_boundary(line)) {
+            let pressure = &self.pressures[piece.functionals()];
+            let along = piece.along(pressure).len();
+            let mut of = [zero; 3];
+            for (i, &p) in pressure.iter().enumerate().filter(|(_, p)| **p != zero) {
+                let n = lines[e].direction_of(i);
+                let force = if i < along { of[0] + p } else { of[0] };
+                of = [force, of[1] - p * n[0], of[2] - p * n[1]];
+            }
+            let weight = piece.whole_weight();
+            match contact.iter_mut().find(|(first, ..)| first.is_of_same_boundary(piece)) {
                 Some((_, sum, weights)) => {
                     *sum = [0, 1, 2].map(|i| sum[i] + of[i]);
                     *weights += weight;
                 }
-                None => contact.push((line, of, weight)),
+                None => contact.push((piece, of, weight)),
             }
         }
         let contact = contact
             .into_iter()
             .map(|(piece, sums, weight)| {
                 // |int mu n~_c| <= (int 1/gamma)^{1/2} |gamma^{1/2} mu|
+                // A sum of positive doubles, with few roundings each.
+                let weight = PreciseBall::from(weight * (1.0 + 1e-9));
                 let off = up(root(weight) * pressure);
                 let [force, x, y] = sums.map(|sum| range(sum.widened(off)));
                 // Without tension lambda^h <= 0.
@@ -266,7 +295,7 @@ impl EnclosedResidual {
     fn reactions(
         &self,
         d: &Discretization,
-        lines: &[Piece<PreciseBall>],
+        lines: &Lines,
         [rho, pressure]: [f64; 2],
     ) -> BTreeMap<String, [Range; 2]> {
         let of = |(boundary, held): (&String, &Vec<crate::model::constraints::Held>)| {
@@ -283,11 +312,13 @@ impl EnclosedResidual {
                     }
                 }
                 let by_body = self.arithmetic.energy_norm(d, &test);
-                let by_contact = lines.iter().fold(PreciseBall::from(0), |sum, line| {
+                let pieces = d.contact.iter().enumerate();
+                let by_contact = pieces.fold(PreciseBall::from(0), |sum, (e, piece)| {
                     let is_still = |node: &usize| test[*node].iter().all(|c| c.magnitude() == 0.0);
-                    if line.nodes.iter().all(is_still) {
+                    if piece.nodes.iter().all(is_still) {
                         return sum;
                     }
+                    let line = &lines[e];
                     let most = line.each_p0(&test).fold(0.0, |sum, p| up(sum + p.magnitude()));
                     sum + line.whole_weight() * PreciseBall::from(most) * PreciseBall::from(most)
                 });
@@ -313,7 +344,6 @@ fn range(ball: PreciseBall) -> Range {
 
 #[cfg(test)]
 mod tests {
-    use super::super::balls::pieces;
     use super::*;
     use crate::contact::EdgeRule;
     use crate::kernel::{Material, Plane};
@@ -327,7 +357,7 @@ mod tests {
             .with("bottom", Condition::contact(|_| 0.0));
         let rule = EdgeRule::Exact;
         let d = Discretization::new(&problem, Degree::Two, |c| c.limit() / 2.0, rule).unwrap();
-        let (system, lines) = (System::new(&d).unwrap(), pieces(&d));
+        let (system, lines) = (System::new(&d).unwrap(), Lines::new(&d));
         let load = vec![[PreciseBall::from(0); 2]; d.space.nodes().len()];
         for k in 0..20 {
             let wave = |[x, y]: [f64; 2]| {

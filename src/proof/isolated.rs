@@ -16,7 +16,7 @@ use faer::{Mat, Side};
 use nalgebra::DMatrix;
 
 use super::Unproved;
-use super::balls::{field, free, root};
+use super::balls::{Lines, field, free, root};
 use super::pressed::{EdgePiece, Row};
 use crate::contact::law::{EdgeRule, Law};
 use crate::contact::{Discretization, Piece};
@@ -94,12 +94,12 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
 
 impl Body<'_, '_, '_> {
     /// G = B A^-1 B^T: with z_j near A^-1 b_j and e_j = b_j - A z_j, the entry b_i . z_j is off by |b_i|_A* |e_j|_A* at most.
-    fn compliance(&self, pieces: &[Piece<PreciseBall>]) -> Result<Compliance, Unproved> {
+    fn compliance(&self, pieces: &Lines) -> Result<Compliance, Unproved> {
         let (system, count) = (self.system, self.system.functionals());
         let nodes = system.d.space.nodes().len();
         let mut rows: Vec<Vec<(usize, PreciseBall)>> = Vec::with_capacity(count);
         let zero = PreciseBall::from(0);
-        for piece in pieces {
+        for piece in pieces.iter() {
             for i in 0..piece.p0.len() {
                 let mut unit = vec![zero; piece.p0.len()];
                 unit[i] = PreciseBall::from(1);
@@ -722,7 +722,7 @@ impl Known {
     /// Why nothing is proved.
     pub(crate) fn new(
         body: &Body,
-        pieces: &[Piece<PreciseBall>],
+        pieces: &Lines,
         springs: Option<&[DMatrix<f64>]>,
     ) -> Result<Self, Unproved> {
         let (system, count) = (body.system, body.system.functionals());
@@ -765,7 +765,7 @@ pub(super) struct Rest<'a> {
 /// Why nothing is proved.
 pub(super) fn isolate(
     (known, by_a): (&Known, Option<&Known>),
-    pieces: &[Piece<PreciseBall>],
+    pieces: &Lines,
     u: &[[PreciseBall; 2]],
     system: &System,
     &Rest { rho, z, left, spread, size }: &Rest,
@@ -852,7 +852,7 @@ fn mass(d: &Discretization, piece: &Piece<PreciseBall>) -> DMatrix<f64> {
 /// largest eigenvalue is at least that of G^(1/2) M G^(1/2).
 fn of_friction(
     d: &Discretization,
-    pieces: &[Piece<PreciseBall>],
+    pieces: &Lines,
     root: &Root,
     weight: impl Fn(f64) -> f64,
 ) -> (Mat<f64>, f64) {
@@ -884,19 +884,14 @@ fn is_below_one(m: &Mat<f64>, off: f64, by: f64) -> bool {
 
 /// Returns whether there is exactly one solution, whatever the loads: 1 - (1/4) G^(1/2) M G^(1/2) is positive definite, M being the
 /// integrals of mu^2 N_a N_b / gamma of the tangential functionals.
-fn is_unique(d: &Discretization, pieces: &[Piece<PreciseBall>], root: &Root) -> bool {
+fn is_unique(d: &Discretization, pieces: &Lines, root: &Root) -> bool {
     let (inner, off) = of_friction(d, pieces, root, |mu| mu * mu / 4.0);
     is_below_one(&inner, off, 1.0)
 }
 
 /// Lower bounds of the largest coefficient below which there is exactly one solution for all loads: by Theorem 13.3 and by Theorem 13.3a;
 /// 0 where none is proved.
-fn limits(
-    d: &Discretization,
-    pieces: &[Piece<PreciseBall>],
-    compliance: &Compliance,
-    root: &Root,
-) -> [f64; 2] {
+fn limits(d: &Discretization, pieces: &Lines, compliance: &Compliance, root: &Root) -> [f64; 2] {
     let (inner, off) = of_friction(d, pieces, root, |_| 1.0);
     let n = inner.nrows();
     let times = |x: &[f64]| -> Vec<f64> {
@@ -922,13 +917,9 @@ fn enlarged(estimate: f64) -> impl Iterator<Item = f64> {
 }
 
 /// An upper bound of c of Theorem 13.3a, if known and below 1.
-fn coupling(
-    d: &Discretization,
-    pieces: &[Piece<PreciseBall>],
-    compliance: &Compliance,
-) -> Option<f64> {
+fn coupling(d: &Discretization, pieces: &Lines, compliance: &Compliance) -> Option<f64> {
     let (mut normal, mut across, mut inverses) = (Vec::new(), Vec::new(), Vec::new());
-    for piece in pieces {
+    for piece in pieces.iter() {
         let (first, nodes) = (piece.functionals().start, piece.degree.nodes_per_edge());
         let is_covered = piece.geometry.law == Law::Contact || coefficient(piece).is_some();
         let mass = Some(mass(d, piece)).filter(|_| is_covered)?;

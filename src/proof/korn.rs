@@ -72,9 +72,12 @@ impl Korn {
         holds: &[Hold],
     ) -> Option<Self> {
         let mesh = space.mesh();
-        let left: Vec<f64> = (0..mesh.triangles().len())
-            .map(|t| squared_remainder(mesh, space.degree(), materials, t))
-            .collect::<Option<_>>()?;
+        let stiffness: Vec<f64> = materials.distinct().iter().map(least_eigenvalue).collect();
+        let of = |t: usize| {
+            let stiffness = stiffness[materials.place_of(t)];
+            squared_remainder(mesh, space.degree(), (materials, stiffness), t)
+        };
+        let left: Vec<f64> = (0..mesh.triangles().len()).map(of).collect::<Option<_>>()?;
         let Bounds { low, high } = Bounds::around(mesh.vertices().iter().copied());
         let size = (high[0] - low[0]).hypot(high[1] - low[1]);
         let mut paths = Paths {
@@ -273,14 +276,18 @@ fn area(triangle: &Triangle<f64>) -> f64 {
     (a.perp(&b) - 4.0 * f64::EPSILON * products) / 2.0
 }
 
-/// c_T^2
-fn squared_remainder(mesh: &Mesh, degree: Degree, materials: &Materials, t: usize) -> Option<f64> {
+/// c_T^2, for the least eigenvalue of the law of the material.
+fn squared_remainder(
+    mesh: &Mesh,
+    degree: Degree,
+    (materials, least): (&Materials, f64),
+    t: usize,
+) -> Option<f64> {
     let doubles = mesh.triangle(t);
     let area = area(&doubles);
     let squares = [0, 1, 2].map(|i| doubles.edge(i)).map(|edge| edge.dot(&edge));
     let square = squares.into_iter().fold(0.0, f64::max);
-    let material = materials.of(t);
-    let stiffness = least_eigenvalue(material) / 2.0;
+    let stiffness = least / 2.0;
     // Below, squares underflow.
     if !(area > SMALLEST && stiffness > 0.0) {
         return None;

@@ -18,6 +18,7 @@ use crate::kernel::Response;
 use crate::kernel::ball::{PreciseBall, up};
 use crate::kernel::edge_integral;
 use crate::model::Degree;
+use crate::proof::balls::Lines;
 use crate::proof::korn::{Hold, Term};
 
 /// The share of a stretch that is left out at a root of P, where P is too small to stay positive: without this, stretches that
@@ -269,12 +270,7 @@ impl Pressed {
     /// Finds the stretches that are pressed at the displacement `u` and stay so on a ball of radius `rho` around it; what pulls
     /// as well as it pushes is pressed whatever P is. And those that stick there likewise. Coulomb's bound moves with P_n: whether S
     /// stays so is then not for [`Pressed::stay`] to say.
-    pub fn at(
-        d: &Discretization,
-        lines: &[Piece<PreciseBall>],
-        u: &[[PreciseBall; 2]],
-        rho: f64,
-    ) -> Self {
+    pub fn at(d: &Discretization, lines: &Lines, u: &[[PreciseBall; 2]], rho: f64) -> Self {
         let degree = d.space.degree();
         let positive = |line: &Piece<PreciseBall>, all: &[Row]| -> Vec<Measured> {
             let pieces = if d.has_coulomb() {
@@ -308,7 +304,7 @@ impl Pressed {
         };
         let mut parts = parts_of(&pressed);
         parts.extend(parts_of(&sticking));
-        Pressed { count: lines.len(), parts }
+        Pressed { count: d.contact.len(), parts }
     }
 
     /// For each piece of Gamma_C whether something of it is in S.
@@ -336,7 +332,7 @@ impl Pressed {
     /// The holds of S: sums of n~ . v, or across n~ where it sticks, at the places of its nodes, less those on the other side, each
     /// times its shape function at a place of the piece: the jump is P0(v) + gamma s(v), for |v|_S (1 - kappa)^{-1/2} <= 1 at most what
     /// P0(v) is beside |v|_S.
-    pub fn holds(&self, d: &Discretization, lines: &[Piece<PreciseBall>]) -> Vec<Hold> {
+    pub fn holds(&self, d: &Discretization, lines: &Lines) -> Vec<Hold> {
         let mut holds = Vec::new();
         for part in &self.parts {
             let line = &lines[part.edge];
@@ -359,9 +355,9 @@ impl Pressed {
     }
 
     /// For each piece of Gamma_C the matrix of its springs, in doubles.
-    pub(crate) fn springs(&self, lines: &[Piece<PreciseBall>]) -> Vec<DMatrix<f64>> {
-        let nothing = |line: &Piece<PreciseBall>| DMatrix::zeros(line.p0.len(), line.p0.len());
-        let mut springs: Vec<DMatrix<f64>> = lines.iter().map(nothing).collect();
+    pub(crate) fn springs(&self, lines: &Lines) -> Vec<DMatrix<f64>> {
+        let nothing = |line: &Piece| DMatrix::zeros(line.p0.len(), line.p0.len());
+        let mut springs: Vec<DMatrix<f64>> = lines.in_doubles().iter().map(nothing).collect();
         for part in &self.parts {
             let weight = lines[part.edge].weight().head();
             for (i, row) in part.values.clone().zip(&part.mass) {
@@ -376,7 +372,7 @@ impl Pressed {
     /// Adds what the springs of S do against v, the integral over S of P0(v) P0(w) / gamma for every basis function w.
     pub fn add_springs(
         &self,
-        lines: &[Piece<PreciseBall>],
+        lines: &Lines,
         v: &[[PreciseBall; 2]],
         forces: &mut [[PreciseBall; 2]],
     ) {

@@ -3,13 +3,17 @@
 
 use nalgebra::{Matrix2, Vector2, Vector3};
 
-use super::products::{Multiplier, rounded_sum_with_products};
+use super::products::rounded_sum_with_products;
+use crate::contact::Piece;
 use crate::contact::discretization::Discretization;
+use crate::contact::law::Law;
 use crate::contact::residual::exactly;
 use crate::kernel::axial;
 use crate::kernel::ball::up;
 use crate::kernel::element::displacement_gradient;
 use crate::kernel::{DoubleDouble, Element, Material, PreciseBall, Stress, Triangle};
+use crate::linear::on_this_processor;
+use crate::model::BoundaryEdge;
 use crate::model::element::with_element;
 use crate::model::material::{Materials, largest_entry, least_eigenvalue};
 
@@ -20,23 +24,14 @@ pub fn add_forces(
     u: &[[PreciseBall; 2]],
     forces: &mut [[PreciseBall; 2]],
 ) -> f64 {
-    each_force(d, u, |node, part| {
-        let (stress, normal) = match part {
-            Part::Meridian { stress, normal } => (stress, normal),
-            Part::Hoop { stress, area } => {
-                forces[node][0] += PreciseBall::from(stress) * area;
-                return;
-            }
-        };
-        let [xx, yy, xy] = stress.map(|s| Multiplier::from(DoubleDouble::from(s)));
-        let [x, y] = normal.map(Multiplier::from);
-        for (force, products) in
-            forces[node].iter_mut().zip([[(xx, x), (xy, y)], [(xy, x), (yy, y)]])
-        {
-            let (sum, error) = rounded_sum_with_products(force.centre(), products);
-            *force = PreciseBall::around(sum, up(force.radius() + error));
-        }
-    })
+    each_force(
+        d,
+        u,
+        #[inline(always)]
+        |node, part| {
+            part.add_to(&mut forces[node]);
+        },
+    )
 }
 
 /// [`add_forces`] with sums in doubles, their rounding in the radii, for very small displacements.
@@ -46,15 +41,20 @@ pub fn add_small_forces(
     forces: &mut [[PreciseBall; 2]],
 ) -> f64 {
     let mut sums = vec![[RoundedSum::default(); 2]; forces.len()];
-    let bound = each_force(d, u, |node, part| match part {
-        Part::Meridian { stress: [xx, yy, xy], normal } => {
-            let [x, y] = normal.map(DoubleDouble::head);
-            sums[node][0].add([xx * x, xy * y]);
-            sums[node][1].add([xy * x, yy * y]);
-        }
-        // The radius of an area is far below a unit of it.
-        Part::Hoop { stress, area } => sums[node][0].add([stress * area.head(), 0.0]),
-    });
+    let bound = each_force(
+        d,
+        u,
+        #[inline(always)]
+        |node, part| match part {
+            Part::Meridian { stress: [xx, yy, xy], normal } => {
+                let [x, y] = normal.map(DoubleDouble::head);
+                sums[node][0].add([xx * x, xy * y]);
+                sums[node][1].add([xy * x, yy * y]);
+            }
+            // The radius of an area is far below a unit of it.
+            Part::Hoop { stress, area } => sums[node][0].add([stress * area.head(), 0.0]),
+        },
+    );
     for (force, sum) in forces.iter_mut().zip(&sums) {
         *force = [0, 1].map(|c| force[c] + sum[c].enclosed());
     }
@@ -94,11 +94,29 @@ enum Part {
     Hoop { stress: f64, area: PreciseBall },
 }
 
-/// Calls `add` with the parts of the forces of the stress s that doubles give for `u`. Returns the bound of [`add_forces`].
-fn each_force(d: &Discretization, u: &[[PreciseBall; 2]], add: impl FnMut(usize, Part)) -> f64 {
-    with_element!(d.space.degree(), E => each_force_of::<E, _, _>(d, u, add))
+impl Part {
+    #[inline(always)]
+    fn add_to(self, force: &mut [PreciseBall; 2]) {
+        match self {
+            Part::Meridian { stress: [xx, yy, xy], normal: [x, y] } => {
+                for (force, products) in
+                    force.iter_mut().zip([[(xx, x), (xy, y)], [(xy, x), (yy, y)]])
+                {
+                    let (sum, error) = rounded_sum_with_products(force.centre(), products);
+                    *force = PreciseBall::around(sum, up(force.radius() + error));
+                }
+            }
+            Part::Hoop { stress, area } => force[0] += PreciseBall::from(stress) * area,
+        }
+    }
 }
 
+/// Calls `add` with the parts of the forces of the stress s that doubles give for `u`. Returns the bound of [`add_forces`].
+fn each_force(d: &Discretization, u: &[[PreciseBall; 2]], add: impl FnMut(usize, Part)) -> f64 {
+    on_this_processor!(with_element!(d.space.degree(), E => each_force_of::<E, _, _>(d, u, add)))
+}
+
+#[inline(always)]
 fn each_force_of<E: Element<N, M>, const N: usize, const M: usize>(
     d: &Discretization,
     u: &[[PreciseBall; 2]],
@@ -151,22 +169,33 @@ fn each_force_of<E: Element<N, M>, const N: usize, const M: usize>(
         if points.len() > 1 {
             make_sums_exact(&mut stresses);
         }
-        // The area times the gradient of a barycentric coordinate is half a normal.
-        let normals = [0, 1, 2].map(|i| {
-            let [from, to] = [1, 2].map(|k| triangle.vertices[(i + k) % 3] * 0.5);
-            [DoubleDouble::sum(from[1], -to[1]), DoubleDouble::sum(to[0], -from[0])]
-        });
-        for Term { node, side, coefficients } in &terms {
-            let mut sum = [0.0; 3];
-            for (coefficient, stress) in coefficients.iter().zip(&stresses).take(points.len()) {
-                for (sum, s) in sum.iter_mut().zip(stress) {
-                    *sum += coefficient * s;
-                }
-            }
-            add(nodes[*node], Part::Meridian { stress: sum, normal: normals[*side] });
-        }
+        each_part(&terms, &stresses[..points.len()], (&triangle, nodes), &mut add);
     }
     SAFETY * square.sqrt()
+}
+
+/// Calls `add` with the parts of the forces on the nodes of a triangle of stresses at the points of the rule, each times its weight.
+#[inline(always)]
+fn each_part<const N: usize>(
+    terms: &[Term<N>],
+    stresses: &[[f64; 3]],
+    (triangle, nodes): (&Triangle<f64>, &[usize; N]),
+    add: &mut impl FnMut(usize, Part),
+) {
+    // The area times the gradient of a barycentric coordinate is half a normal.
+    let normals = [0, 1, 2].map(|i| {
+        let [from, to] = [1, 2].map(|k| triangle.vertices[(i + k) % 3] * 0.5);
+        [DoubleDouble::sum(from[1], -to[1]), DoubleDouble::sum(to[0], -from[0])]
+    });
+    for Term { node, side, coefficients } in terms {
+        let mut sum = [0.0; 3];
+        for (coefficient, stress) in coefficients.iter().zip(stresses) {
+            for (sum, s) in sum.iter_mut().zip(stress) {
+                *sum += coefficient * s;
+            }
+        }
+        add(nodes[*node], Part::Meridian { stress: sum, normal: normals[*side] });
+    }
 }
 
 /// The part of the force at a node of a triangle that has the direction of one of its sides: the stresses at the points of the
@@ -228,12 +257,156 @@ fn make_sums_exact<const N: usize>(numbers: &mut [[f64; 3]; N]) {
     numbers.iter_mut().flatten().for_each(|s| *s = (*s + shift) - shift);
 }
 
+/// Returns whether a piece has one side, in the plane, and no friction: doubles tell of these whether they press, and their stress.
+pub fn is_plain<S>(piece: &Piece<S>) -> bool {
+    piece.sides.len() == 1 && piece.geometry.law == Law::Contact && piece.radii.is_none()
+}
+
+/// Adds -int gamma sigma_n(u) sigma_n(v) on the plain pieces for every basis function v, with the stress of `u` that doubles give. Returns
+/// by how much the square of the bound of [`add_forces`] grows: the error of the stress itself counts no more than there, because
+/// what is left of a(v, v) is between 0 and a(v, v) for every field of stresses, not for those of displacements alone.
+pub fn add_contact_stresses(
+    d: &Discretization,
+    u: &[[PreciseBall; 2]],
+    forces: &mut [[PreciseBall; 2]],
+) -> f64 {
+    with_element!(d.space.degree(), E => add_contact_stresses_of::<E, _, _>(d, u, forces))
+}
+
+fn add_contact_stresses_of<E: Element<N, M>, const N: usize, const M: usize>(
+    d: &Discretization,
+    u: &[[PreciseBall; 2]],
+    forces: &mut [[PreciseBall; 2]],
+) -> f64 {
+    let mut points = Vec::new();
+    E::at_stiffness_points(|l: [f64; 3], weight: f64| points.push((l, weight)));
+    let terms = Term::all::<E, M>(&points);
+    let moduli = Moduli::of_each(&d.problem.material);
+    let mut square = 0.0;
+    for piece in d.contact.iter().filter(|piece| is_plain(piece)) {
+        let on = RoundedPiece::<N>::new::<E, M>(d, piece, u, &moduli);
+        let RoundedPiece { triangle, nodes, strain, traces: [start, end], size, off } = on;
+        let Gradients { area, skew, .. } = strain.gradients;
+        let (t, local, normal) = (piece.edge().triangle, piece.edge().local, piece.normal());
+        let weight = piece.gamma * piece.length;
+        let factors = [2.0 * start + end, start + 2.0 * end].map(|f| -f * weight / (6.0 * area));
+        let mut stresses = [[0.0; 3]; N];
+        for (a, factor) in factors.into_iter().enumerate() {
+            let outer = piece.direction(a) * normal.transpose();
+            let of_unit = d.problem.material.of(t).stress(outer).components();
+            for (p, stress) in stresses.iter_mut().enumerate().take(points.len()) {
+                let share = factor * at_vertex(points.len(), p, (local + 1 + a) % 3);
+                *stress = [0, 1, 2].map(|k| stress[k] + share * of_unit[k]);
+            }
+        }
+        if points.len() > 1 {
+            make_sums_exact(&mut stresses);
+        }
+        let add = &mut |node: usize, part: Part| part.add_to(&mut forces[node]);
+        each_part(&terms, &stresses[..points.len()], (&triangle, nodes), add);
+        let Moduli { most, least } = moduli[d.problem.material.place_of(t)];
+        let largest = points.len() as f64 * 2.0 * most * weight * size / area;
+        let more = f64::EPSILON * (40.0 + 4.0 * skew) * largest + f64::MIN_POSITIVE;
+        // Up to three edges of a triangle are on Gamma_C.
+        square += more * (2.0 * off + 3.0 * more) * (area / least) + f64::MIN_POSITIVE;
+    }
+    SAFETY * square
+}
+
+/// The factor of the stress at point `p` of the rule with so many points in that at a vertex.
+fn at_vertex(points: usize, p: usize, vertex: usize) -> f64 {
+    if points > 1 && p == vertex { -1.0 } else { 1.0 }
+}
+
+/// The plain pieces on which P of `u` is certainly nowhere positive, whatever the rule: no ball is needed to know that they do not press.
+/// P = n~ . u - g - gamma s at the nodes, with the stress that doubles give and what that is off by at most; the other coefficient of P2
+/// is Bernstein's.
+pub(crate) fn surely_open(d: &Discretization, u: &[[PreciseBall; 2]]) -> Vec<bool> {
+    open_by(d, u, 1.0)
+}
+
+/// Those by a share of the bound.
+fn open_by(d: &Discretization, u: &[[PreciseBall; 2]], share: f64) -> Vec<bool> {
+    with_element!(d.space.degree(), E => open_of::<E, _, _>(d, u, share))
+}
+
+fn open_of<E: Element<N, M>, const N: usize, const M: usize>(
+    d: &Discretization,
+    u: &[[PreciseBall; 2]],
+    share: f64,
+) -> Vec<bool> {
+    let moduli = Moduli::of_each(&d.problem.material);
+    let is_open = |piece: &Piece| {
+        let on = RoundedPiece::<N>::new::<E, M>(d, piece, u, &moduli);
+        let RoundedPiece { nodes, traces: [start, end], size, off, .. } = on;
+        let of_stress = if E::DEGREE > 1 { 3.0 * off } else { off } + 16.0 * f64::EPSILON * size;
+        let of_nodes = E::edge_nodes(piece.edge().local);
+        let p: [[f64; 2]; M] = std::array::from_fn(|a| {
+            let (at, gap, n) = (u[nodes[of_nodes[a]]], piece.gap_of(a), piece.direction(a));
+            let trace = [start, end, (start + end) / 2.0][a];
+            let value = n[0] * at[0].head() + n[1] * at[1].head() - gap - piece.gamma * trace;
+            let sizes = at[0].head().abs() + at[1].head().abs() + gap.abs();
+            let radii = at[0].radius() + at[1].radius() + f64::MIN_POSITIVE;
+            let by = piece.gamma * of_stress + 8.0 * f64::EPSILON * sizes + radii;
+            [value, SAFETY * share * by]
+        });
+        let (ends, middle) = p.split_at(2);
+        let lows = ends[0][0] + ends[1][0] - (ends[0][1] + ends[1][1]);
+        let below = |&[p, by]: &[f64; 2]| p + by < 0.0;
+        ends.iter().all(below) && middle.iter().all(|&[p, by]| 4.0 * (p + by) < lows)
+    };
+    d.contact.iter().map(|piece| is_plain(piece) && is_open(piece)).collect()
+}
+
+/// The stress on a plain piece in doubles, with what bounds its rounding.
+struct RoundedPiece<'d, const N: usize> {
+    triangle: Triangle<f64>,
+    nodes: &'d [usize; N],
+    strain: RoundedStrain<N>,
+    /// s at the start and at the end.
+    traces: [f64; 2],
+    /// The magnitudes that these were added up from.
+    size: f64,
+    /// A bound of what the stress at a point of the rule is off by.
+    off: f64,
+}
+
+impl<'d, const N: usize> RoundedPiece<'d, N> {
+    fn new<E: Element<N, M>, const M: usize>(
+        d: &'d Discretization,
+        piece: &Piece,
+        u: &[[PreciseBall; 2]],
+        moduli: &[Moduli],
+    ) -> Self {
+        let BoundaryEdge { triangle: t, local, .. } = piece.edge();
+        let (triangle, material) = (d.space.mesh().triangle(t), d.problem.material.of(t));
+        let nodes = &d.space.elements_of::<N>()[t];
+        let strain =
+            RoundedStrain::new::<E, M>(Gradients::new(&triangle), nodes.map(|node| u[node]));
+        let (mut p, mut size, mut traces) = (0, 0.0, [0.0; 2]);
+        E::at_stiffness_points(|l: [f64; 3], _: f64| {
+            let stress = strain.stress::<E, M>(material, l);
+            let [xx, yy, xy] = stress.components();
+            size += xx.abs() + yy.abs() + 2.0 * xy.abs();
+            let traction = stress.traction(piece.normal());
+            for (a, trace) in traces.iter_mut().enumerate() {
+                let along = piece.direction(a).dot(&traction);
+                *trace += at_vertex(E::POINTS, p, (local + 1 + a) % 3) * along;
+            }
+            p += 1;
+        });
+        let off = moduli[d.problem.material.place_of(t)].most * strain.error + f64::MIN_POSITIVE;
+        RoundedPiece { triangle, nodes, strain, traces, size, off }
+    }
+}
+
 /// An upper bound of |v|_a from the magnitudes of the nodal values, as sigma:eps is at most |sigma| |eps|. Used for very small
 /// fields, and for fields that vanish but near a boundary.
 pub(crate) fn energy_norm_at_most(d: &Discretization, v: &[[PreciseBall; 2]]) -> f64 {
-    with_element!(d.space.degree(), E => energy_norm_of::<E, _, _>(d, v))
+    on_this_processor!(with_element!(d.space.degree(), E => energy_norm_of::<E, _, _>(d, v)))
 }
 
+#[inline(always)]
 fn energy_norm_of<E: Element<N, M>, const N: usize, const M: usize>(
     d: &Discretization,
     v: &[[PreciseBall; 2]],
@@ -241,7 +414,9 @@ fn energy_norm_of<E: Element<N, M>, const N: usize, const M: usize>(
     let moduli = Moduli::of_each(&d.problem.material);
     let mut square = 0.0;
     for (t, (triangle, nodes)) in d.space.triangles::<N>().enumerate() {
-        let size: f64 = nodes.iter().flat_map(|&node| v[node]).map(PreciseBall::magnitude).sum();
+        // The tails are below a unit of the heads.
+        let size = |v: PreciseBall| v.head().abs() + v.radius();
+        let size: f64 = nodes.iter().flat_map(|&node| v[node]).map(size).sum();
         if size != 0.0 {
             let gradients = Gradients::new(&triangle);
             let mut strain = E::DEGREE as f64 * gradients.slope * size;
@@ -307,6 +482,7 @@ struct Gradients {
 }
 
 impl Gradients {
+    #[inline(always)]
     fn new(triangle: &Triangle<f64>) -> Self {
         let [a, b] = [1, 2].map(|i| triangle.edge(i));
         let double_area = triangle.double_area();
@@ -377,6 +553,7 @@ struct RoundedStrain<const N: usize> {
 }
 
 impl<const N: usize> RoundedStrain<N> {
+    #[inline(always)]
     fn new<E: Element<N, M>, const M: usize>(
         gradients: Gradients,
         nodal: [[PreciseBall; 2]; N],
@@ -386,15 +563,10 @@ impl<const N: usize> RoundedStrain<N> {
             (u[c].head() - first[c].head()) + (u[c].centre().tail() - first[c].centre().tail())
         };
         let differences = nodal.map(|u| Vector2::new(difference(u, 0), difference(u, 1)));
-        // The absolute part of the error of the differences.
-        let off: f64 = nodal
-            .iter()
-            .flat_map(|u| u.iter().zip(&first))
-            .map(|(u, first)| {
-                let tails = u.centre().tail().abs() + first.centre().tail().abs();
-                2.0 * f64::EPSILON * tails + u.radius() + first.radius()
-            })
-            .sum();
+        // The absolute part of the error of the differences: what each node adds, and the first one to each.
+        let of = |u: &PreciseBall| 2.0 * f64::EPSILON * u.centre().tail().abs() + u.radius();
+        let off = nodal.iter().flatten().map(of).sum::<f64>()
+            + N as f64 * (of(&first[0]) + of(&first[1]));
         let slope = E::DEGREE as f64 * gradients.slope;
         let sizes: f64 = differences.iter().flatten().map(|d| d.abs()).sum();
         let roundings = (N + 7 * E::DEGREE - 3) as f64 + 4.0 * gradients.skew;
@@ -406,6 +578,7 @@ impl<const N: usize> RoundedStrain<N> {
     /// An upper bound of the square of the stress error in the norm dual to |v|_a on the triangle: |sigma:eps| is at most
     /// |sigma| |eps|, and the least eigenvalue of A times |eps|^2 at most sigma(v):eps(v). The rounding of the three products of an entry of
     /// sigma is no more than that of the strain.
+    #[inline(always)]
     fn stress_error_squared(&self, moduli: &Moduli) -> f64 {
         let off = moduli.most * self.error + f64::MIN_POSITIVE;
         off * off * (self.gradients.area / moduli.least) + f64::MIN_POSITIVE
@@ -420,12 +593,14 @@ impl<const N: usize> RoundedStrain<N> {
     }
 
     /// The displacement gradient at the point with the barycentric coordinates `l`.
+    #[inline(always)]
     fn gradient<E: Element<N, M>, const M: usize>(&self, l: [f64; 3]) -> Matrix2<f64> {
         let gradients = E::gradients(l, self.gradients.barycentric);
         displacement_gradient(&self.differences, &gradients)
     }
 
     /// The stress there.
+    #[inline(always)]
     fn stress<E: Element<N, M>, const M: usize>(
         &self,
         material: &Material<f64>,
@@ -437,9 +612,56 @@ impl<const N: usize> RoundedStrain<N> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::model::{Condition, Degree, Diagonal, Problem, Rectangle};
+    use crate::proof::balls::Lines;
     use crate::solve::{Method, discretize};
+
+    #[test]
+    fn no_piece_that_presses_by_rounding_is_open_but_without_what_is_said_of_rounding_some_are() {
+        let square = Rectangle { width: 1.0, height: 1.0, nx: 9, ny: 2, diagonal: Diagonal::Right };
+        let material = Material::lame(1.3, 0.7, crate::kernel::Plane::Strain);
+        let mesh = square.perturbed(0.2, 5).unwrap();
+        let problem = Problem::of(mesh, material)
+            .with("top", Condition::clamped())
+            .with("bottom", Condition::contact(|_| 0.0));
+        for degree in [Degree::One, Degree::Two] {
+            let mut d = discretize(&problem, &Method { degree, ..Method::default() }).unwrap();
+            let mut taken = 0;
+            for k in 0..20 {
+                let wave = |[x, y]: [f64; 2]| {
+                    let (x, y) = (x - 0.3 * f64::from(k), y + 0.1 * f64::from(k));
+                    [(3.0 * x + y).sin(), 1e-3 * (x - 2.0 * y).cos()].map(PreciseBall::from)
+                };
+                let u: Vec<_> = d.space.nodes().iter().map(|x| wave(*x)).collect();
+                // The gap with which P is nothing but rounding, and one in which no piece presses.
+                let mut is_apart = |by: f64| {
+                    for e in 0..d.contact.len() {
+                        let p0 = Lines::new(&d)[e].p0(&u);
+                        let nodes = &mut Arc::make_mut(&mut d.contact[e].geometry).nodes;
+                        nodes.iter_mut().zip(p0).for_each(|(node, p)| node.gap = p.head() + by);
+                    }
+                    let lines = Lines::new(&d);
+                    let presses = |e: usize| lines[e].p(&u).iter().any(|p| p.lower() > 0.0);
+                    let presses: Vec<bool> = (0..d.contact.len()).map(presses).collect();
+                    let [open, unbounded] = [1.0, 0.0].map(|share| open_by(&d, &u, share));
+                    let both = |open: &[bool]| {
+                        open.iter()
+                            .zip(&presses)
+                            .filter(|(open, presses)| **open && **presses)
+                            .count()
+                    };
+                    assert_eq!(both(&open), 0, "{degree:?}");
+                    (open.iter().all(|open| *open), both(&unbounded))
+                };
+                taken += is_apart(0.0).1;
+                assert!(is_apart(1e-12).0, "{degree:?}: what is said of rounding is small");
+            }
+            assert!(taken > 2, "control: {degree:?}, {taken}");
+        }
+    }
 
     #[test]
     fn the_energy_of_one_moved_node_is_at_most_what_its_magnitude_says_and_no_tenth_of_that() {

@@ -114,6 +114,7 @@ impl Route for Assembled<'_, '_, '_> {
         let soft = self.first;
         self.first = false;
         let d = self.system.d;
+        let carried = soft.then(|| at.p_magnitudes.clone());
         let mut body = Full {
             route: self,
             iterate,
@@ -121,7 +122,7 @@ impl Route for Assembled<'_, '_, '_> {
             d: Vec::new(),
             ad: Vec::new(),
             may_carry: soft,
-            carried: None,
+            carried,
             energy: 0.0,
             softness: 0.0,
         };

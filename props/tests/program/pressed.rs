@@ -18,7 +18,7 @@ use signorini::kernel::{self, Material, Plane};
 use signorini::model::Degree;
 use signorini::model::quadrature::gauss;
 use signorini::model::{Diagonal, Problem, Rectangle};
-use signorini::proof::balls::pieces;
+use signorini::proof::balls::Lines;
 use signorini::proof::korn::Term;
 use signorini::proof::pressed::Pressed;
 use signorini::solve::{Method, Settings, solve};
@@ -38,7 +38,7 @@ fn square() -> Result<Problem, String> {
 /// A displacement, and what is known of it.
 struct At<'a, 'p> {
     d: &'a Discretization<'p>,
-    lines: Vec<Piece<PreciseBall>>,
+    lines: Lines<'a>,
 }
 
 fn balls(u: &[[f64; 2]]) -> Vec<[PreciseBall; 2]> {
@@ -47,7 +47,7 @@ fn balls(u: &[[f64; 2]]) -> Vec<[PreciseBall; 2]> {
 
 impl<'a, 'p> At<'a, 'p> {
     fn new(d: &'a Discretization<'p>) -> Self {
-        At { d, lines: pieces(d) }
+        At { d, lines: Lines::new(d) }
     }
 
     fn edge(&self) -> &'a Piece {

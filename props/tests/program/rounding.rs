@@ -10,6 +10,7 @@ use signorini::linear::matrix;
 use signorini::linear::matrix::Neighbours;
 use signorini::linear::system::System;
 use signorini::model::{Condition, Degree, Problem, SharedFunction};
+use signorini::proof::balls::Lines;
 use signorini::proof::rounded_stress;
 use signorini::solve::{Method, discretize_any};
 
@@ -39,8 +40,8 @@ fn loaded_bodies() -> Result<Vec<(String, Problem)>, String> {
     Ok(bodies)
 }
 
-/// a(u, v) by stresses in doubles, for a random u that is carried along by `by`, less a(u, v) in balls: its norm dual to |v|_a on
-/// the v that are free, beside the bound; or what sums in doubles are off by, beside their radius, if that is a larger share.
+/// A(u, v) by stresses in doubles, for a random u that is carried along by `by`, less A(u, v) in balls: its norm dual to |v|_a on
+/// the v that are free, beside the bound, and the same of a(u, v); or what sums in doubles are off by, beside their radius, if that is a larger share.
 fn rounding_of_stresses(degree: Degree, problem: &Problem, by: f64) -> Result<f64, String> {
     let d = discretize_any(problem, &Method { degree, ..Method::default() }).map_err(text)?;
     let system = System::new(&d).map_err(text)?;
@@ -66,15 +67,22 @@ fn rounding_of_stresses(degree: Degree, problem: &Problem, by: f64) -> Result<f6
     });
     let of_sums = of_sums.fold(0.0, f64::max);
     residual::add_internal_forces(&d.space, &problem.material, &u, &mut sums[1]);
-    let off: Vec<[f64; 2]> =
-        (0..nodes).map(|i| [0, 1].map(|c| (sums[0][i][c] - sums[1][i][c]).head())).collect();
-    let off = system.numbering.gather(&off);
     let neighbours = Neighbours::new(&d.space);
     let stiffness = matrix::assemble_stiffness(&d, &system.numbering, &neighbours).map_err(text)?;
     let factor = Factor::new(&stiffness).map_err(text)?;
-    let mut half = off;
-    factor.forward(&mut half);
-    Ok((half.iter().map(|x| x * x).sum::<f64>().sqrt() / bound).max(of_sums))
+    let share = |sums: &[Vec<[PreciseBall; 2]>; 2], bound: f64| {
+        let off: Vec<[f64; 2]> =
+            (0..nodes).map(|i| [0, 1].map(|c| (sums[0][i][c] - sums[1][i][c]).head())).collect();
+        let mut half = system.numbering.gather(&off);
+        factor.forward(&mut half);
+        half.iter().map(|x| x * x).sum::<f64>().sqrt() / bound
+    };
+    let of_body = share(&sums, bound);
+    let more = rounded_stress::add_contact_stresses(&d, &u, &mut sums[0]);
+    let lines = Lines::new(&d);
+    let plain = (0..d.contact.len()).filter(|&e| rounded_stress::is_plain(&d.contact[e]));
+    plain.for_each(|e| lines[e].add_stresses(&u, &mut sums[1]));
+    Ok(of_body.max(share(&sums, (bound * bound + more).sqrt())).max(of_sums))
 }
 
 /// The rounding of stresses is at most `scale` times its bound.
