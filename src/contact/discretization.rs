@@ -249,28 +249,19 @@ impl<'a> Discretization<'a> {
             return forces;
         }
         let itself = |triangle| triangle;
-        each_stress(
-            &self.space,
-            &self.problem.material,
-            itself,
-            u,
-            #[inline(always)]
-            |point| {
-                let &StressPoint { nodal, slopes, gradient, weight, .. } = point;
-                let [xx, yy, xy] = point.stress.components();
-                let shear = xy * (gradient.m12 + gradient.m21);
-                forces.energy += weight * (xx * gradient.m11 + yy * gradient.m22 + shear);
-                let strain: f64 =
-                    nodal.iter().zip(slopes).map(|(u, g)| norm_1(*u) * norm_1(*g)).sum();
-                let mut most = weight * material::largest_entry(point.material) * strain;
-                if let Some(hoop) = &point.hoop {
-                    forces.energy += hoop.work();
-                    most = hoop.most * (most + weight * hoop.stress.abs());
-                }
-                point
-                    .each_force(|node, force, slope| forces.add(node, force, most * norm_1(slope)));
-            },
-        );
+        each_stress(&self.space, &self.problem.material, itself, u, |point| {
+            let &StressPoint { nodal, slopes, gradient, weight, .. } = point;
+            let [xx, yy, xy] = point.stress.components();
+            let shear = xy * (gradient.m12 + gradient.m21);
+            forces.energy += weight * (xx * gradient.m11 + yy * gradient.m22 + shear);
+            let strain: f64 = nodal.iter().zip(slopes).map(|(u, g)| norm_1(*u) * norm_1(*g)).sum();
+            let mut most = weight * material::largest_entry(point.material) * strain;
+            if let Some(hoop) = &point.hoop {
+                forces.energy += hoop.work();
+                most = hoop.most * (most + weight * hoop.stress.abs());
+            }
+            point.each_force(|node, force, slope| forces.add(node, force, most * norm_1(slope)));
+        });
         forces
     }
 

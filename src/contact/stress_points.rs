@@ -6,7 +6,6 @@ use nalgebra::{Matrix2, Vector2};
 use crate::kernel::axial;
 use crate::kernel::element::displacement_gradient;
 use crate::kernel::{Element, Material, Scalar, Stress, Triangle};
-use crate::linear::on_this_processor;
 use crate::model::element::with_element;
 use crate::model::material::Materials;
 use crate::model::space::Space;
@@ -83,7 +82,7 @@ impl<S: Scalar> Hoop<'_, S> {
 
 impl<S: Scalar> StressPoint<'_, S> {
     /// Calls `add` with each node, the force of the stress on it and the gradient of its shape function.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn each_force(&self, mut add: impl FnMut(usize, Vector2<S>, Vector2<S>)) {
         for (k, (&node, &slope)) in self.nodes.iter().zip(self.slopes).enumerate() {
             let mut force = self.stress.traction(slope) * self.weight;
@@ -105,12 +104,11 @@ pub(super) fn each_stress<S: Scalar + From<f64>>(
     u: &(impl Nodal<S> + ?Sized),
     f: impl FnMut(&StressPoint<S>),
 ) {
-    on_this_processor!(with_element!(space.degree(), E => {
+    with_element!(space.degree(), E => {
         each_stress_of::<E, _, _, _>(space, materials, in_numbers, u, f);
-    }));
+    });
 }
 
-#[inline(always)]
 fn each_stress_of<E, const N: usize, const M: usize, S>(
     space: &Space,
     materials: &Materials,

@@ -4,19 +4,16 @@
 //! other. These lie on one path of the elimination tree to its root, so the columns of X that belong to the piece are zero off that
 //! path. Inside, pieces
 //! are taken in the order in which a walk through the tree meets the supernodes where their paths begin; then the columns that
-//! are not zero in the rows of a supernode are neighbours, and X is one dense block a supernode, stored by rows: what is done to all
-//! functionals at once is next to each other.
+//! are not zero in the rows of a supernode are neighbours, and X is one dense block a supernode.
 
 use std::ops::Range;
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use faer::{Accum, Col, Mat, MatMut, Par};
 
 use super::factor::{Factor, Structure};
-use super::numeric::{add_columns, product};
-use super::on_this_processor;
 use crate::linear::matrix::OutsidePattern;
 
 /// The supernodes that contact functionals reach, and for each supernode its functionals.
@@ -132,8 +129,7 @@ fn postorder(parent: &[Option<usize>]) -> Vec<usize> {
 pub(crate) struct Compliance<'a> {
     structure: &'a Structure,
     reach: &'a Reach,
-    /// The rows of each block of X, one after the other.
-    x: Vec<Vec<f64>>,
+    x: Vec<Mat<f64>>,
     /// G, both triangles.
     pub(crate) g: Mat<f64>,
 }
@@ -153,9 +149,11 @@ impl<'a> Compliance<'a> {
         for (place, r) in reach.supernodes.iter().enumerate() {
             place_of_row[structure.columns(r.supernode)].fill(Some(place));
         }
-        let block =
-            |r: &Reached| vec![0.0; structure.columns(r.supernode).len() * r.functionals.len()];
-        let mut x: Vec<Vec<f64>> = reach.supernodes.iter().map(block).collect();
+        let mut x: Vec<Mat<f64>> = reach
+            .supernodes
+            .iter()
+            .map(|r| Mat::zeros(structure.columns(r.supernode).len(), r.functionals.len()))
+            .collect();
         let start_of = |place: usize| {
             let r = &reach.supernodes[place];
             (structure.columns(r.supernode).start, r.functionals.start)
@@ -166,8 +164,7 @@ impl<'a> Compliance<'a> {
             match place_of_row[row] {
                 Some(place) if reach.supernodes[place].functionals.contains(&column) => {
                     let (start, first) = start_of(place);
-                    let count = reach.supernodes[place].functionals.len();
-                    x[place][(row - start) * count + column - first] += entry;
+                    x[place][(row - start, column - first)] += entry;
                 }
                 _ => outside = Some(OutsidePattern { row, column: functional }),
             }
@@ -178,42 +175,48 @@ impl<'a> Compliance<'a> {
         let q = reach.functionals();
         // Memory that is zero from the start: `Mat::zeros` writes entry by entry.
         let mut walked = vec![0.0; q * q];
-        let follow = |a: &usize, b: &usize| *b == a + 1 && place_of_row[*a] == place_of_row[*b];
         for (place, r) in reach.supernodes.iter().enumerate() {
-            let range = r.functionals.clone();
-            let (own, later) = x[place..].split_at_mut(1);
-            let own = &mut own[0];
-            let (block, width) = (factor.values(r.supernode), structure.columns(r.supernode).len());
-            on_this_processor!(solve(own, (block, width), range.len()));
-            let mut done = width;
+            let block = factor.block(r.supernode);
+            let (diagonal, below) = block.split_at_row(block.ncols());
+            solve_lower_triangular_in_place(diagonal, x[place].as_mut(), Par::Seq);
+            let c = r.functionals.len();
+            let mut update = Mat::zeros(below.nrows(), c);
+            matmul(update.as_mut(), Accum::Replace, below, x[place].as_ref(), 1.0, Par::Seq);
+            let mut done = 0;
+            let follow = |a: &usize, b: &usize| *b == a + 1 && place_of_row[*a] == place_of_row[*b];
             for rows in structure.rows_below(r.supernode).chunk_by(follow) {
                 // An ancestor of a supernode that is reached is reached, by all of its functionals.
-                let outside = OutsidePattern { row: rows[0], column: range.start };
+                let outside = OutsidePattern { row: rows[0], column: r.functionals.start };
                 let target = place_of_row[rows[0]].ok_or(outside)?;
                 let (start, first) = start_of(target);
-                let offset = range.start.checked_sub(first).ok_or(outside)?;
-                let count = reach.supernodes[target].functionals.len();
-                let target = &mut later[target - place - 1][(rows[0] - start) * count + offset..];
-                let below = done..done + rows.len();
-                on_this_processor!(subtract(
-                    (target, count),
-                    own,
-                    (block, width),
-                    below,
-                    range.len()
-                ));
+                let offset = r.functionals.start.checked_sub(first).ok_or(outside)?;
+                for j in 0..c {
+                    let sums = &mut x[target].col_as_slice_mut(offset + j)[rows[0] - start..];
+                    let update = &update.col_as_slice(j)[done..done + rows.len()];
+                    sums.iter_mut().zip(update).for_each(|(sum, by)| *sum -= by);
+                }
                 done += rows.len();
             }
-            let sums = &mut walked[range.start * (q + 1)..];
-            on_this_processor!(add_square((sums, q), own, range.len()));
+            let range = r.functionals.clone();
+            let all = MatMut::from_column_major_slice_mut(&mut walked, q, q);
+            triangular::matmul(
+                all.submatrix_mut(range.start, range.start, c, c),
+                BlockStructure::TriangularLower,
+                Accum::Add,
+                x[place].transpose(),
+                BlockStructure::Rectangular,
+                x[place].as_ref(),
+                BlockStructure::Rectangular,
+                1.0,
+                Par::Seq,
+            );
         }
-        let mut functionals = vec![0; q];
-        reach.places.iter().enumerate().for_each(|(i, &place)| functionals[place] = i);
+        // Column by column: `Mat::from_fn` takes ten times the instructions.
         let mut g = Mat::zeros(q, q);
-        for (b, &j) in functionals.iter().enumerate() {
-            for (&i, &entry) in functionals[b..].iter().zip(&walked[b * q + b..]) {
-                g.col_as_slice_mut(j)[i] = entry;
-                g.col_as_slice_mut(i)[j] = entry;
+        for (j, &b) in reach.places.iter().enumerate() {
+            let below = &walked[b * q..(b + 1) * q];
+            for (g, &a) in g.col_as_slice_mut(j).iter_mut().zip(&reach.places) {
+                *g = if a >= b { below[a] } else { walked[a * q + b] };
             }
         }
         Ok(Compliance { structure, reach, x, g })
@@ -227,11 +230,13 @@ impl<'a> Compliance<'a> {
     /// X^T v
     pub(crate) fn transpose_times(&self, v: &[f64]) -> Vec<f64> {
         let mut sum = vec![0.0; self.reach.functionals()];
-        on_this_processor!(for (x, r) in self.x.iter().zip(&self.reach.supernodes) {
+        for (x, r) in self.x.iter().zip(&self.reach.supernodes) {
             let rows = &v[self.structure.columns(r.supernode)];
-            let sum = &mut sum[r.functionals.clone()];
-            add_columns(sum, x, (r.functionals.len(), 0), |k, _| rows[k]);
-        });
+            let product = x.transpose() * Col::from_fn(rows.len(), |i| rows[i]);
+            for (sum, p) in sum[r.functionals.clone()].iter_mut().zip(product.iter()) {
+                *sum += p;
+            }
+        }
         self.reach.places.iter().map(|&place| sum[place]).collect()
     }
 
@@ -241,79 +246,13 @@ impl<'a> Compliance<'a> {
         for (&place, &w) in self.reach.places.iter().zip(w) {
             walked[place] = w;
         }
-        on_this_processor!(for (x, r) in self.x.iter().zip(&self.reach.supernodes) {
-            let rows = x.chunks_exact(r.functionals.len());
-            for (v, row) in v[self.structure.columns(r.supernode)].iter_mut().zip(rows) {
-                *v -= product(row, &walked[r.functionals.clone()]);
+        for (x, r) in self.x.iter().zip(&self.reach.supernodes) {
+            let w = &walked[r.functionals.clone()];
+            let product = x * Col::from_fn(w.len(), |i| w[i]);
+            for (v, p) in v[self.structure.columns(r.supernode)].iter_mut().zip(product.iter()) {
+                *v -= p;
             }
-        });
-    }
-}
-
-/// Multiplications from which packed products take less time than loops, beside some cache.
-const PACKED: usize = 1 << 19;
-
-/// The rows x of a supernode, each of so many functionals, become L^-1 x.
-#[inline(always)]
-fn solve(x: &mut [f64], (block, width): (&[f64], usize), count: usize) {
-    let rows = block.len() / width;
-    if width * width * count >= PACKED {
-        let diagonal = MatRef::from_column_major_slice(block, rows, width).subrows(0, width);
-        let x = MatMut::from_row_major_slice_mut(x, width, count);
-        return solve_lower_triangular_in_place(diagonal, x, Par::Seq);
-    }
-    for k in 0..width {
-        let (before, row) = x.split_at_mut(k * count);
-        let row = &mut row[..count];
-        add_columns(row, before, (count, 0), |m, _| -block[m * rows + k]);
-        let inverse = 1.0 / block[k * rows + k];
-        row.iter_mut().for_each(|x| *x *= inverse);
-    }
-}
-
-/// Subtracts from rows of a supernode, in which they are so far apart, those of L from row `first` of a block on, times x.
-#[inline(always)]
-fn subtract(
-    (target, apart): (&mut [f64], usize),
-    x: &[f64],
-    (block, width): (&[f64], usize),
-    below: Range<usize>,
-    count: usize,
-) {
-    let rows = block.len() / width;
-    if below.len() * width * count >= PACKED {
-        let l = MatRef::from_column_major_slice(block, rows, width);
-        let l = l.subrows(below.start, below.len());
-        let x = MatRef::from_row_major_slice(x, width, count);
-        let target =
-            MatMut::from_row_major_slice_with_stride_mut(target, below.len(), count, apart);
-        return matmul(target, Accum::Add, l, x, -1.0, Par::Seq);
-    }
-    for (i, target) in below.zip(target.chunks_mut(apart)) {
-        add_columns(&mut target[..count], x, (count, 0), |k, _| -block[k * rows + i]);
-    }
-}
-
-/// Adds the lower triangle of x^T x to that of a matrix of order `q`.
-#[inline(always)]
-fn add_square((sums, q): (&mut [f64], usize), x: &[f64], count: usize) {
-    if x.len() * count >= PACKED {
-        let x = MatRef::from_row_major_slice(x, x.len() / count, count);
-        let sums = MatMut::from_column_major_slice_with_stride_mut(sums, count, count, q);
-        return triangular::matmul(
-            sums,
-            BlockStructure::TriangularLower,
-            Accum::Add,
-            x.transpose(),
-            BlockStructure::Rectangular,
-            x,
-            BlockStructure::Rectangular,
-            1.0,
-            Par::Seq,
-        );
-    }
-    for j in 0..count {
-        add_columns(&mut sums[j * (q + 1)..][..count - j], x, (count, j), |_, row| row[0]);
+        }
     }
 }
 

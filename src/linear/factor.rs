@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use faer::MatRef;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::cholesky::simplicial::prefactorize_symbolic_cholesky;
@@ -178,9 +179,10 @@ impl Factor {
 
     /// The columns of supernode `s`: first the lower triangle on the diagonal, below it the rows of
     /// [`Structure::rows_below`].
-    pub(crate) fn values(&self, s: usize) -> &[f64] {
+    pub(crate) fn block(&self, s: usize) -> MatRef<'_, f64> {
         let [rows, columns] = self.structure.shape(s);
-        &self.values[self.structure.start(s)..][..rows * columns]
+        let values = &self.values[self.structure.start(s)..][..rows * columns];
+        MatRef::from_column_major_slice(values, rows, columns)
     }
 
     /// x <- H^-1 x
@@ -204,7 +206,7 @@ impl Factor {
 fn upper_triangle(lower: &LowerTriangle) -> (Vec<usize>, Vec<usize>) {
     let n = lower.starts.len() - 1;
     let mut starts = vec![0; n + 1];
-    for &row in &*lower.rows {
+    for &row in lower.rows.iter() {
         starts[row + 1] += 1;
     }
     for i in 0..n {

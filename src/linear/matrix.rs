@@ -176,9 +176,9 @@ impl Neighbours {
 #[derive(Clone, Debug)]
 pub struct LowerTriangle {
     /// Where each column starts, and where the last one ends.
-    pub starts: Arc<[usize]>,
+    pub starts: Arc<Vec<usize>>,
     /// The row of each entry.
-    pub rows: Arc<[usize]>,
+    pub rows: Arc<Vec<usize>>,
     /// The entries.
     pub values: Vec<f64>,
 }

@@ -194,7 +194,7 @@ impl Block<'_> {
 
 /// Adds to `sums` the columns of a block of so many rows from row `from` on, each times its factor.
 #[inline(always)]
-pub(super) fn add_columns(
+fn add_columns(
     sums: &mut [f64],
     block: &[f64],
     (rows, from): (usize, usize),
@@ -325,7 +325,7 @@ impl NullaryFnOnce for Backward<'_> {
 
 /// The sum of the products of two lists, in eight sums that a processor adds at once.
 #[inline(always)]
-pub(super) fn product(a: &[f64], b: &[f64]) -> f64 {
+fn product(a: &[f64], b: &[f64]) -> f64 {
     const LANES: usize = 8;
     let n = a.len();
     let b = &b[..n];
@@ -393,12 +393,12 @@ mod tests {
         let structure = factor.structure();
         let mut product = vec![0.0; x.len()];
         for s in 0..structure.supernodes() {
-            let (block, height) = (factor.values(s), structure.shape(s)[0]);
+            let block = factor.block(s);
             let rows = structure.columns(s).chain(structure.rows_below(s).iter().copied());
             for (i, row) in rows.enumerate() {
                 for (k, column) in structure.columns(s).enumerate().take(i + 1) {
                     let (to, from) = if transposed { (column, row) } else { (row, column) };
-                    product[to] += block[k * height + i] * x[from];
+                    product[to] += block[(i, k)] * x[from];
                 }
             }
         }
@@ -442,8 +442,12 @@ mod tests {
         for (degree, n) in [(Degree::One, 5), (Degree::One, 48), (Degree::Two, 24)] {
             with_system(degree, n, |system| {
                 let values = |factor: &Factor| {
-                    let blocks = (0..system.structure.supernodes()).map(|s| factor.values(s));
-                    blocks.flatten().copied().collect::<Vec<f64>>()
+                    let blocks = (0..system.structure.supernodes()).map(|s| factor.block(s));
+                    let entries = |block: faer::MatRef<f64>| {
+                        let columns = (0..block.ncols()).map(|k| block.col(k).iter().copied());
+                        columns.flatten().collect::<Vec<f64>>()
+                    };
+                    blocks.flat_map(entries).collect::<Vec<f64>>()
                 };
                 let before = Arc::new(Factor::with(&system.structure, &system.matrix).unwrap());
                 let (mut other, changed) = (system.matrix.clone(), [3, system.numbering.count / 2]);

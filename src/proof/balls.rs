@@ -9,7 +9,6 @@ use crate::contact::piece::Stretch;
 use crate::contact::{Discretization, Piece, residual};
 use crate::kernel::ball::{PreciseBall, larger, up};
 use crate::kernel::contact_edge::traction_stiffness;
-use crate::kernel::{Ball, Enclosing, Scalar};
 use crate::linear::system::System;
 
 /// The pieces of Gamma_C in balls, lengths and normals as the vertices have them; each is made where it is needed first.
@@ -41,7 +40,7 @@ impl Index<usize> for Lines<'_> {
     fn index(&self, e: usize) -> &Piece<PreciseBall> {
         self.made[e].get_or_init(|| {
             residual::piece_with(self.d, &self.d.contact[e], |side, stretch| {
-                let (length, normal) = length_and_normal::<PreciseBall>(self.d, stretch);
+                let (length, normal) = length_and_normal(self.d, stretch);
                 (length, normal.into(), PreciseBall::from(side.gamma))
             })
         })
@@ -49,9 +48,9 @@ impl Index<usize> for Lines<'_> {
 }
 
 /// |E| and n
-fn length_and_normal<S: Enclosing + From<f64>>(d: &Discretization, at: &Stretch) -> (S, [S; 2]) {
-    let triangle = residual::exactly::<S>(d.space.mesh().triangle(at.edge.triangle));
-    let normal: [S; 2] = triangle.scaled_normal(at.edge.local).into();
+fn length_and_normal(d: &Discretization, at: &Stretch) -> (PreciseBall, [PreciseBall; 2]) {
+    let triangle = residual::exactly::<PreciseBall>(d.space.mesh().triangle(at.edge.triangle));
+    let normal: [PreciseBall; 2] = triangle.scaled_normal(at.edge.local).into();
     let length = dot(normal, normal).sqrt();
     (length, normal.map(|c| c / length))
 }
@@ -59,16 +58,16 @@ fn length_and_normal<S: Enclosing + From<f64>>(d: &Discretization, at: &Stretch)
 /// kappa of Theorem 2.3, rounded up. The directions of contact are doubles, unit vectors to a rounding error only.
 pub(super) fn kappa(d: &Discretization) -> f64 {
     let degree = d.space.degree();
-    let largest = |a: Ball, b: Ball| if a.upper() < b.upper() { b } else { a };
+    let largest = |a: PreciseBall, b: PreciseBall| if a.upper() < b.upper() { b } else { a };
     let mut shares = Vec::new();
     for piece in &d.contact {
         let geometry = &piece.geometry;
-        let along: Vec<[Ball; 2]> =
-            geometry.directions().map(|n| n.map(Ball::from).into()).collect();
+        let along: Vec<[PreciseBall; 2]> =
+            geometry.directions().map(|n| n.map(PreciseBall::from).into()).collect();
         let both = geometry.law.components() > 1;
-        let sides: Vec<(Ball, [Ball; 2])> =
+        let sides: Vec<(PreciseBall, [PreciseBall; 2])> =
             geometry.stretches.iter().map(|stretch| length_and_normal(d, stretch)).collect();
-        let lengths: Vec<Ball> = sides.iter().map(|(length, _)| *length).collect();
+        let lengths: Vec<PreciseBall> = sides.iter().map(|(length, _)| *length).collect();
         let chords = geometry.chords(&lengths);
         for (i, (side, stretch)) in piece.sides.iter().zip(&geometry.stretches).enumerate() {
             let (t, (length, normal)) = (stretch.edge.triangle, sides[i]);
@@ -77,35 +76,36 @@ pub(super) fn kappa(d: &Discretization) -> f64 {
             } else {
                 (!geometry.turns()).then_some(along[0].into())
             };
-            let (one, doubles) = (Ball::from(1), d.space.mesh().triangle(t));
+            let (one, doubles) = (PreciseBall::from(1), d.space.mesh().triangle(t));
             let radii = geometry.radii(i, |edge| {
-                let (t, exact) = (edge.triangle, Ball::from);
+                let (t, exact) = (edge.triangle, PreciseBall::from);
                 let triangle = d.space.mesh().triangle(t);
                 d.problem.material.of(t).radii(&triangle).map(|radii| radii.map(exact))
             });
             let of_edge = radii.map(|radii| (radii.of_piece, radii.of_triangle));
-            let counted = |turning| degree.counted_length(one, turning, of_edge, Ball::sqrt);
+            let counted = |turning| degree.counted_length(one, turning, of_edge, PreciseBall::sqrt);
             let factor = if geometry.along_normal {
                 counted(None)
             } else {
-                let off = along.iter().map(|&n| (dot(n, n) - Ball::from(1)).magnitude());
-                let off = Ball::from(8.0 * off.fold(0.0, larger));
+                let off = along.iter().map(|&n| (dot(n, n) - PreciseBall::from(1)).magnitude());
+                let off = PreciseBall::from(8.0 * off.fold(0.0, larger));
                 let cosine = dot(along[0], along[1]);
                 // The square root of the factor is steep where the direction turns little.
                 let cosine = if both && geometry.turns() {
-                    Ball::from((cosine - off).lower())
+                    PreciseBall::from((cosine - off).lower())
                 } else {
                     cosine
                 };
                 let turning = counted(Some((cosine, both && geometry.turns())));
-                turning * (Ball::from(1) + off) + off
+                turning * (PreciseBall::from(1) + off) + off
             };
             let factor = chords.map_or(factor, |chords| factor * chords.share(i, radii, largest));
-            let material = d.problem.material.of(t).map(Ball::from);
+            let material = d.problem.material.of(t).map(PreciseBall::from);
             let direction = direction.filter(|_| !both);
-            let stiffness = traction_stiffness(&material, normal.into(), direction, Ball::sqrt);
-            let area = residual::exactly::<Ball>(doubles).double_area();
-            let (length, area) = (factor * length, area / Ball::from(2));
+            let stiffness =
+                traction_stiffness(&material, normal.into(), direction, PreciseBall::sqrt);
+            let area = residual::exactly::<PreciseBall>(doubles).double_area();
+            let (length, area) = (factor * length, area / PreciseBall::from(2));
             let value = degree.coercivity_constant(stiffness, side.gamma.into(), length, area);
             shares.push(Share::new(geometry, i, value));
         }
@@ -172,7 +172,7 @@ pub(super) fn strain_energy(d: &Discretization, v: &[[PreciseBall; 2]]) -> Preci
 }
 
 /// a . b
-pub(super) fn dot<S: Scalar>(a: [S; 2], b: [S; 2]) -> S {
+pub(super) fn dot(a: [PreciseBall; 2], b: [PreciseBall; 2]) -> PreciseBall {
     a[0] * b[0] + a[1] * b[1]
 }
 
