@@ -376,7 +376,8 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
                     })?)
                 }
             };
-            let product = Product { system, lines: &self.lines, pressed, arithmetic };
+            let lines = &self.lines;
+            let product = Product { system, lines, pressed, arithmetic, is_small: true };
             // With Coulomb's friction every further digit of the norm widens the ball without another solution.
             let negligible = if coulomb { 0.0 } else { negligible };
             dual = dual_norm(&product, factor, r, &crude, coercivity, negligible);
@@ -388,21 +389,32 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         }
         let mut isolated = None;
         if let (true, Some(factor)) = (coulomb, factor) {
-            let arithmetic = Arithmetic::Balls;
-            let product = Product { system, lines: &self.lines, pressed, arithmetic };
-            let times = |z: &[PreciseBall]| product.times(z);
-            let body = isolated::Body { system, factor, times: &times, crude: &crude, coercivity };
+            let lines = &self.lines;
+            let times = |arithmetic| {
+                let product = Product { system, lines, pressed, arithmetic, is_small: false };
+                move |z: &[PreciseBall]| product.times(z)
+            };
+            let (doubles, balls) = (times(Arithmetic::Doubles), times(Arithmetic::Balls));
+            let times: [isolated::Product; 2] = [&doubles, &balls];
+            let body = isolated::Body { system, factor, times, crude: &crude, coercivity };
             let (left, spread) = (up(dual.left + up_to), at.spread());
             let rest = isolated::Rest { rho, z: &dual.z, left, spread: &spread, size };
-            let (now, without) = match &mut self.known {
-                without if !pressed.is_nowhere() => {
-                    (&isolated::Known::new(&body, &self.lines, Some(springs))?, without.as_ref())
-                }
-                Some(known) => (&*known, None),
-                none => (&*none.insert(isolated::Known::new(&body, &self.lines, None)?), None),
+            let springs = (!pressed.is_nowhere()).then_some(springs.as_slice());
+            let known = &mut self.known;
+            let mut isolate = |share| {
+                let new = || isolated::Known::new(&body, lines, springs, share);
+                let known = match (springs, &mut *known) {
+                    (Some(_), without) => (&new()?, without.as_ref()),
+                    (None, Some(known)) if known.share <= share => (&*known, None),
+                    (None, known) => (&*known.insert(new()?), None),
+                };
+                isolated::isolate(known, lines, &at.u, system, &rest)
             };
-            let known = (now, without);
-            isolated = Some(isolated::isolate(known, &self.lines, &at.u, system, &rest)?);
+            let [share, least] = isolated::SHARES;
+            isolated = Some(match isolate(share) {
+                Err(Unproved::NotIsolated) => isolate(least)?,
+                found => found?,
+            });
         }
         let found = Found {
             rho,
@@ -570,6 +582,8 @@ struct Product<'a, 'd, 'p> {
     lines: &'a Lines<'d>,
     pressed: &'a Pressed,
     arithmetic: Arithmetic,
+    /// Whether fields are next to nothing, and sums in doubles do.
+    is_small: bool,
 }
 
 impl Product<'_, '_, '_> {
@@ -578,7 +592,8 @@ impl Product<'_, '_, '_> {
     fn times(&self, z: &[PreciseBall]) -> (Vec<PreciseBall>, f64) {
         let v = field(self.system, |number, _, _| z[number], |_, _| 0.0);
         let mut forces = vec![[PreciseBall::from(0); 2]; v.len()];
-        let off = self.arithmetic.add_small_forces(self.system.d, &v, &mut forces);
+        let add = if self.is_small { Arithmetic::add_small_forces } else { Arithmetic::add_forces };
+        let off = add(self.arithmetic, self.system.d, &v, &mut forces);
         let off = self.arithmetic.add_stresses(self.system.d, self.lines, &v, (&mut forces, off));
         self.pressed.add_springs(self.lines, &v, &mut forces);
         (free(self.system, &forces), off)

@@ -69,7 +69,7 @@ pub enum Arithmetic {
 
 impl Arithmetic {
     /// Adds a(u, v) for every basis function v, off by a functional r with |r(v)| <= b |v|_a for the b that is returned.
-    fn add_forces(
+    pub(super) fn add_forces(
         self,
         d: &Discretization,
         u: &[[PreciseBall; 2]],

@@ -37,6 +37,10 @@ const MOST_ENTRIES: usize = 40_000_000;
 /// The number of solves for a column of the compliance: each takes off as many digits as the factor has.
 const MOST_CORRECTIONS: usize = 8;
 
+/// What is left of a column of the compliance, as a share of its length: first so much that products in doubles do, which take a fraction
+/// of the time; where nothing is proved with that, a rounding error.
+pub(super) const SHARES: [f64; 2] = [1e-7, f64::EPSILON];
+
 /// The proved facts about the solution near a displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Isolated {
@@ -52,7 +56,7 @@ pub(super) struct Isolated {
     pub(crate) pressure: f64,
 }
 
-/// A product with A in balls: of a vector, off by a functional of at most the number that comes with it, times |v|_a.
+/// A product with A, enclosed: of a vector, off by a functional of at most the number that comes with it, times |v|_a.
 pub(super) type Product<'a> = &'a dyn Fn(&[PreciseBall]) -> (Vec<PreciseBall>, f64);
 
 /// Bounds of A.
@@ -60,7 +64,8 @@ pub(super) struct Body<'a, 'd, 'p> {
     pub(crate) system: &'a System<'d, 'p>,
     /// Any factor, the better the nearer it is to that of A.
     pub(crate) factor: &'a Factor,
-    pub(crate) times: Product<'a>,
+    /// In doubles, and in balls.
+    pub(crate) times: [Product<'a>; 2],
     /// |t|_A* <= the sum of these times |t_i|.
     pub(crate) crude: &'a [f64],
     /// |v|_A^2 is at least this times |v|_a^2.
@@ -93,8 +98,9 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl Body<'_, '_, '_> {
-    /// G = B A^-1 B^T: with z_j near A^-1 b_j and e_j = b_j - A z_j, the entry b_i . z_j is off by |b_i|_A* |e_j|_A* at most.
-    fn compliance(&self, pieces: &Lines) -> Result<Compliance, Unproved> {
+    /// G = B A^-1 B^T: with z_j near A^-1 b_j and e_j = b_j - A z_j, the entry b_i . z_j is off by |b_i|_A* |e_j|_A* at most. The second
+    /// is `share` of |b_j|_A*, or as small as it gets.
+    fn compliance(&self, pieces: &Lines, share: f64) -> Result<Compliance, Unproved> {
         let (system, count) = (self.system, self.system.functionals());
         let nodes = system.d.space.nodes().len();
         let mut rows: Vec<Vec<(usize, PreciseBall)>> = Vec::with_capacity(count);
@@ -120,7 +126,9 @@ impl Body<'_, '_, '_> {
             let mut left = vec![zero; system.numbering.count];
             row.iter().for_each(|&(k, b)| left[k] = b);
             let mut rest = f64::INFINITY;
-            // Solves, and corrects by the residual as long as that leads on, up to the rounding of an entry.
+            let [mut times, in_balls] = self.times;
+            let mut is_last = false;
+            // Solves, and corrects by the residual as long as that leads on, in the end in balls.
             for _ in 0..MOST_CORRECTIONS {
                 let mut correction: Vec<f64> = left.iter().map(|t| t.head()).collect();
                 self.factor.solve(&mut correction);
@@ -128,20 +136,22 @@ impl Body<'_, '_, '_> {
                 for (z, c) in next.iter_mut().zip(&correction) {
                     *z = PreciseBall::point((*z + PreciseBall::from(*c)).centre());
                 }
-                let (az, off) = (self.times)(&next);
+                let (az, off) = times(&next);
                 let mut next_left: Vec<PreciseBall> = az.into_iter().map(|az| zero - az).collect();
                 row.iter().for_each(|&(k, b)| next_left[k] += b);
                 let sum: f64 =
                     next_left.iter().zip(self.crude).map(|(t, c)| t.magnitude() * c).sum();
                 let rounding = 1.0 + f64::EPSILON * (left.len() + 16) as f64;
                 let next_rest = up(sum * rounding + off / self.coercivity.sqrt());
-                if !(next_rest < rest) {
+                let is_better = next_rest < rest / 2.0;
+                if next_rest < rest {
+                    (z, left, rest) = (next, next_left, next_rest);
+                }
+                if rest <= share * root(sparse(row, &z)) || (is_last && !is_better) {
                     break;
                 }
-                let is_better = next_rest < rest / 2.0;
-                (z, left, rest) = (next, next_left, next_rest);
-                if !is_better || rest <= f64::EPSILON * root(sparse(row, &z)) {
-                    break;
+                if !is_better {
+                    (times, is_last) = (in_balls, true);
                 }
             }
             if !rest.is_finite() {
@@ -711,12 +721,14 @@ pub(super) struct Known {
     root: Root,
     /// The springs of A_S; none for A.
     springs: Option<Vec<DMatrix<f64>>>,
+    /// What is left of the columns of the compliance.
+    pub(super) share: f64,
     everywhere: bool,
     limits: [f64; 2],
 }
 
 impl Known {
-    /// For these pieces of the body, with these springs or without.
+    /// For these pieces of the body, with these springs or without, and with what may be left of the columns of the compliance.
     ///
     /// # Errors
     /// Why nothing is proved.
@@ -724,12 +736,13 @@ impl Known {
         body: &Body,
         pieces: &Lines,
         springs: Option<&[DMatrix<f64>]>,
+        share: f64,
     ) -> Result<Self, Unproved> {
         let (system, count) = (body.system, body.system.functionals());
         if count > MOST_FUNCTIONALS || count * system.numbering.count > MOST_ENTRIES {
             return Err(Unproved::TooManyFunctionals { count });
         }
-        let compliance = body.compliance(pieces)?;
+        let compliance = body.compliance(pieces, share)?;
         let root = Root::new(&compliance).ok_or(Unproved::NotIsolated)?;
         let springs = springs.map(<[_]>::to_vec);
         let (everywhere, limits) = match springs {
@@ -741,7 +754,7 @@ impl Known {
                 (is_below || is_unique(system.d, pieces, &root), limits)
             }
         };
-        Ok(Known { compliance, root, springs, everywhere, limits })
+        Ok(Known { compliance, root, springs, share, everywhere, limits })
     }
 }
 
