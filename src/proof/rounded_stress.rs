@@ -339,7 +339,8 @@ fn open_of<E: Element<N, M>, const N: usize, const M: usize>(
     let is_open = |piece: &Piece| {
         let on = RoundedPiece::<N>::new::<E, M>(d, piece, u, &moduli);
         let RoundedPiece { nodes, traces: [start, end], size, off, .. } = on;
-        let of_stress = if E::DEGREE > 1 { 3.0 * off } else { off } + 16.0 * f64::EPSILON * size;
+        // From the points to the ends.
+        let of_stress = (2 * E::DEGREE - 1) as f64 * off + 16.0 * f64::EPSILON * size;
         let of_nodes = E::edge_nodes(piece.edge().local);
         let p: [[f64; 2]; M] = std::array::from_fn(|a| {
             let (at, gap, n) = (u[nodes[of_nodes[a]]], piece.gap_of(a), piece.direction(a));
