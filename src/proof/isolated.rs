@@ -126,32 +126,34 @@ impl Body<'_, '_, '_> {
             let mut left = vec![zero; system.numbering.count];
             row.iter().for_each(|&(k, b)| left[k] = b);
             let mut rest = f64::INFINITY;
-            let [mut times, in_balls] = self.times;
-            let mut is_last = false;
-            // Solves, and corrects by the residual as long as that leads on, in the end in balls.
-            for _ in 0..MOST_CORRECTIONS {
-                let mut correction: Vec<f64> = left.iter().map(|t| t.head()).collect();
-                self.factor.solve(&mut correction);
-                let mut next = z.clone();
-                for (z, c) in next.iter_mut().zip(&correction) {
-                    *z = PreciseBall::point((*z + PreciseBall::from(*c)).centre());
-                }
-                let (az, off) = times(&next);
-                let mut next_left: Vec<PreciseBall> = az.into_iter().map(|az| zero - az).collect();
-                row.iter().for_each(|&(k, b)| next_left[k] += b);
-                let sum: f64 =
-                    next_left.iter().zip(self.crude).map(|(t, c)| t.magnitude() * c).sum();
-                let rounding = 1.0 + f64::EPSILON * (left.len() + 16) as f64;
-                let next_rest = up(sum * rounding + off / self.coercivity.sqrt());
-                let is_better = next_rest < rest / 2.0;
-                if next_rest < rest {
-                    (z, left, rest) = (next, next_left, next_rest);
-                }
-                if rest <= share * root(sparse(row, &z)) || (is_last && !is_better) {
+            // Solves, and corrects by the residual as long as that leads on.
+            for times in self.times {
+                if rest <= share * root(sparse(row, &z)) {
                     break;
                 }
-                if !is_better {
-                    (times, is_last) = (in_balls, true);
+                rest = f64::INFINITY;
+                for _ in 0..MOST_CORRECTIONS {
+                    let mut correction: Vec<f64> = left.iter().map(|t| t.head()).collect();
+                    self.factor.solve(&mut correction);
+                    let mut next = z.clone();
+                    for (z, c) in next.iter_mut().zip(&correction) {
+                        *z = PreciseBall::point((*z + PreciseBall::from(*c)).centre());
+                    }
+                    let (az, off) = times(&next);
+                    let mut next_left: Vec<PreciseBall> =
+                        az.into_iter().map(|az| zero - az).collect();
+                    row.iter().for_each(|&(k, b)| next_left[k] += b);
+                    let sum: f64 =
+                        next_left.iter().zip(self.crude).map(|(t, c)| t.magnitude() * c).sum();
+                    let rounding = 1.0 + f64::EPSILON * (left.len() + 16) as f64;
+                    let next_rest = up(sum * rounding + off / self.coercivity.sqrt());
+                    let is_better = next_rest < rest / 2.0;
+                    if next_rest < rest {
+                        (z, left, rest) = (next, next_left, next_rest);
+                    }
+                    if !is_better || rest <= share * root(sparse(row, &z)) {
+                        break;
+                    }
                 }
             }
             if !rest.is_finite() {
