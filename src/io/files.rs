@@ -1,7 +1,7 @@
 //! The files of a run, written together.
 //!
 //! They are first written into a temporary folder of their own inside the output folder, `.signorini-XXXX.tmp` with a random
-//! name, and flushed to disk. Then, under a lock of the output folder, the last file of an earlier set (result.json) is removed,
+//! name, and flushed to disk, each by a thread of its own: most of that is waiting. Then, under a lock of the output folder, the last file of an earlier set (result.json) is removed,
 //! each new file is renamed into its place, and the new result.json comes last. So the files beside a result.json belong to
 //! it, whenever a run is stopped and however many run at a time; where there is none, a run is under way or was stopped.
 //!
@@ -12,6 +12,7 @@ use std::fs::{self, File, OpenOptions};
 use std::hash::{BuildHasher, Hasher};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::thread::{self, JoinHandle};
 
 use thiserror::Error;
 
@@ -26,6 +27,8 @@ pub struct Output {
     /// The folders that did not exist before, innermost first.
     made: Vec<PathBuf>,
     names: Vec<String>,
+    /// The files that are being written to the disk, by their names.
+    writing: Vec<(String, JoinHandle<io::Result<()>>)>,
 }
 
 /// A number that cannot be written.
@@ -73,7 +76,7 @@ impl Output {
         let made = folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
         let number = RandomState::new().build_hasher().finish();
         let room = folder.join(format!(".signorini-{number:016x}.tmp"));
-        let output = Output { folder, room, made, names: Vec::new() };
+        let output = Output { folder, room, made, names: Vec::new(), writing: Vec::new() };
         match fs::create_dir_all(&output.folder).and_then(|()| fs::create_dir(&output.room)) {
             Ok(()) => Ok(output),
             Err(error) => {
@@ -83,24 +86,33 @@ impl Output {
         }
     }
 
-    /// Writes the file `name` to the disk, but not yet to its place. The last file of a set is the one that says that the
+    /// Begins to write the file `name` to the disk, but not yet to its place. The last file of a set is the one that says that the
     /// set is whole.
-    pub fn stage(&mut self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
-        self.add(name, |path| {
+    ///
+    /// # Errors
+    /// A failure where its place is a folder; one to write is told by [`Output::publish`].
+    pub fn stage(&mut self, name: &str, bytes: impl Into<Vec<u8>>) -> Result<(), Failure> {
+        let (path, bytes) = (self.room.join(name), bytes.into());
+        self.add(name, |_| Ok(()))?;
+        let write = move || {
             let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
-            file.write_all(bytes)?;
+            file.write_all(&bytes)?;
             file.sync_all()
-        })
+        };
+        let started = thread::Builder::new().spawn(write);
+        let thread = started.map_err(|error| self.wrong(name, error))?;
+        self.writing.push((name.to_owned(), thread));
+        Ok(())
     }
 
     /// Stages a file, unless it has a number that cannot be written.
     pub fn stage_made(
         &mut self,
         file: &'static str,
-        content: Result<impl AsRef<[u8]>, NotFinite>,
+        content: Result<impl Into<Vec<u8>>, NotFinite>,
     ) -> Result<(), Failure> {
         match content {
-            Ok(content) => self.stage(file, content.as_ref()),
+            Ok(content) => self.stage(file, content),
             Err(error) => Err(Failure::failed(format!("{file} cannot be made: {error}"))),
         }
     }
@@ -141,12 +153,27 @@ impl Output {
         Failure::failed(format!("cannot write {path}: {why}"))
     }
 
+    /// Waits for the disk.
+    ///
+    /// # Errors
+    /// A failure where a file cannot be written.
+    pub fn wait(&mut self) -> Result<(), Failure> {
+        let written = self.writing.drain(..).map(|(name, thread)| (name, thread.join()));
+        for (name, written) in written.collect::<Vec<_>>() {
+            let lost = |_| Err(io::Error::other("writing stopped"));
+            written.unwrap_or_else(lost).map_err(|error| self.wrong(&name, error))?;
+        }
+        Ok(())
+    }
+
     /// Gives all staged files their places, and returns the paths in the order of staging. The files of an earlier run that have
     /// these names go, and those called `stale`, which a reader could take for files of this one.
     ///
     /// # Errors
-    /// A failure, should the system refuse to rename; then the last file of the set is not there.
+    /// A failure, should the system refuse to write a file: then nothing has changed; or to rename one: then the last file of the set is
+    /// not there.
     pub fn publish(mut self, stale: &[&str]) -> Result<Vec<PathBuf>, Failure> {
+        self.wait()?;
         // A system without locks takes its chance.
         let lock = File::open(&self.folder).and_then(|folder| folder.lock().map(|()| folder));
         let renamed = self.rename_all(stale);
@@ -180,6 +207,7 @@ impl Output {
 /// removed stays: the failure that led here is the one to report.
 impl Drop for Output {
     fn drop(&mut self) {
+        self.writing.drain(..).for_each(|(_, thread)| drop(thread.join()));
         let _ = fs::remove_dir_all(&self.room);
         self.made.iter().for_each(|folder| drop(fs::remove_dir(folder)));
     }
@@ -220,7 +248,7 @@ mod tests {
     fn run(folder: &Path, stamp: &str) -> Result<Vec<PathBuf>, Failure> {
         let mut output = Output::new(folder)?;
         for name in SET {
-            output.stage(name, stamp.as_bytes())?;
+            output.stage(name, stamp)?;
         }
         output.publish(&[])
     }
@@ -233,8 +261,8 @@ mod tests {
         fs::write(scratch.0.join("a.txt"), b"earlier").unwrap();
         fs::create_dir(scratch.0.join("b.txt")).unwrap();
         let mut output = Output::new(&scratch.0).unwrap();
-        output.stage("a.txt", b"later").unwrap();
-        let error = output.stage("b.txt", b"later").unwrap_err();
+        output.stage("a.txt", "later").unwrap();
+        let error = output.stage("b.txt", "later").unwrap_err();
         let place = scratch.0.join("b.txt");
         assert_eq!(error.to_string(), format!("cannot write {}: is a directory", place.display()));
         drop(output);
@@ -248,7 +276,7 @@ mod tests {
         run(&scratch.0, "earlier").unwrap();
         let mut output = Output::new(&scratch.0).unwrap();
         for name in ["c.txt", "result.json"] {
-            output.stage(name, b"later").unwrap();
+            output.stage(name, "later").unwrap();
         }
         // Since it was staged, somebody has put a folder in its place.
         fs::create_dir_all(scratch.0.join("c.txt/full")).unwrap();

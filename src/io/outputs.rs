@@ -83,24 +83,26 @@ pub fn write(
     let mut output = Output::new(folder)?;
     let continuous = solved.certified.as_ref().and_then(|c| c.as_ref().ok());
     let mut results = results(case, solved, read, extra)?;
+    let indicators = continuous.map(|c| c.indicators.as_slice());
+    // The largest file first: the picture is drawn while the disk takes it.
+    stage_fields(&mut output, solution, &case.problem, indicators)?;
     let scene = Scene::of(case, solution, &results);
     let picture = draw(std::slice::from_ref(&scene)).unwrap_or_else(|error| {
         results.missing.push(format!("picture: {error}"));
         Vec::new()
     });
     let picture = picture.concat();
-    let indicators = continuous.map(|c| c.indicators.as_slice());
-    stage_fields(&mut output, solution, &case.problem, indicators)?;
     if extra.report {
-        output.stage(report::FILE, report::html(case, &results, &picture).as_bytes())?;
+        output.stage(report::FILE, report::html(case, &results, &picture))?;
     }
     if !picture.is_empty() {
-        output.stage(PICTURE, picture.as_bytes())?;
+        output.stage(PICTURE, picture)?;
     }
     if let (Some(continuous), true) = (continuous, extra.certificate || case.asks_for_certificate())
     {
         stage_certificate(&mut output, case, continuous)?;
     }
+    output.wait()?;
     results.seconds.write = start.elapsed().as_secs_f64();
     output.stage_made("result.json", result_json(&results))?;
     Ok(Written { files: output.publish(&FILES)?, results, scene })
@@ -141,7 +143,7 @@ impl Series {
         // Where one scale takes a picture beyond the range of doubles, all keep their own.
         for (folder, picture) in folders.iter().zip(draw(&scenes).unwrap_or_default()) {
             let mut output = Output::new(folder)?;
-            output.stage(PICTURE, picture.as_bytes())?;
+            output.stage(PICTURE, picture)?;
             output.publish(&[])?;
         }
         Ok(())
@@ -209,7 +211,7 @@ fn stage_certificate(
     let text = serde_json::to_vec_pretty(&header)
         .map_err(|_| NotFinite { place: certificate::FILES[0].to_owned() });
     output.stage_made(certificate::FILES[0], text)?;
-    output.stage(certificate::FILES[1], &arrays)
+    output.stage(certificate::FILES[1], arrays)
 }
 
 /// The bytes that making one file after the other takes at most: the numbers of solution.vtu once as they are and once as

@@ -556,9 +556,9 @@ impl Sweep {
             output.stage_made(curves, figure(&drawn))?;
         }
         if self.with_files {
-            output.stage(collection, self.pvd().as_bytes())?;
+            output.stage(collection, self.pvd())?;
         }
-        output.stage(table, self.csv().as_bytes())?;
+        output.stage(table, self.csv())?;
         output.publish(&self.names[1..])
     }
 }

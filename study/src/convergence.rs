@@ -233,7 +233,7 @@ fn panel(title: &str, of: fn(&Errors) -> f64, studies: &[Study]) -> Panel {
 /// Writes convergence.csv and convergence.svg into `folder` and returns their paths.
 pub fn write(folder: &Path, title: &str, studies: &[Study]) -> Result<Vec<PathBuf>, Failure> {
     let mut output = Output::new(folder)?;
-    output.stage(FILES[0], csv(studies).as_bytes())?;
+    output.stage(FILES[0], csv(studies))?;
     output.stage_made(FILES[1], figure(&plot(title, studies)))?;
     output.publish(&[])
 }
