@@ -404,7 +404,11 @@ def test_ctrl_c_ends_a_solve(tmp_path):
         "import signorini, sys\nprint('ready', flush=True)\n"
         f"signorini.solve_case({str(CASES / 'block.toml')!r}, set={{'mesh.rectangle.nx': 1200, 'mesh.rectangle.ny': 1200}})\n"
     )
-    run = subprocess.Popen([sys.executable, str(program)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    # What a shell has started in the background ignores the signal, and hands that on.
+    listens = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)
+    run = subprocess.Popen(
+        [sys.executable, str(program)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=listens
+    )
     assert run.stdout.readline() == "ready\n"
     time.sleep(1)
     run.send_signal(signal.SIGINT)
