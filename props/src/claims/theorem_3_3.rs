@@ -209,7 +209,7 @@ mod row {
             id: "10",
             title: "One solution",
             paper: "Suppose that gamma0 is sufficiently small. Then the problem (8) admits one unique solution u^h in V^h. In the proof: ([a]+ - [b]+)(a - b) >= ([a]+ - [b]+)^2 >= 0 and |[a]+ - [b]+| <= |a - b|, for all a, b; (12); phi is Lipschitz.",
-            limits: "Meshes of up to 10 free nodes, over the solver's data as they are rounded (gamma, the loads, in plane stress lambda*); P2 without quadrature error is left out, for its roots are irrational; the bodies are isotropic. On bodies the functions are those of the kernel, which rows 5 and 6 compare with the definitions.",
+            limits: "Meshes of up to 10 free nodes, over the solver's data as they are rounded (gamma, the loads, in plane stress lambda*); P2 without quadrature error is left out, for its roots are irrational; the bodies that are solved are isotropic. On bodies (12) is asked of the definitions that props/src/naive.rs writes out, which rows 5 and 6 compare with the kernel.",
             checks: [
                 statements! {
                     proved + tested positive_parts_are_monotone[a, b]
