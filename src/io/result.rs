@@ -380,7 +380,7 @@ pub struct ContinuousCertificate {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) relative: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    /// That of the solution itself.
+    /// The value of the solution itself.
     pub of_solution: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) potential_energy: Option<[f64; 2]>,

@@ -18,17 +18,17 @@ pub struct Lines<'d> {
 }
 
 impl<'d> Lines<'d> {
-    /// Those of a discretization.
+    /// The pieces of a discretization.
     pub fn new(d: &'d Discretization<'d>) -> Self {
         Lines { d, made: vec![OnceCell::new(); d.contact.len()] }
     }
 
-    /// All of them.
+    /// Goes through all pieces, and makes each.
     pub(super) fn iter(&self) -> impl Iterator<Item = &Piece<PreciseBall>> {
         (0..self.made.len()).map(|e| &self[e])
     }
 
-    /// The same in doubles.
+    /// The pieces in doubles.
     pub(super) fn in_doubles(&self) -> &'d [Piece] {
         &self.d.contact
     }

@@ -582,7 +582,7 @@ struct Product<'a, 'd, 'p> {
     lines: &'a Lines<'d>,
     pressed: &'a Pressed,
     arithmetic: Arithmetic,
-    /// Whether fields are next to nothing, and sums in doubles do.
+    /// Tells whether fields are next to nothing, so that sums in doubles do.
     is_small: bool,
 }
 

@@ -37,7 +37,7 @@ const MOST_ENTRIES: usize = 40_000_000;
 /// The number of solves for a column of the compliance: each takes off as many digits as the factor has.
 const MOST_CORRECTIONS: usize = 8;
 
-/// What is left of a column of the compliance, as a share of its length: first so much that products in doubles do, which take a fraction
+/// The shares of a column of the compliance that may be left: first so much that products in doubles do, which take a fraction
 /// of the time; where nothing is proved with that, a rounding error.
 pub(super) const SHARES: [f64; 2] = [1e-7, f64::EPSILON];
 
@@ -723,7 +723,7 @@ pub(super) struct Known {
     root: Root,
     /// The springs of A_S; none for A.
     springs: Option<Vec<DMatrix<f64>>>,
-    /// What is left of the columns of the compliance.
+    /// The share of each column of the compliance that may be left.
     pub(super) share: f64,
     everywhere: bool,
     limits: [f64; 2],

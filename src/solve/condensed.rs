@@ -55,7 +55,7 @@ use crate::model::mesh::ROUNDED;
 pub(crate) struct Shift(BTreeMap<usize, DMatrix<f64>>);
 
 impl Shift {
-    /// Those of as few pieces as hold the body.
+    /// The springs of as few pieces as hold the body.
     pub(crate) fn of(d: &Discretization) -> Self {
         if d.slides.is_none() {
             return Shift::default();
@@ -248,7 +248,7 @@ struct SomePieces<'d, 'p> {
 }
 
 impl<'d, 'p> SomePieces<'d, 'p> {
-    /// Those of a discretization with many.
+    /// Some pieces of a discretization with many.
     fn of(d: &'d Discretization<'p>) -> Option<Self> {
         if d.contact.last()?.functionals().end < MANY {
             return None;
