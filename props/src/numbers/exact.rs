@@ -11,8 +11,6 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::Signed;
 
-use super::rational;
-
 struct Arena {
     scope: u32,
     numbers: Vec<BigRational>,
@@ -108,19 +106,19 @@ impl From<i32> for Exact {
 
 impl PartialEq for Exact {
     fn eq(&self, other: &Exact) -> bool {
-        self.with_both(*other, |a, b| a == b)
+        self.with_both(*other, rational::equal)
     }
 }
 
 impl PartialOrd for Exact {
     fn partial_cmp(&self, other: &Exact) -> Option<Ordering> {
-        Some(self.with_both(*other, Ord::cmp))
+        Some(self.with_both(*other, rational::order))
     }
 }
 
 super::number! { Exact:
     + |a, b| Exact::new(a.with_both(b, rational::sum));
-    - |a, b| Exact::new(a.with_both(b, |a, b| rational::sum(a, &-b)));
+    - |a, b| Exact::new(a.with_both(b, rational::difference));
     * |a, b| Exact::new(a.with_both(b, rational::product));
     / |a, b| Exact::new(a.with_both(b, rational::quotient));
     neg |a| Exact::new(a.with(|a| -a));

@@ -49,8 +49,6 @@ pub(crate) use number;
 pub mod exact;
 #[cfg(not(kani))]
 pub mod magnitude;
-#[cfg(not(kani))]
-pub mod rational;
 pub mod whole;
 
 #[cfg(not(kani))]

@@ -9,8 +9,6 @@ use std::ops::{Add, Mul, Neg, Sub};
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 
-use crate::numbers::rational;
-
 /// An exponent. The sum of two is checked: one that wrapped around would make x^257 = x, in builds without overflow checks.
 pub type Exponent = u16;
 

@@ -7,8 +7,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
-use crate::numbers::rational;
-
 /// A sparse row: column -> entry, none of them zero.
 pub(super) type Row = BTreeMap<usize, BigRational>;
 

@@ -50,3 +50,22 @@ fn ends_are_the_next_doubles_and_roots_of_squares_are_exact() {
     let next = root + Exact::of_double(2.0_f64.powi(-200));
     assert!(root * root < Exact::from(2) && Exact::from(2) < next * next);
 }
+
+#[test]
+fn shortcuts_are_the_operations_in_lowest_terms() {
+    let ratio = |n: i64, d: i64| BigRational::new(n.into(), d.into());
+    let numerators = [-12, -5, -4, -1, 0, 1, 2, 3, 6, 8, 1 << 40];
+    let numbers = numerators.map(|n| [1, 2, 3, 8, 12].map(|d| ratio(n, d)));
+    for (a, b) in numbers
+        .as_flattened()
+        .iter()
+        .flat_map(|a| numbers.as_flattened().iter().map(move |b| (a, b)))
+    {
+        let parts = |x: BigRational| (x.numer().clone(), x.denom().clone());
+        assert_eq!(parts(rational::sum(a, b)), parts(a + b), "{a} + {b}");
+        assert_eq!(parts(rational::product(a, b)), parts(a * b), "{a} {b}");
+        if *b != ratio(0, 1) {
+            assert_eq!(parts(rational::quotient(a, b)), parts(a / b), "{a} / {b}");
+        }
+    }
+}

@@ -114,11 +114,9 @@ fn largest(matrix: &LowerTriangle, rows: &[Vec<f64>]) -> Result<f64, String> {
     let factor = Factor::new(matrix).map_err(text)?;
     let mut columns = rows.to_vec();
     columns.iter_mut().for_each(|column| factor.forward(column));
-    let product = |i: usize, j: usize| -> f64 {
-        columns[i].iter().zip(&columns[j]).map(|(x, y)| x * y).sum()
-    };
-    let gram =
-        Mat::from_fn(rows.len(), rows.len(), |i, j| if j <= i { product(i, j) } else { 0.0 });
+    let size = columns.first().map_or(0, Vec::len);
+    let halves = Mat::from_fn(size, columns.len(), |i, k| columns[k][i]);
+    let gram = halves.transpose() * &halves;
     let eigenvalues = gram.self_adjoint_eigenvalues(Side::Lower).map_err(|e| format!("{e:?}"))?;
     eigenvalues.last().copied().ok_or_else(|| "no contact".to_owned())
 }

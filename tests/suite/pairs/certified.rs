@@ -8,7 +8,6 @@ use signorini::certificates::{
     Asked, Certificate, Continuous, Rejection, Target, adapt, adapt_to, certify,
 };
 use signorini::contact::Friction;
-use signorini::contact::residual::add_internal_forces;
 use signorini::io::certificate;
 use signorini::kernel::Ball;
 use signorini::model::Space;
@@ -109,18 +108,15 @@ fn effectivities(
 ) -> Vec<[f64; 2]> {
     let fine = with(Two { cells: finest, ..all[0] }.problem());
     let exact = proved(&fine, &method(Degree::Two)).displacement;
-    let space = Space::new(&fine.mesh, Degree::Two);
+    let d = discretize(&fine, &method(Degree::Two)).unwrap();
     let of = |two: &Two| {
         let c = certified(&with(two.problem()), degree);
         assert!(c.rigorous, "{:?}", c.reason);
         let by = [0, 1].map(|k| finest[k] / two.cells[k]);
-        let v = two.on_finer(&c.displacement, by, &space);
+        let v = two.on_finer(&c.displacement, by, &d.space);
         let apart: Vec<[f64; 2]> =
             v.iter().zip(&*exact).map(|(v, u)| [v[0] - u[0], v[1] - u[1]]).collect();
-        let mut forces = vec![[0.0; 2]; apart.len()];
-        add_internal_forces(&space, &fine.material, &apart, &mut forces);
-        let square: f64 = apart.iter().zip(&forces).map(|(e, f)| e[0] * f[0] + e[1] * f[1]).sum();
-        let found = [c.bound / square.sqrt(), c.relative];
+        let found = [c.bound / d.strain_energy(&apart).sqrt(), c.relative];
         println!("{degree:?} {:?} {:?}: {found:?}", two.cells, two.moduli);
         found
     };

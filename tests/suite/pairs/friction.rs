@@ -8,7 +8,6 @@ use signorini::contact::Friction;
 use signorini::linear::matrix;
 use signorini::linear::matrix::{Neighbours, Numbering};
 
-use super::balance::largest_beside;
 use super::*;
 use crate::common::{DEGREES, dense};
 
@@ -347,6 +346,18 @@ fn below_a_coefficient_there_is_one_solution_for_all_loads() {
         let most = limits[0].max(limits[1]);
         assert!(isolation(0.99 * most).everywhere && !isolation(1.02 * most).everywhere);
     }
+}
+
+/// The largest eigenvalue of one symmetric matrix beside another one, which is positive definite.
+fn largest_beside(part: &Mat<f64>, whole: &Mat<f64>) -> f64 {
+    let factor = whole.llt(Side::Lower).unwrap();
+    let l = factor.L();
+    let half = l.partial_piv_lu().solve(part);
+    let both = l.partial_piv_lu().solve(half.transpose());
+    let symmetric =
+        Mat::from_fn(both.nrows(), both.ncols(), |i, j| (both[(i, j)] + both[(j, i)]) / 2.0);
+    let values = symmetric.self_adjoint_eigenvalues(Side::Lower).unwrap();
+    values.into_iter().fold(0.0, f64::max)
 }
 
 /// The limits of the coefficient by Theorems 13.3 and 13.3a, for P1: by dense algebra in doubles.
