@@ -4,6 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use approx::abs_diff_eq;
 use signorini::certificates::binding::compare;
 use signorini::certificates::forces::Evidence;
 use signorini::certificates::{Continuous, certify};
@@ -276,7 +277,11 @@ fn a_certificate_on_an_adapted_pin_is_one_of_its_case() {
     let radius = |x: &[f64; 2]| x[0].hypot(x[1]);
     let first = of_pin().problem.mesh.vertices().len();
     let moved = certificate.vertices.iter().enumerate().skip(first);
-    let k = moved.map(|(k, x)| (k, radius(x))).find(|(_, r)| (r - 20.0).abs() < 1e-4).unwrap().0;
+    let k = moved
+        .map(|(k, x)| (k, radius(x)))
+        .find(|(_, r)| abs_diff_eq!(*r, 20.0, epsilon = 1e-4))
+        .unwrap()
+        .0;
     let away = 20.05 / radius(&certificate.vertices[k]);
     certificate.vertices[k] = certificate.vertices[k].map(|x| x * away);
     assert!(of_case(&certificate).is_err());

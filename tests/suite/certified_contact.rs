@@ -1,7 +1,7 @@
 //! Certificates of bodies that contact alone holds, and of v pushed out of obstacles of every kind: what balances the loads is
 //! the pressure on Gamma_C, and v is as far outside as balls can see.
 
-use approx::assert_relative_eq;
+use approx::{abs_diff_eq, assert_relative_eq};
 
 use crate::certify::accepts;
 use crate::common::{case_of, encoded, root};
@@ -220,7 +220,7 @@ fn a_field_that_misses_what_is_prescribed_is_measured() {
     };
     assert!(missed(0.0) < 1e-12, "{}", missed(0.0));
     // The energy norm of both is the same.
-    assert!((missed(1e3) - 1e3).abs() < 1e-9, "{}", missed(1e3));
+    assert!(abs_diff_eq!(missed(1e3), 1e3, epsilon = 1e-9), "{}", missed(1e3));
 }
 
 /// A place of a certificate: of a vertex, or of a cut, which is numbered after these.
@@ -393,6 +393,9 @@ fn a_body_that_may_turn_about_its_obstacle_has_forces_between_two_numbers() {
         let force = found.quantities.list.iter().find(|q| q.name == Name::ContactComponent(1));
         let [low, high] = force.unwrap().interval.clone().unwrap();
         // The load, by statics.
-        assert!((low - 8.5).abs() < 1e-6 && (high - 8.5).abs() < 1e-6, "{low} {high}");
+        assert!(
+            abs_diff_eq!(low, 8.5, epsilon = 1e-6) && abs_diff_eq!(high, 8.5, epsilon = 1e-6),
+            "{low} {high}"
+        );
     }
 }

@@ -5,6 +5,7 @@
 use crate::certify::accepts;
 use crate::common::exact::{on_square, singular, smooth};
 use crate::common::*;
+use approx::abs_diff_eq;
 use signorini::certificates::proof::Role;
 use signorini::certificates::{Continuous, certify};
 use signorini::exact::Kind;
@@ -62,7 +63,11 @@ fn a_body_that_is_turned_has_the_bound_of_the_body_as_it_stands() {
             let apart = (turned.bound / still.bound - 1.0).abs();
             assert!(apart < ROUNDING, "{degree:?}, {angle}: {} {}", turned.bound, still.bound);
             let ([low, high], [l, h]) = (turned.energy.unwrap(), still.energy.unwrap());
-            assert!((low - l).abs() + (high - h).abs() < ROUNDING, "{low} {l} {high} {h}");
+            assert!(
+                abs_diff_eq!(low, l, epsilon = ROUNDING)
+                    && abs_diff_eq!(high, h, epsilon = ROUNDING),
+                "{low} {l} {high} {h}"
+            );
             let (header, bytes) = encoded(&turned);
             assert_eq!(accepts(&header, &bytes), Ok(()), "{degree:?}, {angle}");
         }

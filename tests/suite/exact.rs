@@ -358,7 +358,7 @@ fn the_second_derivatives_are_those_of_the_gradient() {
                     let slope = |t: f64| sample.solution.gradient(along(x, k, t))[(i, j)];
                     let (expected, bound) = derivative(slope, clearance(&sample, x), 10.0);
                     assert!(
-                        (value - expected).abs() <= bound,
+                        abs_diff_eq!(value, expected, epsilon = bound),
                         "{}: {value} {expected}",
                         sample.name
                     );

@@ -1,6 +1,6 @@
 //! The figure of Theorem 7.2 in docs/a-posteriori.md: three points of a plane for which the theorem holds.
 
-use approx::assert_abs_diff_eq;
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 
 /// Centre and radius of each circle of a drawing.
 fn circles(drawing: &str) -> Vec<([f64; 2], f64)> {
@@ -26,7 +26,7 @@ fn the_figure_of_theorem_7_2_is_of_points_for_which_it_holds() {
         panic!("{circles:?}")
     };
     let apart = distance(v, tau);
-    assert!(ball == mean && sphere == mean && (half - apart / 2.0).abs() < 0.1);
+    assert!(ball == mean && sphere == mean && abs_diff_eq!(half, apart / 2.0, epsilon = 0.1));
     assert_abs_diff_eq!(distance(v, mean), distance(tau, mean), epsilon = 1e-9);
     // M^2 is a quarter of |C eps(v) - tau|^2 and int tau_n (v_n - g) over Gamma_C.
     let work = radius * radius - apart * apart / 4.0;

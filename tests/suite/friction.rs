@@ -1,7 +1,7 @@
 //! Friction, Tresca's and Coulomb's: exact solutions, the law at the nodes, limits, what is proved and what is refused, and bodies at
 //! random.
 
-use approx::{assert_abs_diff_eq, assert_relative_eq};
+use approx::{abs_diff_eq, assert_abs_diff_eq, assert_relative_eq};
 use std::collections::BTreeMap;
 
 use signorini::certificates::certify;
@@ -68,7 +68,10 @@ fn the_error_falls_as_the_regularity_of_the_solution_allows() {
     ] {
         let found = rates_of(&solution, degree);
         // What is left of lower order after three refinements.
-        assert!((found[2] - promised).abs() < 0.05, "{solution:?} {degree:?}: {found:?}");
+        assert!(
+            abs_diff_eq!(found[2], promised, epsilon = 0.05),
+            "{solution:?} {degree:?}: {found:?}"
+        );
     }
 }
 
@@ -96,7 +99,7 @@ fn energies_are_those_of_an_independent_program() {
         let d = discretize(&problem, &method(Degree::One, EXACT)).unwrap();
         let found = d.energy(&solved(&problem, Degree::One).displacement);
         // Nine decimals were printed.
-        assert!((found - expected).abs() < 5e-10, "{n} {bound}: {found}");
+        assert!(abs_diff_eq!(found, expected, epsilon = 5e-10), "{n} {bound}: {found}");
     }
 }
 
@@ -215,7 +218,7 @@ fn the_residual_is_the_gradient_of_the_energy() {
                 r.as_flattened().iter().zip(v.as_flattened()).map(|(r, v)| 0.01 * r * v).sum();
             // A difference quotient of a function whose second derivative jumps.
             assert!(
-                (difference - slope).abs() < 1e-5 * slope.abs().max(1e-3),
+                abs_diff_eq!(difference, slope, epsilon = 1e-5 * slope.abs().max(1e-3)),
                 "{difference} {slope}"
             );
         }
@@ -236,7 +239,10 @@ fn a_block_that_friction_alone_holds_is_proved_up_to_the_limit_of_sliding() {
             let solution = solved(&problem(push), degree);
             let [x, y] = solution.quantities.contact_resultant;
             // Friction and floor bear all of the load.
-            assert!((x + push).abs() < 1e-9 && (y - 0.1).abs() < 1e-9, "{push}: {x} {y}");
+            assert!(
+                abs_diff_eq!(x, -push, epsilon = 1e-9) && abs_diff_eq!(y, 0.1, epsilon = 1e-9),
+                "{push}: {x} {y}"
+            );
         }
         for push in [0.02, 0.0201, 0.1, -0.021] {
             let error = solve(&problem(push), &method(degree, EXACT), &Settings::default());
@@ -408,7 +414,10 @@ fn coulombs_friction_of_a_uniform_pressure_is_as_accurate_as_trescas() {
             solve(&with_coefficient(problem.clone(), 0.1), &ladder.method, &ladder.settings)
                 .unwrap();
         let error = error_of(&problem, &ladder.solution, &solution.displacement);
-        assert!((error / level.errors.energy - 1.0).abs() < 1e-3, "{degree:?}: {error}");
+        assert!(
+            abs_diff_eq!(error / level.errors.energy, 1.0, epsilon = 1e-3),
+            "{degree:?}: {error}"
+        );
         assert!(solution.verdict == Verdict::Proved || degree == Degree::Two);
         // The control: where the error is small enough to tell.
         let other = with_coefficient(problem.clone(), 0.4);
@@ -586,22 +595,31 @@ fn a_leaning_strip_has_three_solutions_each_isolated_and_with_a_smaller_coeffici
         let [normal, shear, sticks, slides, only, near] = row[..] else {
             panic!("{name}: {row:?}")
         };
-        let is_it =
-            |f: &&Found| (f.force[0] - normal).abs() < 5e-7 && (f.force[1] - shear).abs() < 5e-7;
+        let is_it = |f: &&Found| {
+            abs_diff_eq!(f.force[0], normal, epsilon = 5e-7)
+                && abs_diff_eq!(f.force[1], shear, epsilon = 5e-7)
+        };
         let of = found.iter().find(is_it).unwrap();
         println!(
             "{name}: normal {:.6}, shear {:.6}, sticks, slides on {:.2?}: within {:.0e}, only one within {:.1e}",
             of.force[0], of.force[1], of.lengths, of.radius, of.relative
         );
         // Two decimals and two digits are printed; "within" is rounded up.
-        assert!((of.lengths[0] - sticks).abs() <= 0.005 && (of.lengths[1] - slides).abs() <= 0.005);
+        assert!(
+            abs_diff_eq!(of.lengths[0], sticks, epsilon = 0.005)
+                && abs_diff_eq!(of.lengths[1], slides, epsilon = 0.005)
+        );
         assert_relative_eq!(of.relative, only, max_relative = 0.05);
         assert!(of.radius <= near && near <= 1e-10);
         // The figure has one decimal; the strip is drawn with 40 units to 1, displacements twice.
         assert_eq!(drawing.len(), of.u.len());
         for (at, moved) in drawing {
             let [x, y] = moved_node(of, at);
-            assert!((x - moved[0]).abs() <= 0.06 && (y - moved[1]).abs() <= 0.06, "{name}: {at:?}");
+            assert!(
+                abs_diff_eq!(x, moved[0], epsilon = 0.06)
+                    && abs_diff_eq!(y, moved[1], epsilon = 0.06),
+                "{name}: {at:?}"
+            );
         }
     }
     // Balls in the norm of A, which is at least (1 - kappa)^(1/2) times the energy norm.
@@ -614,7 +632,11 @@ fn a_leaning_strip_has_three_solutions_each_isolated_and_with_a_smaller_coeffici
     let limits = found[0].limits;
     println!("limits {limits:?}");
     // Of another program: three decimals.
-    assert!((limits[0] - 0.157).abs() <= 1e-3 && (limits[1] - 0.021).abs() <= 1e-3, "{limits:?}");
+    assert!(
+        abs_diff_eq!(limits[0], 0.157, epsilon = 1e-3)
+            && abs_diff_eq!(limits[1], 0.021, epsilon = 1e-3),
+        "{limits:?}"
+    );
     // The control: the coefficient is what makes them three.
     assert_eq!(solutions(0.3, 10).len(), 1);
 }
@@ -659,7 +681,9 @@ fn drawn_strips() -> Vec<Vec<([f64; 2], [f64; 2])>> {
 /// Where the figure has a node of the strip that is drawn `at` a place.
 fn moved_node(of: &Found, at: [f64; 2]) -> [f64; 2] {
     let place = at.map(|c| c / 40.0);
-    let is_there = |x: &[f64; 2]| (x[0] - place[0]).abs() < 1e-3 && (x[1] - place[1]).abs() < 1e-3;
+    let is_there = |x: &[f64; 2]| {
+        abs_diff_eq!(x[0], place[0], epsilon = 1e-3) && abs_diff_eq!(x[1], place[1], epsilon = 1e-3)
+    };
     let node = of_leaning_strip(1.5, 1.0, |d| d.space.nodes().iter().position(is_there).unwrap());
     [0, 1].map(|c| at[c] + 80.0 * of.u[node][c])
 }

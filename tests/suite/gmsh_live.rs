@@ -1,7 +1,7 @@
 //! Reads files that the installed Gmsh has just written, in text and binary. A fresh Gmsh shows what the committed files in
 //! `tests/meshes` can't: that the format is still the one that is read here.
 
-use approx::assert_abs_diff_eq;
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -50,10 +50,13 @@ fn fresh_text_and_binary_files_give_the_same_mesh() {
     ] {
         let other = read(&mesh("tests/meshes/square.geo", output, more));
         assert_eq!(text.triangles().len(), other.triangles().len(), "{output}");
-        assert!((area(&text) - area(&other)).abs() < 1e-12, "{output}");
+        assert!(abs_diff_eq!(area(&text), area(&other), epsilon = 1e-12), "{output}");
         assert!(text.boundary_names().eq(other.boundary_names()), "{output}");
         for name in text.boundary_names() {
-            assert!((length(&text, name) - length(&other, name)).abs() < 1e-12, "{output} {name}");
+            assert!(
+                abs_diff_eq!(length(&text, name), length(&other, name), epsilon = 1e-12),
+                "{output} {name}"
+            );
         }
     }
 }
@@ -140,7 +143,10 @@ fn every_fresh_variant_of_the_bracket_gives_the_same_result() {
     let largest = first.iter().fold(0.0, |m: f64, a| m.max(a.abs()));
     for (output, numbers) in &answers {
         for (a, b) in first.iter().zip(numbers) {
-            assert!((a - b).abs() <= 1e-9 * a.abs().max(1e-3 * largest), "{output}: {a} {b}");
+            assert!(
+                abs_diff_eq!(a, b, epsilon = 1e-9 * a.abs().max(1e-3 * largest)),
+                "{output}: {a} {b}"
+            );
         }
     }
 }

@@ -4,6 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
+use approx::abs_diff_eq;
 use signorini::io::{Case, gmsh};
 use signorini::solve::solve;
 
@@ -120,7 +121,7 @@ fn meshes_of_every_variant_are_the_square_that_they_are() {
         let found: f64 =
             (0..mesh.triangles().len()).map(|t| mesh.triangle(t).double_area() / 2.0).sum();
         // Gmsh writes 16 digits of coordinates of about 1.
-        assert!((found - area).abs() < 1e-12, "{name}: area {found}");
+        assert!(abs_diff_eq!(found, area, epsilon = 1e-12), "{name}: area {found}");
         match (remark, case.remarks.as_slice()) {
             ("", []) => {}
             (remark, [found]) if !remark.is_empty() => assert!(found.contains(remark), "{found}"),
@@ -129,7 +130,7 @@ fn meshes_of_every_variant_are_the_square_that_they_are() {
         let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
         // Without lateral strain: E times 0.01 on the width. The solver's tolerance is 1e-10.
         let force = solution.quantities.contact_force;
-        assert!((force - 0.01 * area).abs() < 1e-9, "{name}: force {force}");
+        assert!(abs_diff_eq!(force, 0.01 * area, epsilon = 1e-9), "{name}: force {force}");
     }
 }
 

@@ -2,7 +2,7 @@
 //! let it reach.
 
 use crate::common::*;
-use approx::assert_abs_diff_eq;
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use faer::linalg::solvers::Solve;
 use faer::{Col, Mat};
 use signorini::contact::Discretization;
@@ -106,13 +106,13 @@ fn plain_newton_cycles_where_the_solver_ends() {
         assert_eq!(set, cycle[step % 4], "{visited:?}");
     }
     for (energy, expected) in energies.iter().zip([4.4519, 0.81341, 7.5760, 0.90384]) {
-        assert!((energy - expected).abs() < 1e-4, "{energies:?}");
+        assert!(abs_diff_eq!(*energy, expected, epsilon = 1e-4), "{energies:?}");
     }
     // The solver: at the minimiser.
     let (Evaluated { u, .. }, report, _) = solve_discrete(&d, &Settings::default()).unwrap();
     assert_eq!(report.newton.status, Status::Converged);
     assert_eq!(contact_set(&d, &u), [2, 5]);
-    assert!((d.energy(&u) - 0.291087).abs() < 1e-6, "{}", d.energy(&u));
+    assert!(abs_diff_eq!(d.energy(&u), 0.291087, epsilon = 1e-6), "{}", d.energy(&u));
     assert!(energies.iter().all(|e| *e > d.energy(&u)));
 }
 

@@ -1,6 +1,6 @@
 //! Cases with pairs: what is read of them, and from which meshes.
 
-use approx::assert_abs_diff_eq;
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -197,7 +197,7 @@ fn in_the_cases_with_pairs_points_of_both_boundaries_face_each_other() {
             for (pieces, expected) in all.iter().zip(lengths) {
                 let length: f64 = pieces.iter().map(|piece| piece.length).sum();
                 // A polygon of edges of 1/10 of the radius is shorter than its arc by 1/2400.
-                assert!((length / expected - 1.0).abs() < 2e-3, "{name}: {length}");
+                assert!(abs_diff_eq!(length / expected, 1.0, epsilon = 2e-3), "{name}: {length}");
             }
             assert_eq!(all.len(), lengths.len().max(1), "{name}");
         }

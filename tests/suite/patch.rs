@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use approx::abs_diff_eq;
 use signorini::exact::Exact;
 use signorini::exact::{Kind, Patch};
 use signorini::kernel::{Material, Plane};
@@ -81,7 +82,7 @@ fn patches_are_reproduced_to_rounding_on_skewed_meshes() {
                     assert!(error <= bound, "{here}: {error:e}");
                     let covered = s.quantities.contact_length;
                     let length = f64::from(u8::from(has_contact));
-                    assert!((covered - length).abs() <= BOUND, "{here}: {covered}");
+                    assert!(abs_diff_eq!(covered, length, epsilon = BOUND), "{here}: {covered}");
                 }
             }
         }

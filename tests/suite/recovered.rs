@@ -16,7 +16,7 @@
 //! `cargo test` runs the two coarser meshes; `cargo test --test suite recovered:: -- --ignored --nocapture` all, with the table
 //! of docs/figures/recovered.csv.
 
-use approx::assert_abs_diff_eq;
+use approx::{abs_diff_eq, assert_abs_diff_eq};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
 
@@ -335,6 +335,6 @@ fn exact_pressures_are_those_of_hertz_and_balance_the_force() {
         let n = 2000;
         let mean =
             (0..n).map(|i| rounded_pressure(b, A * (i as f64 + 0.5) / n as f64)).sum::<f64>();
-        assert!((2.0 * A * mean / n as f64 / force - 1.0).abs() < 1e-4, "{b}");
+        assert!(abs_diff_eq!(2.0 * A * mean / n as f64 / force, 1.0, epsilon = 1e-4), "{b}");
     }
 }

@@ -16,6 +16,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use approx::abs_diff_eq;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use signorini::io::Case;
@@ -155,7 +156,7 @@ fn our_results_agree_with_the_stored_ones_of_fenicsx() {
         assert_eq!(theirs.len(), ours.len(), "{}", file.display());
         for ((path, a, allowed), (name, b, _)) in theirs.iter().zip(&ours) {
             assert_eq!(path, name);
-            if !((a - b).abs() <= *allowed) {
+            if !abs_diff_eq!(a, b, epsilon = *allowed) {
                 bad.push(format!(
                     "{}: {path} = {b:e}, stored {a:e}, off by {:.1e}, allowed {allowed:.1e}",
                     file.display(),

@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use approx::abs_diff_eq;
 use faer::{Mat, Side as Triangle};
 use proptest::prelude::*;
 use signorini::certificates::proof::{Certificate, Edge, Lift, Proof, Role};
@@ -457,7 +458,7 @@ fn independent_of_v(draw: &Pushed, degree: Degree, share: f64) -> Verdict {
     };
     let left = |proof: &Proof| proof.bound * proof.bound - twice_the_energy(proof, share);
     let size = one.bound * one.bound + two.bound * two.bound + two.energy[1].abs();
-    ensure!((left(&one) - left(&two)).abs() <= CLOSE * size);
+    ensure!(abs_diff_eq!(left(&one), left(&two), epsilon = CLOSE * size));
     Verdict::Holds(class(&certificate))
 }
 
@@ -484,7 +485,7 @@ fn raised_by_the_gap(draw: &Pushed, degree: Degree, share_of: f64) -> Verdict {
         return Verdict::Fails("both are accepted");
     };
     let [before, after] = [one.bound * one.bound, two.bound * two.bound];
-    ensure!((after - before - share_of * expected).abs() <= CLOSE * (before + after));
+    ensure!(abs_diff_eq!(after - before, share_of * expected, epsilon = CLOSE * (before + after)));
     Verdict::Holds(class(&certificate))
 }
 

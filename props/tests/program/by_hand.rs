@@ -8,6 +8,7 @@
 
 use std::collections::BTreeMap;
 
+use approx::abs_diff_eq;
 use proptest::prelude::*;
 use signorini::certificates::proof::{Certificate, Curved, Edge, Law, Piece, Role};
 use signorini::kernel::{Ball, Enclosing, Material, Plane, PreciseBall};
@@ -337,7 +338,7 @@ fn evaluated_of<S: Enclosing>(
             let roots: f64 = definition.squares.iter().map(|s| to_double(*s).sqrt()).sum();
             let more = 2.0 * o * roots + o * o * definition.squares.len() as f64;
             let square = to_double(total) + to_double(definition.contact) + more;
-            ensure!((to_double(found) - square).abs() <= CLOSE * (1.0 + square));
+            ensure!(abs_diff_eq!(to_double(found), square, epsilon = CLOSE * (1.0 + square)));
         }
         ensure!(near(proof.norm * proof.norm, definition.norm, one + definition.norm));
         let magnitude = size + definition.norm + definition.energy.abs();
@@ -389,7 +390,7 @@ pub fn duality_gap(draw: &Draw, exchanged: bool) -> Verdict {
     let (Some((one, size)), Some((other, other_size))) = (of(&one), of(&other)) else {
         return Verdict::Fails("both are accepted");
     };
-    ensure!((one - other).abs() <= CLOSE * (size + other_size));
+    ensure!(abs_diff_eq!(one, other, epsilon = CLOSE * (size + other_size)));
     Verdict::Holds("always")
 }
 
@@ -482,6 +483,6 @@ pub fn balanced(draw: &Draw, gross: bool) -> Verdict {
     };
     // A bound is a root: near zero it is known to half the digits.
     let [before, after] = [before.bound, after.bound].map(|b| b * b);
-    ensure!((after - before).abs() <= 1e-9 * (1.0 + before));
+    ensure!(abs_diff_eq!(after, before, epsilon = 1e-9 * (1.0 + before)));
     Verdict::Holds("always")
 }

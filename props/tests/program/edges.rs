@@ -2,6 +2,7 @@
 //! over them; the largest P on an edge, and where its sign changes; those of friction by those of contact, its slopes and its
 //! energy.
 
+use approx::abs_diff_eq;
 use proptest::prelude::*;
 use signorini::contact::EdgeRule;
 use signorini::kernel::edge_integral::{ExactEdge, gauss, maximum, roots, value_at};
@@ -185,7 +186,7 @@ fn maximum_is_found(parabola: &Parabola, off: f64) -> Verdict {
     let inside = if 0.0 < middle && middle < 1.0 { middle } else { 0.0 };
     let largest = [0.0, 1.0, inside].map(|s| parabola.at(s)).into_iter().fold(f64::MIN, f64::max);
     let found = maximum::<P2, 6, 3>(moved(parabola.nodal(), off));
-    ensure!((found - largest).abs() <= 10.0 * 2.0_f64.powi(-48));
+    ensure!(abs_diff_eq!(found, largest, epsilon = 10.0 * 2.0_f64.powi(-48)));
     let ends = [parabola.at(0.0), parabola.at(1.0)];
     ensure!(maximum::<P1, 3, 2>(ends) == ends[0].max(ends[1]));
     Verdict::Holds(parabola.class())
@@ -199,11 +200,19 @@ fn sign_changes(parabola: &Parabola, off: f64) -> Verdict {
     let mut found: Vec<f64> = roots::<P2, 6, 3>(moved(parabola.nodal(), off)).collect();
     found.sort_by(f64::total_cmp);
     ensure!(found.len() == expected.len());
-    ensure!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() <= 2.0_f64.powi(-44)));
+    ensure!(found.iter().zip(&expected).all(|(a, b)| abs_diff_eq!(
+        a,
+        b,
+        epsilon = 2.0_f64.powi(-44)
+    )));
     let [start, end] = [parabola.at(0.0), parabola.at(1.0)];
     let of_p1: Vec<f64> = roots::<P1, 3, 2>([start, end]).collect();
     ensure!(of_p1.len() == usize::from(start * end < 0.0));
-    ensure!(of_p1.iter().all(|s| (s - start / (start - end)).abs() <= 2.0_f64.powi(-50)));
+    ensure!(of_p1.iter().all(|s| abs_diff_eq!(
+        *s,
+        start / (start - end),
+        epsilon = 2.0_f64.powi(-50)
+    )));
     Verdict::Holds(parabola.class())
 }
 

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use approx::abs_diff_eq;
 use signorini::contact::Discretization;
 use signorini::kernel::PreciseBall;
 use signorini::kernel::{Material, Plane};
@@ -294,13 +295,13 @@ fn proved_kappa_on(
     for (bound, factor) in enclosure.nodes.iter().zip(korn.nodes) {
         // What is prescribed is a double: rounding moves nothing, and all of the radius is that of the residual, each rounded up.
         let expected = factor * enclosure.radius;
-        if !((bound - expected).abs() <= 1e-14 * expected) {
+        if !abs_diff_eq!(*bound, expected, epsilon = 1e-14 * expected) {
             return Err(format!("a bound of {bound:e} at a node, by Korn {expected:e}"));
         }
     }
     let (proved, kappa) = (scale * enclosure.kappa, d.kappa());
     // Some dozen roundings of doubles on the one side.
-    if !((proved - kappa).abs() <= 1e-14 * kappa) {
+    if !abs_diff_eq!(proved, kappa, epsilon = 1e-14 * kappa) {
         return Err(format!("kappa = {kappa}, and {proved} is proved"));
     }
     let turns = d.contact.iter().map(|piece| {

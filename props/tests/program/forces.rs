@@ -3,6 +3,7 @@
 //! w and w0 have random values, and are affine or quadratic on the triangles, whatever v is; rho of a dual pair is rho_yy = a + b
 //! x, without a traction on Gamma_N. Loads may oscillate, and prescribed values may need a lift.
 
+use approx::abs_diff_eq;
 use proptest::prelude::*;
 use signorini::certificates::dual::Dual;
 use signorini::certificates::forces::{ForceTarget, Forces, Lifting, Mean, Motion};
@@ -390,7 +391,7 @@ const CLOSE: f64 = 1e-7;
 
 fn near(found: [f64; 2], expected: [f64; 2]) -> bool {
     let size = 1.0 + expected[0].abs() + expected[1].abs();
-    found.into_iter().zip(expected).all(|(f, e)| (f - e).abs() <= CLOSE * size)
+    found.into_iter().zip(expected).all(|(f, e)| abs_diff_eq!(f, e, epsilon = CLOSE * size))
 }
 
 /// The checker against the definitions: by a lifting, and where the force is one of contact by a dual pair.
@@ -419,7 +420,11 @@ fn forces_by_definition(draw: &Draw, mistake: Mistake) -> Verdict {
     let by_pair = forces.by_pair(draw.target(), &pair, cover.as_ref().ok());
     Exact::scope(|| {
         let Some(known) = known(draw, &certificate, &w0) else { return Verdict::Vacuous };
-        ensure!((mean.square - known.mean_squared).abs() <= CLOSE * (1.0 + known.mean_squared));
+        ensure!(abs_diff_eq!(
+            mean.square,
+            known.mean_squared,
+            epsilon = CLOSE * (1.0 + known.mean_squared)
+        ));
         ensure!(cover.is_ok() == known.cover.is_some());
         let of_w = integrals(draw, &certificate, &w);
         let factors = missed(draw, &certificate, [&w, &w0], &known);

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use approx::abs_diff_eq;
 use proptest::prelude::*;
 use signorini::kernel::{Material, Plane};
 use signorini::linear::factor::Factor;
@@ -55,7 +56,7 @@ fn obstacle(&(center, radius, away, angle, factor): &Seen, turn: f64) -> Verdict
     let plane = Obstacle::Plane { point: center, normal: unit };
     let circle = Obstacle::Circle { center, radius, side };
     let size = 1.0 + away + radius + center[0].abs() + center[1].abs();
-    let near = |a: f64, b: f64| (a - b).abs() <= 1e-13 * size;
+    let near = |a: f64, b: f64| abs_diff_eq!(a, b, epsilon = 1e-13 * size);
     let from_centre = |x: [f64; 2]| (x[0] - center[0]).hypot(x[1] - center[1]);
     for (kind, obstacle) in [plane, circle, round(factor)].into_iter().enumerate() {
         let Ok(seen) = obstacle.closest(x, String::new) else {
@@ -87,7 +88,7 @@ fn places() -> impl Strategy<Value = Seen> {
     let factor = 1.0 - 0.9 * MOST_OFF..1.0 + 0.9 * MOST_OFF;
     ([-2.0_f64..2.0, -2.0_f64..2.0], 0.5_f64..3.0, 0.2_f64..1.8, 0.0_f64..6.25, factor).prop_map(
         |(center, radius, share, angle, factor)| {
-            let share = if (share - 1.0).abs() < 0.05 { 1.2 } else { share };
+            let share = if abs_diff_eq!(share, 1.0, epsilon = 0.05) { 1.2 } else { share };
             (center, radius, share * radius, angle, factor)
         },
     )
@@ -136,7 +137,7 @@ fn on_circle(angles: &[f64], arc: Option<f64>, facets: bool) -> Result<(), &'sta
             } else {
                 point.place
             };
-            if !((p.hypot(q) - 2.0).abs() <= 1e-13) {
+            if !abs_diff_eq!(p.hypot(q), 2.0, epsilon = 1e-13) {
                 return Err("the middle is on the circle");
             }
             if !((point.normal[0] - p / 2.0).hypot(point.normal[1] - q / 2.0) <= 1e-12) {
@@ -187,7 +188,7 @@ fn ellipse(angles: &[f64], facets: bool) -> Verdict {
         let (_, facet) = mesh.length_and_normal(edge);
         let normal = if facets { facet } else { middle.normal };
         ensure!(normal.dot(&along).abs() <= 1e-10 * along.dot(&along).sqrt());
-        ensure!((normal.dot(&normal) - 1.0).abs() <= 1e-14);
+        ensure!(abs_diff_eq!(normal.dot(&normal), 1.0, epsilon = 1e-14));
     }
     Verdict::Holds("always")
 }

@@ -7,6 +7,7 @@
 //! - its springs are those of P0(v)^2 / gamma;
 //! - where nothing that is pressed stops a motion, all displacements up to the next obstacle are solutions, and no others.
 
+use approx::abs_diff_eq;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
@@ -261,7 +262,7 @@ fn springs_on(degree: Degree, scale: f64) -> Result<(), String> {
         let pairs = forces.iter().flatten().zip(v.as_flattened());
         let found: f64 = pairs.map(|(f, v)| f.head() * v).sum();
         let expected = scale * at.springs(&v);
-        if !((found - expected).abs() <= 1e-12 * expected) {
+        if !abs_diff_eq!(found, expected, epsilon = 1e-12 * expected) {
             return Err(format!("{points:?} points: springs {found:e}, expected {expected:e}"));
         }
     }

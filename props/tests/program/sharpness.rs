@@ -10,6 +10,7 @@ use std::f64::consts::PI;
 use std::fmt::Write;
 use std::path::Path;
 
+use approx::abs_diff_eq;
 use faer::{Mat, Side};
 use signorini::contact::Discretization;
 use signorini::io::Case;
@@ -367,7 +368,7 @@ fn is_printed_and_within(share: f64) -> Outcome {
     for row in &rows {
         for (kappa, smallest) in row.eigenvalues {
             let affine = row.limits.smallest_eigenvalue(kappa);
-            let near = (smallest - affine).abs() <= TOLERANCE;
+            let near = abs_diff_eq!(smallest, affine, epsilon = TOLERANCE);
             if !(near && smallest >= 1.0 - share * kappa - TOLERANCE) {
                 return Err(format!("{}: {smallest}, {affine}, kappa = {kappa}", row.name));
             }

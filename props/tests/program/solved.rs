@@ -5,6 +5,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use approx::abs_diff_eq;
 use proptest::prelude::*;
 use signorini::certificates::proof::{Piece, Role};
 use signorini::certificates::{Certificate, Continuous, certify, certify_field};
@@ -468,7 +469,7 @@ pub fn costs(draw: &Draw, share: f64) -> Verdict {
             })
             .sum();
         let expected = share * korns_constant() * h / PI * (square / stiffness).sqrt();
-        ensure!((piece.oscillation - expected).abs() <= 1e-9 * expected + 1e-12);
+        ensure!(abs_diff_eq!(piece.oscillation, expected, epsilon = 1e-9 * expected + 1e-12));
     }
     // z = (1 - l) d(s), l the coordinate of the corner opposite the top, s along rays from it.
     let material = Material::lame(draw.lambda, 1.0, Plane::Strain);
@@ -494,11 +495,13 @@ pub fn costs(draw: &Draw, share: f64) -> Verdict {
         let density = xx * g.m11 + yy * g.m22 + xy * (g.m12 + g.m21);
         square += weight * density * double_area / 2.0;
     }
-    ensure!(
-        (moved.certificate.lift() - share * square.sqrt()).abs() <= 1e-9 * moved.certificate.lift()
-    );
+    ensure!(abs_diff_eq!(
+        moved.certificate.lift(),
+        share * square.sqrt(),
+        epsilon = 1e-9 * moved.certificate.lift()
+    ));
     let together = moved.proof.bound.hypot(moved.certificate.lift());
-    ensure!((moved.bound - together).abs() <= 1e-12 * together);
+    ensure!(abs_diff_eq!(moved.bound, together, epsilon = 1e-12 * together));
     Verdict::Holds("always")
 }
 
@@ -511,6 +514,6 @@ pub fn scaled(draw: &Draw, load: f64) -> Verdict {
         return Verdict::Fails("there are certificates");
     };
     // Both are sums of doubles.
-    ensure!((small.bound - scale * whole.bound).abs() <= 1e-9 * small.bound);
+    ensure!(abs_diff_eq!(small.bound, scale * whole.bound, epsilon = 1e-9 * small.bound));
     Verdict::Holds("always")
 }

@@ -1,6 +1,7 @@
 //! Certificates of two bodies: the bound is above the distance to a solution on far finer meshes, and near it, the true force lies
 //! between its numbers; and what is tampered with is refused.
 
+use approx::abs_diff_eq;
 use signorini::certificates::binding::compare;
 use signorini::certificates::proof::{Edge, Law as EdgeLaw, Role};
 use signorini::certificates::quantities::Name;
@@ -733,11 +734,14 @@ fn the_bound_of_bodies_that_stick_and_slide_is_near_that_of_another_program() {
         let all = [[7, 11], [14, 22]].map(|cells| squares(cells, [1.0, 1.0]));
         let s = proved(&rough(all[1].problem()), &method(Degree::One));
         let of = s.boundaries[0].friction.unwrap();
-        assert!((of.slides / (of.slides + of.sticks) - share).abs() < 0.1, "{bound}: {of:?}");
+        assert!(
+            abs_diff_eq!(of.slides / (of.slides + of.sticks), share, epsilon = 0.1),
+            "{bound}: {of:?}"
+        );
         let found = effectivities(&all, [56, 88], Degree::One, &rough);
         for ([found, _], expected) in found.iter().zip(expected) {
             // A stress that is made triangle by triangle is not the best one.
-            assert!((found - expected).abs() <= 0.05, "{bound}: {found} {expected}");
+            assert!(abs_diff_eq!(*found, expected, epsilon = 0.05), "{bound}: {found} {expected}");
         }
     }
 }

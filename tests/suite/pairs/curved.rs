@@ -1,6 +1,6 @@
 //! Curved boundaries: rings that are pressed into each other, and cylinders; the gap is that between the smooth boundaries.
 
-use approx::{assert_abs_diff_eq, assert_relative_eq};
+use approx::{abs_diff_eq, assert_abs_diff_eq, assert_relative_eq};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use signorini::certificates::{Target, adapt, certify};
@@ -78,7 +78,7 @@ fn rings_press_on_each_other_as_lame_says() {
         let d = discretize(&problem, &method(degree)).unwrap();
         let [found, least, most] = pressures(&d, &s.displacement);
         println!("{degree:?} {edges:?}: mean {found}, pieces {least} to {most}");
-        assert!((found - 1.0).abs() <= mean, "{degree:?}: {found}");
+        assert!(abs_diff_eq!(found, 1.0, epsilon = mean), "{degree:?}: {found}");
         assert!(least >= 1.0 - piece && most <= 1.0 + piece, "{degree:?}: {least} {most}");
     }
 }
@@ -224,8 +224,8 @@ fn cylinders_press_on_each_other_as_hertz_says() {
             .sum();
         let second = (4.0 * 2.0 * moment / force).sqrt() / half;
         println!("degree {degree}: p0 {found}, a {second}, {} steps", s.newton.iterations());
-        assert!((found - 1.0).abs() <= most, "degree {degree}: p0 off by {found}");
-        assert!((second - 1.0).abs() <= width, "degree {degree}: a off by {second}");
+        assert!(abs_diff_eq!(found, 1.0, epsilon = most), "degree {degree}: p0 off by {found}");
+        assert!(abs_diff_eq!(second, 1.0, epsilon = width), "degree {degree}: a off by {second}");
     }
 }
 
@@ -347,9 +347,9 @@ fn cylinders_of_unlike_size_and_stiffness_press_as_hertz_says() {
             2 * s.nodes.len(),
             s.newton.iterations()
         );
-        assert!((middle - 1.0).abs() <= most, "{degree:?}: pressure {middle}");
-        assert!((top - 1.0).abs() <= most, "{degree:?}: peak {top}");
-        assert!((second - 1.0).abs() <= most, "{degree:?}: half width {second}");
+        assert!(abs_diff_eq!(middle, 1.0, epsilon = most), "{degree:?}: pressure {middle}");
+        assert!(abs_diff_eq!(top, 1.0, epsilon = most), "{degree:?}: peak {top}");
+        assert!(abs_diff_eq!(second, 1.0, epsilon = most), "{degree:?}: half width {second}");
     }
 }
 
@@ -500,8 +500,14 @@ fn a_pin_in_a_hole_presses_over_the_angle_that_is_known() {
                 degrees[1],
                 s.newton.iterations()
             );
-            assert!((degrees[0] - degrees[1]).abs() <= 1.0, "{degree:?} {ratio}: {degrees:?}");
-            assert!((found / expected - 1.0).abs() <= 5e-3, "{degree:?} {ratio}: {found}");
+            assert!(
+                abs_diff_eq!(degrees[0], degrees[1], epsilon = 1.0),
+                "{degree:?} {ratio}: {degrees:?}"
+            );
+            assert!(
+                abs_diff_eq!(found / expected, 1.0, epsilon = 5e-3),
+                "{degree:?} {ratio}: {found}"
+            );
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Friction between two bodies: a stiff one is a rough obstacle, the names of the bodies do not matter, what sticks is glued along the
 //! boundary, forces cancel, friction alone holds a body, and Coulomb's law has one solution near.
 
-use approx::{assert_abs_diff_eq, assert_relative_eq};
+use approx::{abs_diff_eq, assert_abs_diff_eq, assert_relative_eq};
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use signorini::contact::Friction;
@@ -168,7 +168,11 @@ fn friction_alone_holds_a_body_on_another_up_to_the_limit_of_sliding() {
             let s = proved(&lying(push, &friction), &method(Degree::One));
             let [x, y] = s.boundaries[0].resultant;
             // On the lower body.
-            assert!((x - 0.6 * push).abs() < 1e-9 && (y + 0.006).abs() < 1e-9, "{push}: {x} {y}");
+            assert!(
+                abs_diff_eq!(x, 0.6 * push, epsilon = 1e-9)
+                    && abs_diff_eq!(y, -0.006, epsilon = 1e-9),
+                "{push}: {x} {y}"
+            );
         }
         for push in [0.00401, 0.01, -0.00401] {
             let error = solve(&lying(push, &friction), &method(Degree::One), &Settings::default());
@@ -305,7 +309,7 @@ fn are_mindlins(of: &[(Degree, [usize; 2], [f64; 2])]) {
         // by half of one of the coarser body at most.
         let edge = 0.4 * 0.09 / (0.6 * cells[1] as f64 / 2.0);
         assert!(
-            (stuck_on - c).abs() <= edge / 2.0 && off[1].abs() <= second_moment,
+            abs_diff_eq!(stuck_on, c, epsilon = edge / 2.0) && off[1].abs() <= second_moment,
             "{degree:?}: {off:?}"
         );
         // By moments c is short by a sixteenth of an edge of the coarser body with P2, by a quarter of one with P1.
@@ -341,7 +345,7 @@ fn below_a_coefficient_there_is_one_solution_for_all_loads() {
         println!("{cells:?}, E2/E1 = {ratio}: {limits:?}");
         for (found, expected) in limits.iter().zip(expected) {
             // Three digits were printed, and the limits are proved to a thousandth.
-            assert!((found / expected - 1.0).abs() <= 0.02, "{limits:?} {expected:?}");
+            assert!(abs_diff_eq!(found / expected, 1.0, epsilon = 0.02), "{limits:?} {expected:?}");
         }
         let most = limits[0].max(limits[1]);
         assert!(isolation(0.99 * most).everywhere && !isolation(1.02 * most).everywhere);
@@ -453,7 +457,7 @@ fn a_square_on_a_rough_obstacle_has_the_limits_of_another_program() {
         let limits = s.enclosure.as_ref().unwrap().isolation.unwrap().limits;
         println!("{n} cells: {limits:?}");
         for (found, expected) in limits.iter().zip(expected) {
-            assert!((found / expected - 1.0).abs() <= 0.02, "{limits:?} {expected:?}");
+            assert!(abs_diff_eq!(found / expected, 1.0, epsilon = 0.02), "{limits:?} {expected:?}");
         }
     }
 }
@@ -528,7 +532,10 @@ fn friction_turns_round_when_the_drag_does() {
         let steps = back_and_forth(&Friction::tresca(move |_| bound), degree);
         let shear: Vec<f64> = steps.iter().map(|s| s.boundaries[0].resultant[0]).collect();
         for (found, sign) in shear.iter().zip([1.0, 1.0, -1.0]) {
-            assert!((found - sign * bound).abs() < 1e-4 * bound, "{degree:?}: {shear:?}");
+            assert!(
+                abs_diff_eq!(*found, sign * bound, epsilon = 1e-4 * bound),
+                "{degree:?}: {shear:?}"
+            );
         }
         let mu = 0.1;
         let steps = back_and_forth(&Friction::Coulomb(mu), degree);
@@ -561,7 +568,7 @@ fn pressed_dragged_and_dragged_back_the_shear_forces_are_those_of_another_progra
         let steps = in_steps(&blocks, press, [0.0, 0.1, 0.0], Degree::One);
         let found: Vec<f64> = steps.iter().map(|s| s.boundaries[0].resultant[0]).collect();
         // Five digits were printed.
-        let near = |found: f64, expected: f64| (found - expected).abs() <= 1e-5;
+        let near = |found: f64, expected: f64| abs_diff_eq!(found, expected, epsilon = 1e-5);
         println!("{found:?}");
         assert!(found.iter().zip(expected).all(|(f, e)| near(*f, e)), "{found:?} {expected:?}");
         // The control: the last state without what was before has the force of the first one.

@@ -99,7 +99,7 @@ fn solved(problem: &Problem, degree: Degree) -> Result<Solution, String> {
 fn same(a: &Solution, of_a: f64, b: &Solution, of_b: f64) -> Result<(), String> {
     for ((name, a), (_, b)) in reported(a, of_a).into_iter().zip(reported(b, of_b)) {
         let size = a.iter().map(|a| a.abs()).fold(0.0, f64::max);
-        let far = |(a, b): (&f64, &f64)| !((a - b).abs() <= 1e-9 * size);
+        let far = |(a, b): (&f64, &f64)| !abs_diff_eq!(a, b, epsilon = 1e-9 * size);
         if a.len() != b.len() || a.iter().zip(&b).any(far) {
             return Err(format!("{name}: {a:?} and {b:?}"));
         }
@@ -156,10 +156,10 @@ fn balanced(problem: &Problem, degree: Degree, within: f64, share: f64) -> Resul
     // By definition: the reactions times the displacements of the supports, the loads times the displacement.
     let work = d.load.as_flattened().iter().zip(solution.displacement.as_flattened());
     let loads: f64 = work.map(|(f, u)| f * u).sum();
-    if !((b.loads - loads).abs() <= 1e-12 * loads.abs()
+    if !(abs_diff_eq!(b.loads, loads, epsilon = 1e-12 * loads.abs())
         && b.imbalance.abs() <= within
-        && (b.strain - b.loads - b.supports - b.contact).abs() <= within * b.strain
-        && (b.strain - solution.quantities.energy).abs() <= 1e-12 * b.strain)
+        && abs_diff_eq!(b.strain - b.loads - b.supports, b.contact, epsilon = within * b.strain)
+        && abs_diff_eq!(b.strain, solution.quantities.energy, epsilon = 1e-12 * b.strain))
     {
         return Err(format!("energies {b:?}, loads {loads:e}"));
     }
@@ -314,7 +314,7 @@ fn translation(degree: Degree, more: f64) -> Result<(), String> {
         let (edge, a) = (&d.contact[i / (degree.number() + 1)], i % (degree.number() + 1));
         let node = edge.geometry.nodes[a];
         let expected = node.direction[0] / 3.0 + node.direction[1] / 9.0 - node.gap;
-        if !((p - expected).abs() <= 1e-15) {
+        if !abs_diff_eq!(p, expected, epsilon = 1e-15) {
             return Err(format!("P is {p}, expected {expected}"));
         }
     }

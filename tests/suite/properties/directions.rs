@@ -99,7 +99,7 @@ fn kappa_on(degree: Degree, factor: fn(f64) -> f64) -> Outcome {
         let size = problem.mesh.diameter(t);
         most = most.max(trace * stiffness * size * length / area);
     }
-    if !((d.coercivity.constant - most).abs() <= 1e-13 * most) {
+    if !abs_diff_eq!(d.coercivity.constant, most, epsilon = 1e-13 * most) {
         return Err(format!("C_h = {}, by definition {most}", d.coercivity.constant));
     }
     for_all(200, field(d.space.nodes().len()), |v| {

@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use approx::abs_diff_eq;
 use proptest::array::uniform2;
 use signorini::exact::Exact;
 use signorini::exact::{Corner, Kind, Singular, Smooth};
@@ -159,7 +160,7 @@ fn promised(more: f64) -> Outcome {
             };
             let expected = p.min(regularity + more - 1.0);
             let found = ladder.promised_rate();
-            if !((found - expected).abs() <= 1e-12) {
+            if !abs_diff_eq!(found, expected, epsilon = 1e-12) {
                 return Err(format!("solution {i} promises {found}, expected {expected}"));
             }
             let mut least = f64::INFINITY;
@@ -179,7 +180,7 @@ fn promised(more: f64) -> Outcome {
     let h = [0.5, 0.3, 0.1, 0.02];
     let errors = h.map(|h: f64| 3.0 * h.powf(1.25));
     let slopes = rates(&h, &errors).into_iter().chain([fitted_slope(&h, &errors)]);
-    if { slopes }.any(|slope| !((slope - 1.25).abs() <= 1e-12)) {
+    if { slopes }.any(|slope| !abs_diff_eq!(slope, 1.25, epsilon = 1e-12)) {
         return Err("a power of h has another slope".to_owned());
     }
     Ok(())
@@ -307,7 +308,7 @@ fn kinks(told: bool) -> Outcome {
                 total += point.weight;
             },
         );
-        let near = |a: f64, b: f64| (a - b).abs() <= 32.0 * f64::EPSILON;
+        let near = |a: f64, b: f64| abs_diff_eq!(a, b, epsilon = 32.0 * f64::EPSILON);
         if !(near(sum, (1.0 - c) * (1.0 - c) / 2.0) && near(total, 1.0)) {
             return Err(format!("a kink at {c}: {sum:e}"));
         }

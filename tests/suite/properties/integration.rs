@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use approx::abs_diff_eq;
 use proptest::array::{uniform2, uniform3, uniform6};
 use signorini::contact::contact_line::Coercivity;
 use signorini::contact::{Discretization, EdgeRule};
@@ -37,13 +38,14 @@ fn refusals(limit: f64) -> Outcome {
             let most = d.coercivity.limit();
             for share in [1e-6, 0.5, 0.999, 1.0 - 1e-9, 1.0 + 1e-9, 1.001, 1.5, 1.999, 10.0] {
                 let found = kappa(degree, problem, Gamma0::Value(share * most))?;
-                let told = found.is_none_or(|kappa| (kappa - share).abs() <= 1e-14 * share);
+                let told =
+                    found.is_none_or(|kappa| abs_diff_eq!(kappa, share, epsilon = 1e-14 * share));
                 if found.is_some() != (share < limit) || !told {
                     return Err(format!("{name}: kappa = {share} is taken as {found:?}"));
                 }
             }
             match kappa(degree, problem, Gamma0::Auto)? {
-                Some(kappa) if (kappa - 0.5).abs() <= 1e-15 => {}
+                Some(kappa) if abs_diff_eq!(kappa, 0.5, epsilon = 1e-15) => {}
                 other => return Err(format!("{name}, auto: kappa = {other:?}")),
             }
         }
@@ -65,7 +67,7 @@ fn kappa_is_one_half(gamma0: Gamma0) -> Outcome {
                 let area = problem.mesh.triangle(t).double_area() / 2.0;
                 let kappa = trace * gamma * stiffness * length / area;
                 // A dozen roundings.
-                if !((kappa - 0.5).abs() <= 1e-14) {
+                if !abs_diff_eq!(kappa, 0.5, epsilon = 1e-14) {
                     return Err(format!("{name}: triangle {t} has kappa = {kappa}"));
                 }
             }
@@ -101,7 +103,7 @@ fn constants_are_own(in_the_check: bool) -> Outcome {
         };
         let expected = lengths.iter().map(of).fold(0.0, f64::max);
         let found = Coercivity::new(&problem, degree).map_err(text)?.constant;
-        if !((found / expected - 1.0).abs() < 1e-14) {
+        if !abs_diff_eq!(found / expected, 1.0, epsilon = 1e-14) {
             return Err(format!("C_h = {found}, expected {expected}"));
         }
     }
@@ -127,7 +129,7 @@ fn is_gauss(n: usize, rule: &[(f64, f64)]) -> Outcome {
     let slack = 8.0 * f64::EPSILON * (n * n) as f64;
     for (k, moment) in moments.iter().enumerate() {
         let expected = if k == 0 { 1.0 } else { 0.0 };
-        if ((moment.head() - expected).abs() <= slack) != (k < 2 * n) {
+        if abs_diff_eq!(moment.head(), expected, epsilon = slack) != (k < 2 * n) {
             return Err(format!("n = {n}: moment {k} is {moment:?}"));
         }
     }
@@ -281,7 +283,7 @@ fn errors_from(
     ] {
         let expected = expected.sqrt();
         // The stress is small beside what cancels in it: the displacement is some 1000, the gradients some 1e4.
-        if !((found - expected).abs() <= 1e-9 * expected) {
+        if !abs_diff_eq!(found, expected, epsilon = 1e-9 * expected) {
             return Err(format!("{name} is {found:e}, by definition {expected:e}"));
         }
     }

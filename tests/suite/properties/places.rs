@@ -192,7 +192,7 @@ fn ordered(times: f64) -> Outcome {
             (found.gamma0(contact_line::Gamma::Uniform(0.3)), 0.3),
         ];
         for (found, expected) in expected {
-            if !((found - times * expected).abs() <= 1e-12 * expected) {
+            if !abs_diff_eq!(found, times * expected, epsilon = 1e-12 * expected) {
                 return Err(format!("{found} and not {expected}"));
             }
         }

@@ -48,7 +48,7 @@ fn stresses_of(d: &Discretization, u: Vec<[f64; 2]>, plane: Option<Plane>) -> Ou
         }
     }
     let strain = (0..solution.stress.len()).map(|t| mean_strain(d, t, &u)).fold(0.0, f64::max);
-    if !((solution.largest_strain - strain).abs() <= 1e-12 * strain) {
+    if !abs_diff_eq!(solution.largest_strain, strain, epsilon = 1e-12 * strain) {
         return Err(format!("largest strain {}, expected {strain}", solution.largest_strain));
     }
     for part in &solution.boundaries {
@@ -79,7 +79,7 @@ fn stresses_of(d: &Discretization, u: Vec<[f64; 2]>, plane: Option<Plane>) -> Ou
                 length * mean / (p.len() - 1) as f64
             })
             .sum();
-        if !((force - part.force).abs() <= 1e-12 * part.force) {
+        if !abs_diff_eq!(force, part.force, epsilon = 1e-12 * part.force) {
             return Err(format!("a recovered force of {force:e}, a force of {:e}", part.force));
         }
     }
@@ -92,7 +92,7 @@ fn stresses_of(d: &Discretization, u: Vec<[f64; 2]>, plane: Option<Plane>) -> Ou
             let pressed = places.filter(|&s| line.degree.value_at(&p, s) > 0.0).count();
             [counted + line.length * pressed as f64 / 1000.0, whole + line.length]
         });
-        if !((counted - part.length).abs() <= 2e-3 * whole) {
+        if !abs_diff_eq!(counted, part.length, epsilon = 2e-3 * whole) {
             return Err(format!("a contact length of {}, counted {counted}", part.length));
         }
     }
@@ -107,7 +107,7 @@ fn stresses_of(d: &Discretization, u: Vec<[f64; 2]>, plane: Option<Plane>) -> Ou
     let EnergyBalance { strain, loads, supports, contact, imbalance, .. } = solution.balance;
     let largest = [strain, loads, supports, contact].map(f64::abs).into_iter().fold(0.0, f64::max);
     let expected = (strain - loads - supports - contact) / largest;
-    if !((imbalance - expected).abs() <= 1e-13) {
+    if !abs_diff_eq!(imbalance, expected, epsilon = 1e-13) {
         return Err(format!("energies out of balance by {imbalance:e}, expected {expected:e}"));
     }
     let squares = u.iter().map(|[x, y]| x * x + y * y);
@@ -147,7 +147,7 @@ fn stretches_are_those_of_contact(
     let whole: f64 = edges().map(|(line, _)| line.length).sum();
     let together: f64 = stretches.iter().map(|[from, to]| to - from).sum();
     let apart = stretches.windows(2).all(|pair| pair[1][0] > pair[0][1] + 1e-12 * whole);
-    if !((together - part.length).abs() <= 1e-12 * whole && apart) {
+    if !(abs_diff_eq!(together, part.length, epsilon = 1e-12 * whole) && apart) {
         return Err(format!("stretches {stretches:?}, {} long", part.length));
     }
     for (line, told) in edges() {
@@ -236,7 +236,11 @@ fn magnitudes_of(d: &Discretization, u: &[[f64; 2]], scale: f64) -> Outcome {
             // Differences of sums that are rounded, each to a roundoff of itself.
             let added = |from: usize, to: usize| {
                 let rounding = 8.0 * f64::EPSILON * sizes[to];
-                (values[to] - values[from]).abs() <= (sizes[to] - sizes[from]) * room + rounding
+                abs_diff_eq!(
+                    values[to],
+                    values[from],
+                    epsilon = (sizes[to] - sizes[from]) * room + rounding
+                )
             };
             let whole =
                 sizes[0] >= scale * values[0].abs() && sizes[0] <= one_by_one[node][c] * room;
@@ -325,7 +329,7 @@ fn recovered_from(d: &Discretization, u: Vec<[f64; 2]>, across: bool) -> Outcome
         for (point, &a) in edge.points.iter().zip(order) {
             let [work, weight] = means[&keys[a]];
             // Sums over places: 1/PLACES^2, and 1/PLACES where P is cut.
-            if !((point.pressure - work / weight).abs() <= 1e-3 * largest) {
+            if !abs_diff_eq!(point.pressure, work / weight, epsilon = 1e-3 * largest) {
                 return Err(format!(
                     "{} is reported, the mean is {}",
                     point.pressure,
@@ -392,7 +396,7 @@ fn means_by_areas(problem: &Problem, u: &[[f64; 2]], plain: bool) -> Outcome {
     let largest = found.as_flattened().iter().fold(0.0, |m: f64, s| m.max(s.abs()));
     for (found, (sum, weight)) in found.iter().zip(&sums) {
         for (found, sum) in found.iter().zip(sum) {
-            if !((found - sum / weight).abs() <= 1e-13 * largest) {
+            if !abs_diff_eq!(*found, sum / weight, epsilon = 1e-13 * largest) {
                 return Err(format!("P1: {found}, not {}", sum / weight));
             }
         }

@@ -5,6 +5,7 @@
 //! the solution, and from pass to pass takes that down by a given factor, or not at all. So what is reported can be compared with
 //! what is true.
 
+use approx::abs_diff_eq;
 use faer::Side;
 use signorini::contact::{Discretization, EdgeRule};
 use signorini::kernel::{Material, Plane};
@@ -127,7 +128,7 @@ fn passes(d: &Discretization, shares: &[f64], settings: &Settings) -> Result<Tol
     let difference: Vec<[f64; 2]> =
         away.iter().zip(&u).map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
     let residual = free_square(d, &d.residual(&outcome.u).values).sqrt() / forces(d);
-    if !((accuracy::reference(d) - forces(d)).abs() <= 1e-12 * forces(d)) {
+    if !abs_diff_eq!(accuracy::reference(d), forces(d), epsilon = 1e-12 * forces(d)) {
         return Err(format!("reference {}, by definition {}", accuracy::reference(d), forces(d)));
     }
     Ok(Told { residual, error: size(&difference) / size(&outcome.u), outcome })
@@ -144,7 +145,7 @@ fn residual_is_told(scale: f64) -> Outcome {
         for share in [1.0, 1e-3, 1e-6] {
             let told = told(degree, problem, &[share])?;
             let reported = scale * told.outcome.residual;
-            if !((reported - told.residual).abs() <= 1e-6 * told.residual) {
+            if !abs_diff_eq!(reported, told.residual, epsilon = 1e-6 * told.residual) {
                 return Err(format!("{reported:e} reported, {:e} by definition", told.residual));
             }
         }
