@@ -76,8 +76,7 @@ stress^2 length, that of the other terms gamma stress^2 length. As printed both 
 - (18) with z = sigma_n(u - v^h) = 1, gamma = 1/4, beta_2 = 1: 1 <= 1/8 + 1/8; with the factor 1/4 <= 1/4.
 
 With it both are proved, and the rest of the proof uses them so: the theorem stands (row 11). In section 2.3 the set of the
-multipliers is printed as L^2(Gamma_C), for the cone of its nonpositive functions. In the line before (23) the last equality is
-h_T <= h.
+multipliers is printed as L^2(Gamma_C), for the cone of its nonpositive functions. Before (23) the last equality is h_T <= h.
 
 ## What is taken from analysis
 
@@ -386,7 +385,7 @@ fn state(claims: &[Claim]) -> String {
          - {} ({}): each of the {} failing paths of the statements in doubles is impossible over all finite doubles; {} of the controls' \
          are possible.\n\
          - {}\n\
-         - The whole solver, which no row sees, is compared with FEniCSx, which shares nothing but the case files: with stored \
+         - The whole solver, of which rows see small meshes only, is compared with FEniCSx, which shares nothing but the case files: with stored \
          results by `cargo test` ([`reference.rs`](tests/suite/reference.rs)), with new ones, and scikit-fem's, by [`.ci/run`](.ci/run).\n",
         claims.iter().filter(|claim| claim.is_about_the_paper()).count(),
         joined(&more),
