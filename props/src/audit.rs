@@ -44,7 +44,7 @@ pub fn audit(id: Option<&str>, name: Option<&str>) -> io::Result<bool> {
 fn run(claim: &Claim) -> Vec<Line> {
     println!("row {}: {}", claim.id, claim.title);
     let one = |check: &Check| {
-        let (engine, name) = (check.engine_name(), check.shown_name());
+        let (engine, name) = (check.engine_name(), check.name);
         print!("  {engine:7} {name} ... ");
         let _ = io::stdout().flush();
         let start = Instant::now();
@@ -96,7 +96,7 @@ fn failures(lines: &[Line]) -> String {
         format!(
             "FAILED in row {row}: {} {}: {why}\n  again: PROPS_SEED={} cargo run -p props -- audit {row} {}\n",
             check.engine_name(),
-            check.shown_name(),
+            check.name,
             draws::seed(),
             check.name
         )
@@ -107,12 +107,12 @@ fn failures(lines: &[Line]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::claim::{Engine, by};
+    use crate::claim::{Engine, Stated, by};
 
     #[test]
     fn what_failed_is_named_last_with_its_reason_and_the_command_that_repeats_it() {
         let line = |name, outcome| {
-            let check = by(Engine::Exact, name, || Err(String::new()));
+            let check = by(Engine::Exact, name, Stated::In("line"), || Err(String::new()));
             Line { row: "10", check, seconds: 0.5, outcome }
         };
         let found = failures(&[

@@ -44,10 +44,29 @@ impl Engine {
 pub enum Subject {
     /// A statement, by the check's engine.
     Statement(Statement),
-    /// A function of its own.
-    Function(fn() -> Outcome),
+    /// A function of its own, and where it says what is compared.
+    Function(fn() -> Outcome, Stated),
     /// A harness.
     Harness(Harness),
+}
+
+/// Where a check by a function of its own is to be read.
+#[derive(Clone, Copy, Debug)]
+pub enum Stated {
+    /// The function that states what is compared, or that plants the mistake of a control: its name, after the name of its module
+    /// and `::` where that is not the module of the row.
+    In(&'static str),
+    /// The same of a control whose mistake stands in the line of the row's list.
+    At(&'static str),
+}
+
+impl Stated {
+    /// The function, with its module.
+    pub fn by(self) -> &'static str {
+        match self {
+            Stated::In(function) | Stated::At(function) => function,
+        }
+    }
 }
 
 /// One piece of evidence.
@@ -81,16 +100,6 @@ impl Check {
         }
     }
 
-    /// Its name in the ledger: a harness says that it is for all numbers only where it was decided for all.
-    pub fn shown_name(&self) -> String {
-        match self.subject {
-            Subject::Harness(harness) if !self.control && self.engine_name() == "draws" => {
-                harness.name_on_draws()
-            }
-            _ => self.name.to_owned(),
-        }
-    }
-
     /// Runs it. One that panics has failed, a control too: where a polynomial that a claim writes down has a power that can't be
     /// kept, nothing is proved.
     ///
@@ -103,7 +112,7 @@ impl Check {
 
     fn run_here(&self) -> Outcome {
         match (self.subject, self.engine, self.control) {
-            (Subject::Function(run), _, _) => run(),
+            (Subject::Function(run, _), _, _) => run(),
             (Subject::Harness(harness), _, _) => harness.run(),
             (Subject::Statement(s), Engine::Proof, false) => proof::prove(&s),
             (Subject::Statement(s), Engine::Proof, true) => proof::refute(&s),
@@ -157,22 +166,43 @@ fn of_statement(statement: Statement, engine: Engine, control: bool) -> Check {
 }
 
 /// A check by a function of its own; where its name begins with `control_`, a negative control.
-pub fn by(engine: Engine, name: &'static str, run: fn() -> Outcome) -> Check {
+pub fn by(engine: Engine, name: &'static str, stated: Stated, run: fn() -> Outcome) -> Check {
     let control = name.starts_with("control_");
-    Check { name, engine, control, items: &[], subject: Subject::Function(run) }
+    Check { name, engine, control, items: &[], subject: Subject::Function(run, stated) }
 }
 
-/// `exact!("name" => outcome)`: a check in exact numbers, on one line of a row's list.
-macro_rules! exact {
-    ($name:literal => $run:expr) => {
-        $crate::claim::by($crate::claim::Engine::Exact, $name, || $run)
+/// `stated!(in FUNCTION)`, `stated!(at FUNCTION)`: a [`Stated`].
+macro_rules! stated {
+    (in $function:path) => {
+        $crate::claim::Stated::In(stringify!($function))
+    };
+    (at $function:path) => {
+        $crate::claim::Stated::At(stringify!($function))
     };
 }
 
-/// `doubles!("name" => outcome)`: a check in doubles.
+/// `exact!("name", in FUNCTION => outcome)`: a check in exact numbers, on one line of a row's list. FUNCTION says what is
+/// compared; `at` for `in` says that the mistake of a control stands in the line itself.
+macro_rules! exact {
+    ($name:literal, $place:tt $function:path => $run:expr) => {
+        $crate::claim::by(
+            $crate::claim::Engine::Exact,
+            $name,
+            stated!($place $function),
+            || $run,
+        )
+    };
+}
+
+/// `doubles!("name", in FUNCTION => outcome)`: a check in doubles.
 macro_rules! doubles {
-    ($name:literal => $run:expr) => {
-        $crate::claim::by($crate::claim::Engine::Doubles, $name, || $run)
+    ($name:literal, $place:tt $function:path => $run:expr) => {
+        $crate::claim::by(
+            $crate::claim::Engine::Doubles,
+            $name,
+            stated!($place $function),
+            || $run,
+        )
     };
 }
 
@@ -232,15 +262,26 @@ pub fn noticed(outcome: Outcome) -> Outcome {
     }
 }
 
+/// How [`Claim::paper`] begins in a row about something that the paper does not have.
+const NOT_IN_THE_PAPER: &str = "Nothing: ";
+
+impl Claim {
+    /// Whether it is about the paper.
+    pub fn is_about_the_paper(&self) -> bool {
+        !self.paper.starts_with(NOT_IN_THE_PAPER)
+    }
+}
+
 /// One row of the ledger.
 pub struct Claim {
     /// Its number in the ledger.
     pub id: &'static str,
     /// A title.
     pub title: &'static str,
-    /// The paper's words.
+    /// The paper's words, where no item has them.
     pub paper: &'static str,
-    /// What this does not establish; and why evidence of fewer than two engines is all there is, where that is so.
+    /// What this does not establish, where no item says so; and why evidence of fewer than two engines is all there is, where that
+    /// is so.
     pub limits: &'static str,
     /// The evidence.
     pub checks: Vec<Check>,
@@ -251,6 +292,8 @@ mod tests {
     use super::*;
     use crate::proof::polynomial::Polynomial;
 
+    const HERE: Stated = Stated::In("too_large_a_power");
+
     /// x^(2^16), as a claim may write it down.
     fn too_large_a_power() -> Outcome {
         let x = Polynomial::variable(0);
@@ -260,10 +303,10 @@ mod tests {
 
     #[test]
     fn a_check_that_panics_has_failed_and_a_control_is_not_passed_by_it() {
-        let check = by(Engine::Exact, "too_large_a_power", too_large_a_power);
+        let check = by(Engine::Exact, "too_large_a_power", HERE, too_large_a_power);
         let why = check.run().unwrap_err();
         assert!(why.contains("it panicked") && why.contains("exponents below 2^16"), "{why}");
-        let control = by(Engine::Exact, "control_too_large_a_power", too_large_a_power);
+        let control = by(Engine::Exact, "control_too_large_a_power", HERE, too_large_a_power);
         assert!(control.control && control.run().is_err());
     }
 }

@@ -203,11 +203,6 @@ mod stand_in {
             format!("{module}::{}", self.name)
         }
 
-        /// Its name for what it is when it runs on random draws: not for all, but for random numbers.
-        pub fn name_on_draws(&self) -> String {
-            self.name.replace("_for_all_", "_for_random_")
-        }
-
         /// Runs it on all values if they are few, else on random draws; or a false twin on its counterexample.
         ///
         /// # Errors

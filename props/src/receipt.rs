@@ -283,23 +283,37 @@ pub fn is_verified(harness: &Harness) -> bool {
     receipt.stands_behind(&harness.path(), changed)
 }
 
-/// What the newest receipt says of these harnesses, as a sentence of `VERIFY.md`.
+/// The files that have changed since the newest receipt of the model checker.
+pub fn changed_files() -> &'static [String] {
+    &newest().1
+}
+
+/// What the newest receipt says of these harnesses, as a sentence of `VERIFY.md`, and what `cargo test` makes of the others.
 pub fn said(harnesses: &[Harness]) -> String {
     let (receipt, changed) = newest();
     let Receipt { table: Table { date, .. }, commit, answers, .. } = receipt;
     let known = |answer| answers.values().filter(|known| *known == answer).count();
-    let standing = harnesses.iter().filter(|harness| is_verified(harness));
-    let since = if changed.is_empty() { "nothing".to_owned() } else { changed.join(", ") };
+    let standing = harnesses.iter().filter(|harness| is_verified(harness)).count();
+    let must_hold: Vec<&Harness> =
+        harnesses.iter().filter(|h| h.counterexample.is_none()).collect();
+    let decided = must_hold.iter().filter(|harness| is_decided(harness)).count();
+    let but = [(FAILED, "not"), (NO_ANSWER, "without an answer")]
+        .map(|(answer, words)| (known(answer), words))
+        .map(
+            |(count, words)| if count == 0 { String::new() } else { format!(", {count} {words}") },
+        );
     format!(
-        "{} harnesses were run at `{}` on {date}: {} as expected, {} not, {} without an answer; changed since: {since}. That \
-         stands behind {} of the {} harnesses of today; the others count as draws.",
-        answers.len(),
+        "Kani ({date}, at `{}`): {} of {} harnesses as expected{}; {} files (last line) have changed since, so it \
+         stands behind {standing} of the {} harnesses of today. Of the {} that are no false twins, `cargo test` runs {decided} on all their cases \
+         and {} on draws.",
         &commit[..commit.len().min(7)],
         known(VERIFIED),
-        known(FAILED),
-        known(NO_ANSWER),
-        standing.count(),
+        answers.len(),
+        but.concat(),
+        changed.len(),
         harnesses.len(),
+        must_hold.len(),
+        must_hold.len() - decided,
     )
 }
 

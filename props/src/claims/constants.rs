@@ -191,11 +191,11 @@ mod row {
         Claim {
             id: "15",
             title: "The constants do not depend on the mesh",
-            paper: "There exists C, independent of the parameter gamma0 and of the mesh size h (Lemma 3.2); C h_T^(-1/2) for |E|^(1/2)/|T|^(1/2) in the proof of (11); C > 0 a constant, independent of h and u (13), (21), (25).",
-            limits: "alpha is not computed, M for isotropic A only, and the constants are not as small as possible.",
+            paper: "C h_T^(-1/2) for |E|^(1/2)/|T|^(1/2) in the proof of (11).",
+            limits: "The constants are not as small as possible.",
             checks: [
                 statements! {
-                    proved two_edges_are_as_long_as_the_third[bx, by, cx, cy, p, q, r] about "(11)"
+                    proved two_edges_are_as_long_as_the_third[bx, by, cx, cy, p, q, r] about "Lemma 3.2", "(11)"
                         hints(|v| vec![v[0] * v[3] - v[1] * v[2]]);
                     proved + tested shape_regularity_bounds_edge_and_diameter_by_the_area[a, b, c, rho, sigma]
                         about "Lemma 3.2", "(11)";

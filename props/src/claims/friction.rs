@@ -287,8 +287,8 @@ mod row {
         Claim {
             id: "27",
             title: "Friction",
-            paper: "(not in the paper, which has sigma_t = 0 on Gamma_C.)",
-            limits: "One point of Gamma_C; integrals over P1 edges are in `props/tests/program/edges.rs`, P2 edges are compared with a fine rule in the tests of the kernel. From the inequalities to existence and uniqueness it is Brouwer's and Banach's theorem (docs/theory.md, 13), which nothing here runs.",
+            paper: "Nothing: it has sigma_t = 0 on Gamma_C.",
+            limits: "Integrals, which are tested (`props/tests/program/edges.rs`; over P2 edges beside a fine rule, in the kernel); existence and uniqueness, by Brouwer's and Banach's theorems (`docs/theory.md`, 13), which nothing here runs.",
             checks: [
                 statements! {
                     proved + tested tresca_is_one_equation[v, sigma, s, gamma]: "sticks", "slides", "neither holds";

@@ -391,10 +391,10 @@ fn attained(constant: f64) -> Outcome {
 /// The checks, for the row of Theorem 3.3.
 pub fn checks() -> [Check; 4] {
     [
-        exact!("a_is_positive_definite_and_the_one_solution_is_found_by_elimination" => found_by_elimination())
+        exact!("a_is_positive_definite_and_the_one_solution_is_found_by_elimination", in one_solution => found_by_elimination())
             .about(&["Theorem 3.3"]),
-        exact!("control_certificate_beyond_the_limit" => refused_beyond_the_limit()),
-        doubles!("the_constant_of_12_is_attained" => attained(1.0)).about(&["(12)"]),
-        doubles!("control_the_constant_of_12_a_fiftieth_too_large" => noticed(attained(1.02))),
+        exact!("control_certificate_beyond_the_limit", in refused_beyond_the_limit => refused_beyond_the_limit()),
+        doubles!("the_constant_of_12_is_attained", in attained => attained(1.0)).about(&["(12)"]),
+        doubles!("control_the_constant_of_12_a_fiftieth_too_large", at attained => noticed(attained(1.02))),
     ]
 }

@@ -354,8 +354,8 @@ pub fn claim() -> Claim {
     Claim {
         id: "17",
         title: "Two deformable bodies",
-        paper: "\"The extension to two elastic bodies in contact can be easily made, at least for small strain models\": (8) with the jump of the displacements and one weighted stress of both sides (theory.md, 12).",
-        limits: "On curved interfaces pieces, directions and gaps are taken as found; the search for partners is tested in the program.",
+        paper: "\"The extension to two elastic bodies in contact can be easily made, at least for small strain models\": (8) with the jump of the displacements and one weighted stress (`docs/theory.md`, 12).",
+        limits: "Pieces, directions and gaps on curved interfaces are taken as found; the search for partners is tested in the program.",
         checks: [
             statements! {
                 proved + tested a_law_is_one_equation[y, sigma, gamma];
@@ -370,10 +370,10 @@ pub fn claim() -> Claim {
                     fails "flux * flux <= (gamma_1 + gamma_2) * squares";
             },
             vec![
-                exact!("forces_and_moments_of_both_sides_cancel_on_meshes_that_do_not_match" => hold(balanced)),
-                exact!("the_stress_that_a_pair_subtracts_is_at_most_kappa_times_the_energy" => hold(bounded)),
-                exact!("control_points_that_do_not_face_each_other" => reject(balanced, Mistake::NotCentral)),
-                exact!("control_pieces_of_a_pair_that_count_three_times" => reject(bounded, Mistake::Thrice)),
+                exact!("forces_and_moments_of_both_sides_cancel_on_meshes_that_do_not_match", in balanced => hold(balanced)),
+                exact!("the_stress_that_a_pair_subtracts_is_at_most_kappa_times_the_energy", in bounded => hold(bounded)),
+                exact!("control_points_that_do_not_face_each_other", at balanced => reject(balanced, Mistake::NotCentral)),
+                exact!("control_pieces_of_a_pair_that_count_three_times", at bounded => reject(bounded, Mistake::Thrice)),
             ],
         ]
         .concat(),

@@ -156,8 +156,8 @@ mod row {
         Claim {
             id: "1",
             title: "The positive part",
-            paper: "a <= [a]+, a[a]+ = [a]+^2, for all a in R.",
-            limits: "The slope at 0 is a choice (0), not a fact about [.]+.",
+            paper: "",
+            limits: "The slope at 0, which is a choice (0).",
             checks: [
                 statements! {
                     proved + tested + in_doubles positive_part_satisfies_4[a]: "positive", "negative", "zero"

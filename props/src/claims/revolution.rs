@@ -254,13 +254,13 @@ pub fn claim() -> Claim {
     Claim {
         id: "18",
         title: "Bodies of revolution",
-        paper: "(not in the paper, whose integrals have the weight 1: here it is r.)",
+        paper: "Nothing: its integrals have the weight 1, here it is r.",
         limits: "Isotropic laws, and so n = (1, 0); the sharp constant of P2, a root, is drawn by its determinant. Others are in `tests/suite/revolution.rs`.",
         checks: statements! {
             proved the_weighted_trace_constant_of_p2_is_at_most_4[a, b, c, ra, rb, rc]
-                about "Lemma 3.2", "(11)" hints(|v| { let [a, b, c, ..] = take::<_, 6>(v); squared([a, b, c]).to_vec() });
+                hints(|v| { let [a, b, c, ..] = take::<_, 6>(v); squared([a, b, c]).to_vec() });
             proved the_weighted_trace_constant_is_attained[r, w];
-            proved the_weighted_trace_identity_of_p1[w, ra, rb, rc] about "Lemma 3.2", "(11)";
+            proved the_weighted_trace_identity_of_p1[w, ra, rb, rc];
             tested a_number_with_a_determinant_that_is_not_negative_is_a_trace_constant[a, b, c, ra, rb, rc, constant];
             proved another_hoop_strain_costs_the_square_of_the_difference[xx, yy, xy, theta, hoop, lambda, mu];
             proved the_least_energy_of_a_strain_is_that_of_three_dimensions[xx, yy, xy, hoop, lambda, mu, m];
@@ -269,7 +269,7 @@ pub fn claim() -> Claim {
                 fails "energy(&material, [xx, yy, zero, hoop]) >= two * (lambda + mu) * size";
             proved the_energy_of_revolution_is_that_of_plane_strain_and_of_the_hoop[xx, yy, xy, hoop, lambda, mu];
             proved the_hoop_strain_does_not_enter_the_constant_of_the_traction[xx, yy, xy, hoop, dx, dy, lambda, mu]
-                about "Lemma 3.2", "(11)" hints(|v| squared_with_a_hoop_strain(take(v)).to_vec());
+                hints(|v| squared_with_a_hoop_strain(take(v)).to_vec());
             refuted control_the_trace_constant_of_the_plane[a, b, c, ra, rb, rc] fails "edge <= S::from(3) * whole";
             refuted control_the_traction_without_the_hoop_strain[xx, yy, hoop, lambda, mu]
                 fails "without * without <= (lambda + two * mu) * energy";

@@ -55,8 +55,8 @@ mod row {
         Claim {
             id: "16",
             title: "The variational inequality",
-            paper: "Find u in K such that a(u, v - u) >= L(v - u) for all v in K, K = {v in V: v_n <= 0 on Gamma_C}.",
-            limits: "Green's formula, by which (3) for all v in K is the inequality at each point, is taken from analysis.",
+            paper: "",
+            limits: "",
             checks: [
                 statements! {
                     proved + tested conditions_2_give_the_sign_of_3[u_n, g, sigma_n, v_n]: "contact", "no force"
@@ -68,7 +68,7 @@ mod row {
                     refuted control_sign_of_3_for_every_v[u_n, g, sigma_n, v_n] fails "s * (v - u) >= zero";
                 },
                 vec![
-                    exact!("inequality_3_holds_at_affine_solutions_on_random_bodies" => inequality_3_at_affine_solutions()).about(&["(3)", "K"]),
+                    exact!("inequality_3_holds_at_affine_solutions_on_random_bodies", in lemma_3_1::inequality_3 => inequality_3_at_affine_solutions()).about(&["(3)", "K"]),
                 ],
             ]
             .concat(),
