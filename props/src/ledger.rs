@@ -57,7 +57,7 @@ certificates of the error, `src/kernel`, their vectors, a reader of JSON; no sol
 [`check_bound.py`](reference/check_bound.py) checks the same certificates with nothing of it, from their documented format.
 
 For this page: the compiler, the standard library, num-rational, num-bigint, proptest, and faer for eigenvalues in doubles. For a
-*proof*: [rationals](props/src/numbers/rational.rs), [polynomials](props/src/proof/polynomial.rs),
+*proof*: [rationals](props/rational/src/lib.rs), [polynomials](props/src/proof/polynomial.rs),
 [symbols](props/src/proof/symbol.rs), the [forking of paths](props/src/proof/explorer.rs) and the
 [checker of certificates](props/src/proof/certificate.rs), not the search for them;
 [`check_certificates.py`](reference/check_certificates.py) checks exported proofs again with fractions alone, and their hashes, not that the polynomials are
