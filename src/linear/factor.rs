@@ -13,6 +13,7 @@ use faer::sparse::linalg::cholesky::supernodal::{
 };
 
 use super::numeric;
+pub(crate) use super::numeric::{LANES, Lanes};
 use crate::linear::matrix::LowerTriangle;
 use crate::memory;
 use crate::solve::SolveError;
@@ -189,6 +190,11 @@ impl Factor {
     pub fn solve(&self, x: &mut [f64]) {
         self.forward(x);
         self.backward(x);
+    }
+
+    /// x <- H^-1 x for several right sides.
+    pub(crate) fn solve_lanes(&self, x: &mut [Lanes]) {
+        numeric::solve_lanes(&self.structure, &self.values, x);
     }
 
     /// x <- L^-1 x
