@@ -13,7 +13,6 @@ use faer::sparse::linalg::cholesky::supernodal::{
 };
 
 use super::numeric;
-pub(crate) use super::numeric::{LANES, Lanes};
 use crate::linear::matrix::LowerTriangle;
 use crate::memory;
 use crate::solve::SolveError;
@@ -192,9 +191,9 @@ impl Factor {
         self.backward(x);
     }
 
-    /// x <- H^-1 x for several right sides.
-    pub(crate) fn solve_lanes(&self, x: &mut [Lanes]) {
-        numeric::solve_lanes(&self.structure, &self.values, x);
+    /// x <- H^-1 x for `count` right sides, x row by row.
+    pub(crate) fn solve_columns(&self, x: &mut [f64], count: usize) {
+        numeric::solve_columns(&self.structure, &self.values, x, count);
     }
 
     /// x <- L^-1 x

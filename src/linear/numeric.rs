@@ -12,7 +12,6 @@ use pulp::{Arch, NullaryFnOnce};
 use super::factor::Structure;
 use crate::linear::cholesky;
 use crate::linear::matrix::LowerTriangle;
-use crate::linear::on_this_processor;
 use crate::solve::SolveError;
 
 /// Multiplications with an addition from which a packed product takes less time than loops.
@@ -56,77 +55,10 @@ pub(super) fn backward(structure: &Structure, values: &[f64], x: &mut [f64]) {
     Arch::new().dispatch(Backward { structure, values, x });
 }
 
-/// The number of right sides that [`solve_lanes`] has.
-pub const LANES: usize = 16;
-
-/// An unknown of each of them.
-pub type Lanes = [f64; LANES];
-
-/// x <- H^-1 x for several right sides, which take L from memory together. Supernodes where all of them are zero are passed over.
-pub(super) fn solve_lanes(structure: &Structure, values: &[f64], x: &mut [Lanes]) {
-    on_this_processor!({
-        forward_lanes(structure, values, x);
-        backward_lanes(structure, values, x);
-    });
-}
-
-#[inline(always)]
-fn forward_lanes(structure: &Structure, values: &[f64], x: &mut [Lanes]) {
-    for s in 0..structure.supernodes() {
-        let [rows, width] = structure.shape(s);
-        let block = &values[structure.start(s)..][..rows * width];
-        let columns = structure.columns(s);
-        let (before, below) = x.split_at_mut(columns.end);
-        let own = &mut before[columns.start..];
-        if own.iter().all(|own| *own == [0.0; LANES]) {
-            continue;
-        }
-        for i in 0..width {
-            let (known, rest) = own.split_at_mut(i);
-            let sum = products(known, |k| block[k * rows + i]);
-            rest[0] = quotient(rest[0], sum, block[i * rows + i]);
-        }
-        for (i, &row) in structure.rows_below(s).iter().enumerate() {
-            let sum = products(own, |k| block[k * rows + width + i]);
-            let x = &mut below[row - columns.end];
-            (0..LANES).for_each(|lane| x[lane] -= sum[lane]);
-        }
-    }
-}
-
-#[inline(always)]
-fn backward_lanes(structure: &Structure, values: &[f64], x: &mut [Lanes]) {
-    let mut known = Vec::new();
-    for s in (0..structure.supernodes()).rev() {
-        let [rows, width] = structure.shape(s);
-        let block = &values[structure.start(s)..][..rows * width];
-        let columns = structure.columns(s);
-        known.clear();
-        known.extend_from_slice(&x[columns.clone()]);
-        known.extend(structure.rows_below(s).iter().map(|&row| x[row]));
-        for (k, column) in block.chunks_exact(rows).enumerate().rev() {
-            let sum = products(&known[k + 1..], |i| column[k + 1 + i]);
-            known[k] = quotient(known[k], sum, column[k]);
-        }
-        x[columns].copy_from_slice(&known[..width]);
-    }
-}
-
-/// The sum of these, each times its factor.
-#[inline(always)]
-fn products(x: &[Lanes], factor: impl Fn(usize) -> f64) -> Lanes {
-    let mut sum = [0.0; LANES];
-    for (k, x) in x.iter().enumerate() {
-        let factor = factor(k);
-        (0..LANES).for_each(|lane| sum[lane] += factor * x[lane]);
-    }
-    sum
-}
-
-/// (x - sum) / pivot
-#[inline(always)]
-fn quotient(x: Lanes, sum: Lanes, pivot: f64) -> Lanes {
-    std::array::from_fn(|lane| (x[lane] - sum[lane]) / pivot)
+/// x <- H^-1 x for `count` right sides, which take L from memory together: x row by row. Supernodes where all of them are zero are passed
+/// over on the way forward.
+pub(super) fn solve_columns(structure: &Structure, values: &[f64], x: &mut [f64], count: usize) {
+    Arch::new().dispatch(Columns { structure, values, x, count });
 }
 
 struct Factorisation<'a, F> {
@@ -395,6 +327,71 @@ impl NullaryFnOnce for Backward<'_> {
             }
         }
     }
+}
+
+struct Columns<'a> {
+    structure: &'a Structure,
+    values: &'a [f64],
+    x: &'a mut [f64],
+    count: usize,
+}
+
+impl NullaryFnOnce for Columns<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Columns { structure, values, x, count } = self;
+        let block = |s: usize| {
+            let [rows, width] = structure.shape(s);
+            (rows, width, &values[structure.start(s)..][..rows * width])
+        };
+        let mut sums = vec![0.0; count];
+        for s in 0..structure.supernodes() {
+            let (rows, width, block) = block(s);
+            let (first, end) = (structure.columns(s).start, structure.columns(s).end);
+            let (before, below) = x.split_at_mut(end * count);
+            let own = &mut before[first * count..];
+            if own.iter().all(|x| *x == 0.0) {
+                continue;
+            }
+            for i in 0..width {
+                let (known, rest) = own.split_at_mut(i * count);
+                sums.fill(0.0);
+                add_columns(&mut sums, known, (count, 0), |k, _| block[k * rows + i]);
+                subtract_and_divide(&mut rest[..count], &sums, block[i * rows + i]);
+            }
+            for (i, row) in (width..).zip(structure.rows_below(s)) {
+                sums.fill(0.0);
+                add_columns(&mut sums, own, (count, 0), |k, _| block[k * rows + i]);
+                let x = &mut below[(row - end) * count..][..count];
+                x.iter_mut().zip(&sums).for_each(|(x, sum)| *x -= sum);
+            }
+        }
+        let mut known = Vec::new();
+        for s in (0..structure.supernodes()).rev() {
+            let (rows, width, block) = block(s);
+            let own = structure.columns(s).start * count..structure.columns(s).end * count;
+            known.clear();
+            known.extend_from_slice(&x[own.clone()]);
+            for &row in structure.rows_below(s) {
+                known.extend_from_slice(&x[row * count..][..count]);
+            }
+            for (k, column) in block.chunks_exact(rows).enumerate().rev() {
+                let (above, below) = known.split_at_mut((k + 1) * count);
+                sums.fill(0.0);
+                add_columns(&mut sums, below, (count, 0), |i, _| column[k + 1 + i]);
+                subtract_and_divide(&mut above[k * count..], &sums, column[k]);
+            }
+            x[own].copy_from_slice(&known[..width * count]);
+        }
+    }
+}
+
+/// x <- (x - sums) / pivot
+#[inline(always)]
+fn subtract_and_divide(x: &mut [f64], sums: &[f64], pivot: f64) {
+    x.iter_mut().zip(sums).for_each(|(x, sum)| *x = (*x - sum) / pivot);
 }
 
 /// The sum of the products of two lists, in eight sums that a processor adds at once.

@@ -2,12 +2,10 @@
 //! compliance (docs/theory.md, 13.6). A is assembled in balls. Its products are double-doubles, the sums of the tails doubles; what
 //! they are off by has bounds that take a product with |z| (docs/a-posteriori.md, 7.5).
 
-use std::array::from_fn;
-
 use super::balls::root;
 use crate::kernel::DoubleDouble;
 use crate::kernel::ball::{PreciseBall, up};
-use crate::linear::factor::{Factor, LANES, Lanes};
+use crate::linear::factor::Factor;
 use crate::linear::matrix::LowerTriangle;
 use crate::linear::on_this_processor;
 
@@ -17,13 +15,8 @@ const MOST_CORRECTIONS: usize = 8;
 /// The entries of a functional that are not zero, each with its unknown.
 pub(super) type Functional = Vec<(usize, PreciseBall)>;
 
-/// An unknown of each column.
-type Fine = [DoubleDouble; LANES];
-
-/// The value of a functional at a column.
-pub(super) fn value(of: &Functional, z: &[Fine], lane: usize) -> PreciseBall {
-    of.iter().fold(PreciseBall::from(0), |sum, &(k, b)| sum + b * PreciseBall::point(z[k][lane]))
-}
+/// The number of columns that are best solved at once: what they have of a vector is in the caches of the processor.
+pub(super) const AT_ONCE: usize = 16;
 
 /// A, with |t|_A* <= the sum of `crude` times |t_i|.
 pub(super) struct Enclosed<'a> {
@@ -56,70 +49,88 @@ impl<'a> Enclosed<'a> {
         Enclosed { middle: a, crude, of_factor, rounding, underflow }
     }
 
-    /// Columns z near A^-1 b for up to [`LANES`] functionals b, and bounds of |b - A z|_A*, which are `share` of |b|_A* at most, or as small as
-    /// they get; what is no number is no bound.
-    pub(super) fn columns(
-        &self,
-        factor: &Factor,
-        all: &[Functional],
-        share: f64,
-    ) -> (Vec<Fine>, Lanes) {
-        let mut z = vec![[DoubleDouble::from(0); LANES]; self.crude.len()];
-        let mut left = vec![[[0.0; LANES]; 2]; z.len()];
-        let mut off = [0.0; LANES];
-        for (lane, functional) in all.iter().enumerate() {
+    /// Columns z near A^-1 b for functionals b, and bounds of |b - A z|_A*, which are `share` of |b|_A* at most, or as small as they get;
+    /// what is no number is no bound.
+    pub(super) fn columns(&self, factor: &Factor, all: &[Functional], share: f64) -> Columns {
+        let (count, n) = (all.len(), self.crude.len());
+        let mut z = Columns { z: vec![DoubleDouble::from(0); n * count], rests: Vec::new() };
+        let mut left = Left { heads: vec![0.0; n * count], tails: vec![0.0; n * count] };
+        let mut off = vec![0.0; count];
+        for (column, functional) in all.iter().enumerate() {
             for &(k, b) in functional {
-                let middle = b.centre();
-                (left[k][0][lane], left[k][1][lane]) = (middle.head(), middle.tail());
-                off[lane] += self.crude[k] * b.radius() * (1.0 + 1e-9) + f64::MIN_POSITIVE;
+                let (at, middle) = (k * count + column, b.centre());
+                (left.heads[at], left.tails[at]) = (middle.head(), middle.tail());
+                off[column] += self.crude[k] * b.radius() * (1.0 + 1e-9) + f64::MIN_POSITIVE;
             }
         }
-        let mut size = self.sizes(&left);
-        let mut rest = [f64::INFINITY; LANES];
-        let mut goes_on: [bool; LANES] = from_fn(|lane| lane < all.len());
+        let mut size = self.sizes(&left, count);
+        z.rests = vec![f64::INFINITY; count];
+        let mut goes_on = vec![true; count];
         // Solves, and corrects by the residual as long as that leads on.
         for _ in 0..MOST_CORRECTIONS {
-            let head = |[head, _]: &[Lanes; 2]| -> Lanes {
-                from_fn(|lane| if goes_on[lane] { head[lane] } else { 0.0 })
-            };
-            let mut c: Vec<Lanes> = left.iter().map(head).collect();
-            factor.solve_lanes(&mut c);
-            on_this_processor!(subtract_product(&self.middle, &c, &mut left));
-            let mut moved = [0.0; LANES];
-            for ((z, c), &by) in z.iter_mut().zip(&c).zip(&self.of_factor) {
-                for lane in 0..LANES {
-                    z[lane] = z[lane] + DoubleDouble::sum(c[lane], 0.0);
-                    moved[lane] += by * (c[lane].abs() + z[lane].head().abs());
+            let mut c = left.heads.clone();
+            for c in c.chunks_exact_mut(count) {
+                c.iter_mut().zip(&goes_on).filter(|(_, on)| !**on).for_each(|(c, _)| *c = 0.0);
+            }
+            factor.solve_columns(&mut c, count);
+            left.subtract_product(&self.middle, &c, count);
+            let mut moved = vec![0.0; count];
+            let rows = z.z.chunks_exact_mut(count).zip(c.chunks_exact(count));
+            for ((z, c), by) in rows.zip(&self.of_factor) {
+                for ((z, c), moved) in z.iter_mut().zip(c).zip(&mut moved) {
+                    *z = *z + DoubleDouble::sum(*c, 0.0);
+                    *moved += by * (c.abs() + z.head().abs());
                 }
             }
-            let next_size = self.sizes(&left);
-            let c_is_asked = goes_on;
-            for lane in (0..all.len()).filter(|&lane| c_is_asked[lane]) {
-                let more = self.rounding * size[lane] + moved[lane] * (1.0 + 1e-9);
-                off[lane] = up(off[lane] + up(more + self.underflow));
-                let next = up(next_size[lane] + off[lane]);
-                let enough = share * root(value(&all[lane], &z, lane));
-                goes_on[lane] = next < rest[lane] / 2.0 && !(next <= enough);
-                rest[lane] = next;
+            let next_size = self.sizes(&left, count);
+            for column in 0..count {
+                if goes_on[column] {
+                    let more = self.rounding * size[column] + moved[column] * (1.0 + 1e-9);
+                    off[column] = up(off[column] + up(more + self.underflow));
+                    let next = up(next_size[column] + off[column]);
+                    let enough = share * root(z.value(column, &all[column]));
+                    goes_on[column] = next < z.rests[column] / 2.0 && !(next <= enough);
+                    z.rests[column] = next;
+                }
             }
             if !goes_on.contains(&true) {
                 break;
             }
             size = next_size;
         }
-        (z, rest)
+        z
     }
 
     /// |t|_A*, at most.
-    fn sizes(&self, t: &[[Lanes; 2]]) -> Lanes {
-        let mut sizes = [0.0; LANES];
-        for ([head, tail], crude) in t.iter().zip(self.crude) {
-            for lane in 0..LANES {
-                sizes[lane] += crude * (head[lane].abs() + tail[lane].abs());
+    fn sizes(&self, t: &Left, count: usize) -> Vec<f64> {
+        let mut sizes = vec![0.0; count];
+        let rows = t.heads.chunks_exact(count).zip(t.tails.chunks_exact(count));
+        for ((heads, tails), crude) in rows.zip(self.crude) {
+            for ((size, head), tail) in sizes.iter_mut().zip(heads).zip(tails) {
+                *size += crude * (head.abs() + tail.abs());
             }
         }
-        let rounding = 1.0 + f64::EPSILON * (t.len() + 16) as f64;
-        sizes.map(|size| size * rounding + f64::MIN_POSITIVE * t.len() as f64)
+        let n = self.crude.len();
+        let rounding = 1.0 + f64::EPSILON * (n + 16) as f64;
+        sizes.iter_mut().for_each(|size| *size = *size * rounding + f64::MIN_POSITIVE * n as f64);
+        sizes
+    }
+}
+
+/// Columns, row by row.
+pub(super) struct Columns {
+    z: Vec<DoubleDouble>,
+    /// A bound of what is left of each functional.
+    pub(super) rests: Vec<f64>,
+}
+
+impl Columns {
+    /// The value of a functional at a column.
+    pub(super) fn value(&self, column: usize, of: &Functional) -> PreciseBall {
+        let count = self.rests.len();
+        of.iter().fold(PreciseBall::from(0), |sum, &(k, b)| {
+            sum + b * PreciseBall::point(self.z[k * count + column])
+        })
     }
 }
 
@@ -136,36 +147,47 @@ fn each_entry(a: &LowerTriangle<PreciseBall>, mut f: impl FnMut(usize, usize, Pr
     }
 }
 
-/// left <- left - A c, heads and tails.
-#[inline(always)]
-fn subtract_product(a: &LowerTriangle<PreciseBall>, c: &[Lanes], left: &mut [[Lanes; 2]]) {
-    for (j, ends) in a.starts.windows(2).enumerate() {
-        let mut own = left[j];
-        for k in ends[0]..ends[1] {
-            let (i, entry) = (a.rows[k], a.values[k].centre());
-            subtract(&mut own, entry, &c[i]);
-            if i != j {
-                subtract(&mut left[i], entry, &c[j]);
-            }
-        }
-        left[j] = own;
-    }
-    for [head, tail] in left {
-        for lane in 0..LANES {
-            let sum = DoubleDouble::sum(head[lane], tail[lane]);
-            (head[lane], tail[lane]) = (sum.head(), sum.tail());
-        }
+/// What is left of functionals, row by row: the sums of these.
+struct Left {
+    heads: Vec<f64>,
+    tails: Vec<f64>,
+}
+
+impl Left {
+    /// Subtracts A c for `count` columns.
+    fn subtract_product(&mut self, a: &LowerTriangle<PreciseBall>, c: &[f64], count: usize) {
+        on_this_processor!(subtract_product(a, c, self, count));
     }
 }
 
 #[inline(always)]
-fn subtract([head, tail]: &mut [Lanes; 2], a: DoubleDouble, c: &Lanes) {
+fn subtract_product(a: &LowerTriangle<PreciseBall>, c: &[f64], left: &mut Left, count: usize) {
+    let row = |i: usize| i * count..(i + 1) * count;
+    let Left { heads, tails } = left;
+    for (j, ends) in a.starts.windows(2).enumerate() {
+        for k in ends[0]..ends[1] {
+            let (i, entry) = (a.rows[k], a.values[k].centre());
+            subtract(&mut heads[row(i)], &mut tails[row(i)], entry, &c[row(j)]);
+            if i != j {
+                subtract(&mut heads[row(j)], &mut tails[row(j)], entry, &c[row(i)]);
+            }
+        }
+    }
+    for (head, tail) in heads.iter_mut().zip(tails) {
+        let sum = DoubleDouble::sum(*head, *tail);
+        (*head, *tail) = (sum.head(), sum.tail());
+    }
+}
+
+/// Subtracts a c: sums of heads and products are exact, those of the rest are rounded.
+#[inline(always)]
+fn subtract(heads: &mut [f64], tails: &mut [f64], a: DoubleDouble, c: &[f64]) {
     let (a_head, a_tail) = (a.head(), a.tail());
-    for lane in 0..LANES {
-        let product = a_head * c[lane];
-        let of_product = a_tail.mul_add(c[lane], a_head.mul_add(c[lane], -product));
-        let sum = DoubleDouble::sum(head[lane], -product);
-        head[lane] = sum.head();
-        tail[lane] += sum.tail() - of_product;
+    for ((head, tail), c) in heads.iter_mut().zip(tails).zip(c) {
+        let product = a_head * c;
+        let of_product = a_tail.mul_add(*c, a_head.mul_add(*c, -product));
+        let sum = DoubleDouble::sum(*head, -product);
+        *head = sum.head();
+        *tail += sum.tail() - of_product;
     }
 }

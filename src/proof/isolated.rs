@@ -17,14 +17,14 @@ use nalgebra::DMatrix;
 
 use super::Unproved;
 use super::balls::{Lines, field, free, root};
-use super::columns::{Enclosed, Functional, value};
+use super::columns::{AT_ONCE, Enclosed, Functional};
 use super::pressed::{EdgePiece, Pressed, Row};
 use crate::contact::law::{EdgeRule, Law};
 use crate::contact::{Discretization, Piece};
 use crate::kernel::Response;
 use crate::kernel::ball::{PreciseBall, larger, up};
 use crate::linear::dense::norm;
-use crate::linear::factor::{Factor, LANES};
+use crate::linear::factor::Factor;
 use crate::linear::system::System;
 use crate::model::Degree;
 use crate::model::law::Bound;
@@ -113,16 +113,17 @@ impl Body<'_, '_, '_> {
         let mut g = Mat::zeros(count, count);
         let mut radii: Mat<f64> = Mat::zeros(count, count);
         let (mut sizes, mut rests) = (vec![0.0; count], vec![0.0; count]);
-        for (first, block) in (0..count).step_by(LANES).zip(rows.chunks(LANES)) {
-            let (z, rest) = matrix.columns(self.factor, block, share);
-            for (lane, j) in (first..count).take(LANES).enumerate() {
-                if !rest[lane].is_finite() {
+        for (first, block) in (0..count).step_by(AT_ONCE).zip(rows.chunks(AT_ONCE)) {
+            let z = matrix.columns(self.factor, block, share);
+            for (column, own) in block.iter().enumerate() {
+                let (j, rest) = (first + column, z.rests[column]);
+                if !rest.is_finite() {
                     return Err(Unproved::OutOfRange);
                 }
-                rests[j] = rest[lane];
-                sizes[j] = up(rest[lane] + root(value(&rows[j], &z, lane)));
+                rests[j] = rest;
+                sizes[j] = up(rest + root(z.value(column, own)));
                 for (i, row) in rows.iter().enumerate() {
-                    let entry = value(row, &z, lane);
+                    let entry = z.value(column, row);
                     g[(i, j)] = entry.head();
                     radii[(i, j)] = up(entry.radius() + (entry.head() * f64::EPSILON).abs());
                 }
