@@ -509,6 +509,31 @@ mod tests {
     }
 
     #[test]
+    fn columns_that_are_solved_together_are_those_that_are_solved_one_by_one() {
+        for (degree, n) in [(Degree::One, 5), (Degree::One, 48), (Degree::Two, 24)] {
+            with_system(degree, n, |system| {
+                let factor = Factor::with(&system.structure, &system.matrix).unwrap();
+                let (n, count) = (system.numbering.count, 3);
+                // The second one has a single force, far up in the elimination tree.
+                let of = |i: usize| [(1.7 * i as f64).cos(), f64::from(u8::from(i == n - 1)), 1.0];
+                let mut together: Vec<f64> = (0..n).flat_map(of).collect();
+                factor.solve_columns(&mut together, count);
+                for k in 0..count {
+                    let mut alone: Vec<f64> = (0..n).map(|i| of(i)[k]).collect();
+                    factor.solve(&mut alone);
+                    let off = |column: usize| -> f64 {
+                        let pairs = alone.iter().zip(together[column..].iter().step_by(count));
+                        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+                    };
+                    let size = alone.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+                    assert!(off(k) <= 1e-11 * size);
+                    assert!(off((k + 1) % count) > 1e-2 * size, "control");
+                }
+            });
+        }
+    }
+
+    #[test]
     fn where_some_columns_change_the_factor_is_to_the_last_bit_what_a_new_one_is() {
         for (degree, n) in [(Degree::One, 5), (Degree::One, 48), (Degree::Two, 24)] {
             with_system(degree, n, |system| {

@@ -191,3 +191,117 @@ fn subtract(heads: &mut [f64], tails: &mut [f64], a: DoubleDouble, c: &[f64]) {
         *tail += sum.tail() - of_product;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::contact::{Discretization, EdgeRule, residual};
+    use crate::kernel::{Material, Plane};
+    use crate::linear::system::System;
+    use crate::model::{Condition, Degree, Diagonal, Problem, Rectangle};
+    use crate::proof::balls::{Lines, field, free};
+
+    fn with_system(degree: Degree, f: impl FnOnce(&System, &Lines)) {
+        let square = Rectangle { width: 1.0, height: 1.0, nx: 4, ny: 3, diagonal: Diagonal::Right };
+        let problem = Problem::of(square.mesh().unwrap(), Material::lame(1.0, 1.0, Plane::Strain))
+            .with("top", Condition::clamped())
+            .with("bottom", Condition::contact(|_| 0.0));
+        let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, EdgeRule::Exact);
+        let d = d.unwrap();
+        f(&System::new(&d).unwrap(), &Lines::new(&d));
+    }
+
+    /// Springs, of which no two on a piece are alike.
+    fn springs(lines: &Lines, times: f64) -> Vec<DMatrix<PreciseBall>> {
+        let entry = |i: usize, j: usize| PreciseBall::from(times / (1 + i + j) as f64);
+        let of = |count: usize| DMatrix::from_fn(count, count, entry);
+        lines.iter().map(|piece| of(piece.p0.len())).collect()
+    }
+
+    fn times(a: &LowerTriangle<PreciseBall>, z: &[PreciseBall]) -> Vec<PreciseBall> {
+        let mut product = vec![PreciseBall::from(0); z.len()];
+        each_entry(a, |i, j, a| product[i] += a * z[j]);
+        product
+    }
+
+    #[test]
+    fn the_matrix_in_balls_is_that_of_the_form_with_its_springs() {
+        for degree in [Degree::One, Degree::Two] {
+            with_system(degree, |system, lines| {
+                let number = |i: usize| PreciseBall::from((1.7 * i as f64).sin());
+                let z: Vec<PreciseBall> = (0..system.numbering.count).map(number).collect();
+                let v = field(system, |number, _, _| z[number], |_, _| 0.0);
+                let mut forces = vec![[PreciseBall::from(0); 2]; v.len()];
+                let (space, material) = (&system.d.space, &system.d.problem.material);
+                residual::add_internal_forces(space, material, &v, &mut forces);
+                for (piece, h) in lines.iter().zip(springs(lines, 2.0)) {
+                    piece.add_stresses(&v, &mut forces);
+                    let p0 = piece.p0(&v);
+                    let row = |i: usize| {
+                        p0.iter()
+                            .enumerate()
+                            .fold(PreciseBall::from(0), |sum, (j, &p)| sum + h[(i, j)] * p)
+                    };
+                    piece.add_contact(&(0..p0.len()).map(row).collect::<Vec<_>>(), &mut forces);
+                }
+                let by_form = free(system, &forces);
+                let differ = |stiff: f64| {
+                    let a = system.tangent_in_balls(lines.iter(), &springs(lines, stiff)).unwrap();
+                    let pairs = times(&a, &z).into_iter().zip(&by_form);
+                    let off = pairs.map(|(a, &b)| (a - b).least_magnitude());
+                    off.fold(0.0, f64::max)
+                };
+                assert_eq!(differ(2.0), 0.0);
+                assert!(differ(2.0 + 1e-12) > 1e-16, "control");
+            });
+        }
+    }
+
+    #[test]
+    fn what_is_left_of_a_functional_is_no_more_for_any_matrix_in_the_balls_and_is_attained() {
+        with_system(Degree::Two, |system, lines| {
+            let n = system.numbering.count;
+            let factor = Factor::with(&system.structure, &system.matrix).unwrap();
+            let mut a = system.tangent_in_balls(lines.iter(), &springs(lines, 0.0)).unwrap();
+            let exact = a.clone();
+            let crude: Vec<f64> = (0..n).map(|i| 1.0 + (i % 7) as f64).collect();
+            let one = PreciseBall::from(1);
+            let all: Vec<Functional> =
+                vec![vec![(n / 3, one)], vec![(0, one), (n - 1, one / PreciseBall::from(3))]];
+            let left = |a: &LowerTriangle<PreciseBall>, z: &Columns, column: usize| -> f64 {
+                let at = |k: usize| PreciseBall::point(z.z[k * all.len() + column]);
+                let mut left = times(a, &(0..n).map(at).collect::<Vec<_>>());
+                all[column].iter().for_each(|&(k, b)| left[k] = left[k] - b);
+                left.iter().zip(&crude).map(|(t, c)| c * t.least_magnitude()).sum()
+            };
+            // Corrected as far as that leads on.
+            let z = Enclosed::new(a.clone(), &crude).columns(&factor, &all, 0.0);
+            for column in 0..all.len() {
+                let (left, rest) = (left(&exact, &z, column), z.rests[column]);
+                assert!(left <= rest && rest < 1e-20, "{left} {rest}");
+            }
+            let by = |a: PreciseBall| 1e-6 * a.head().abs();
+            a.values.iter_mut().for_each(|a| *a = a.widened(by(*a)));
+            let z = Enclosed::new(a, &crude).columns(&factor, &all, 1.0);
+            for column in 0..all.len() {
+                // All that the entries of a matrix can be off adds up.
+                let farthest = |share: f64| {
+                    let mut other = exact.clone();
+                    for (j, ends) in exact.starts.windows(2).enumerate() {
+                        for k in ends[0]..ends[1] {
+                            let sign = |k: usize| z.z[k * all.len() + column].head().signum();
+                            let off = share * sign(exact.rows[k]) * sign(j) * by(exact.values[k]);
+                            other.values[k] += PreciseBall::from(off);
+                        }
+                    }
+                    left(&other, &z, column)
+                };
+                let rest = z.rests[column];
+                assert!(farthest(0.99) <= rest, "{} {rest}", farthest(0.99));
+                assert!(farthest(2.1) > rest, "control: {} {rest}", farthest(2.1));
+            }
+        });
+    }
+}
