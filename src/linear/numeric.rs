@@ -5,7 +5,9 @@
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::linalg::triangular_solve::{
+    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
+};
 use faer::{Accum, MatMut, MatRef, Par};
 use pulp::{Arch, NullaryFnOnce};
 
@@ -55,10 +57,45 @@ pub(super) fn backward(structure: &Structure, values: &[f64], x: &mut [f64]) {
     Arch::new().dispatch(Backward { structure, values, x });
 }
 
-/// x <- H^-1 x for `count` right sides, which take L from memory together: x row by row. Supernodes where all of them are zero are passed
-/// over on the way forward.
+/// x <- H^-1 x for `count` right sides, which take L from memory together: x row by row. On the way forward supernodes where all of them are
+/// zero are passed over.
 pub(super) fn solve_columns(structure: &Structure, values: &[f64], x: &mut [f64], count: usize) {
-    Arch::new().dispatch(Columns { structure, values, x, count });
+    let block = |s: usize| {
+        let [rows, width] = structure.shape(s);
+        let values = &values[structure.start(s)..][..rows * width];
+        let block = MatRef::from_column_major_slice(values, rows, width);
+        let (first, end) = (structure.columns(s).start, structure.columns(s).end);
+        (block.split_at_row(width), first * count..end * count)
+    };
+    let mut known = Vec::new();
+    for s in 0..structure.supernodes() {
+        let ((diagonal, below), own) = block(s);
+        if x[own.clone()].iter().all(|x| *x == 0.0) {
+            continue;
+        }
+        let own = &mut x[own];
+        let mut own = MatMut::from_row_major_slice_mut(own, diagonal.ncols(), count);
+        solve_lower_triangular_in_place(diagonal, own.as_mut(), Par::Seq);
+        known.resize((below.nrows() * count).max(known.len()), 0.0);
+        let sums = &mut known[..below.nrows() * count];
+        let product = MatMut::from_row_major_slice_mut(&mut *sums, below.nrows(), count);
+        matmul(product, Accum::Replace, below, own.as_ref(), 1.0, Par::Seq);
+        for (sums, &row) in sums.chunks_exact(count).zip(structure.rows_below(s)) {
+            let x = &mut x[row * count..][..count];
+            x.iter_mut().zip(sums).for_each(|(x, sum)| *x -= sum);
+        }
+    }
+    for s in (0..structure.supernodes()).rev() {
+        let ((diagonal, below), own) = block(s);
+        known.clear();
+        for &row in structure.rows_below(s) {
+            known.extend_from_slice(&x[row * count..][..count]);
+        }
+        let known = MatRef::from_row_major_slice(&known, below.nrows(), count);
+        let mut own = MatMut::from_row_major_slice_mut(&mut x[own], diagonal.ncols(), count);
+        matmul(own.as_mut(), Accum::Add, below.transpose(), known, -1.0, Par::Seq);
+        solve_upper_triangular_in_place(diagonal.transpose(), own, Par::Seq);
+    }
 }
 
 struct Factorisation<'a, F> {
@@ -327,71 +364,6 @@ impl NullaryFnOnce for Backward<'_> {
             }
         }
     }
-}
-
-struct Columns<'a> {
-    structure: &'a Structure,
-    values: &'a [f64],
-    x: &'a mut [f64],
-    count: usize,
-}
-
-impl NullaryFnOnce for Columns<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Columns { structure, values, x, count } = self;
-        let block = |s: usize| {
-            let [rows, width] = structure.shape(s);
-            (rows, width, &values[structure.start(s)..][..rows * width])
-        };
-        let mut sums = vec![0.0; count];
-        for s in 0..structure.supernodes() {
-            let (rows, width, block) = block(s);
-            let (first, end) = (structure.columns(s).start, structure.columns(s).end);
-            let (before, below) = x.split_at_mut(end * count);
-            let own = &mut before[first * count..];
-            if own.iter().all(|x| *x == 0.0) {
-                continue;
-            }
-            for i in 0..width {
-                let (known, rest) = own.split_at_mut(i * count);
-                sums.fill(0.0);
-                add_columns(&mut sums, known, (count, 0), |k, _| block[k * rows + i]);
-                subtract_and_divide(&mut rest[..count], &sums, block[i * rows + i]);
-            }
-            for (i, row) in (width..).zip(structure.rows_below(s)) {
-                sums.fill(0.0);
-                add_columns(&mut sums, own, (count, 0), |k, _| block[k * rows + i]);
-                let x = &mut below[(row - end) * count..][..count];
-                x.iter_mut().zip(&sums).for_each(|(x, sum)| *x -= sum);
-            }
-        }
-        let mut known = Vec::new();
-        for s in (0..structure.supernodes()).rev() {
-            let (rows, width, block) = block(s);
-            let own = structure.columns(s).start * count..structure.columns(s).end * count;
-            known.clear();
-            known.extend_from_slice(&x[own.clone()]);
-            for &row in structure.rows_below(s) {
-                known.extend_from_slice(&x[row * count..][..count]);
-            }
-            for (k, column) in block.chunks_exact(rows).enumerate().rev() {
-                let (above, below) = known.split_at_mut((k + 1) * count);
-                sums.fill(0.0);
-                add_columns(&mut sums, below, (count, 0), |i, _| column[k + 1 + i]);
-                subtract_and_divide(&mut above[k * count..], &sums, column[k]);
-            }
-            x[own].copy_from_slice(&known[..width * count]);
-        }
-    }
-}
-
-/// x <- (x - sums) / pivot
-#[inline(always)]
-fn subtract_and_divide(x: &mut [f64], sums: &[f64], pivot: f64) {
-    x.iter_mut().zip(sums).for_each(|(x, sum)| *x = (*x - sum) / pivot);
 }
 
 /// The sum of the products of two lists, in eight sums that a processor adds at once.

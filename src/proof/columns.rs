@@ -16,7 +16,7 @@ const MOST_CORRECTIONS: usize = 8;
 pub(super) type Functional = Vec<(usize, PreciseBall)>;
 
 /// The number of columns that are best solved at once: what they have of a vector is in the caches of the processor.
-pub(super) const AT_ONCE: usize = 16;
+pub(super) const AT_ONCE: usize = 32;
 
 /// A, with |t|_A* <= the sum of `crude` times |t_i|.
 pub(super) struct Enclosed<'a> {
@@ -78,7 +78,7 @@ impl<'a> Enclosed<'a> {
             let rows = z.z.chunks_exact_mut(count).zip(c.chunks_exact(count));
             for ((z, c), by) in rows.zip(&self.of_factor) {
                 for ((z, c), moved) in z.iter_mut().zip(c).zip(&mut moved) {
-                    *z = *z + DoubleDouble::sum(*c, 0.0);
+                    *z = *z + DoubleDouble::from(*c);
                     *moved += by * (c.abs() + z.head().abs());
                 }
             }

@@ -26,6 +26,7 @@ use crate::kernel::ball::{PreciseBall, larger, up};
 use crate::linear::dense::norm;
 use crate::linear::factor::Factor;
 use crate::linear::system::System;
+use crate::memory;
 use crate::model::Degree;
 use crate::model::law::Bound;
 use crate::solve::coulomb::coefficient;
@@ -107,6 +108,9 @@ impl Body<'_, '_, '_> {
                 rows.push(row.filter(|(_, b)| b.magnitude() != 0.0).collect());
             }
         }
+        let (entries, n) = (system.matrix.values.len(), system.numbering.count);
+        let bytes = size_of::<PreciseBall>() * entries + 64 * n * AT_ONCE.min(count);
+        memory::check(bytes as u64).map_err(|_| Unproved::OutOfMemory)?;
         let springs = self.pressed.springs_in_balls(pieces);
         let matrix = system.tangent_in_balls(pieces.iter(), &springs);
         let matrix = Enclosed::new(matrix.map_err(|_| Unproved::OutOfMemory)?, self.crude);
