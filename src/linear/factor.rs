@@ -191,6 +191,11 @@ impl Factor {
         self.backward(x);
     }
 
+    /// x <- H^-1 x for `count` right sides, x row by row.
+    pub(crate) fn solve_columns(&self, x: &mut [f64], count: usize) {
+        numeric::solve_columns(&self.structure, &self.values, x, count);
+    }
+
     /// x <- L^-1 x
     pub fn forward(&self, x: &mut [f64]) {
         numeric::forward(&self.structure, &self.values, x);

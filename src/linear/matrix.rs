@@ -6,6 +6,7 @@
 //! all element entries, sorted by faer (`SymbolicSparseColMat::try_new_from_indices`), took two to four times as long.
 
 use std::collections::BTreeMap;
+use std::convert::identity;
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, Matrix2, Vector2};
@@ -15,7 +16,7 @@ use crate::contact::discretization::Discretization;
 use crate::contact::piece::Piece;
 use crate::kernel::axial;
 use crate::kernel::element::stiffness;
-use crate::kernel::{Element, Scalar};
+use crate::kernel::{Element, Scalar, Triangle};
 use crate::model::constraints::{Constraints, from_frame, in_frame};
 use crate::model::element::with_element;
 use crate::model::material::Materials;
@@ -112,7 +113,11 @@ impl Numbering {
     }
 
     /// R_i^T block R_j with the frames R of the nodes i and j.
-    fn turned_block(&self, [i, j]: [usize; 2], block: Matrix2<f64>) -> Matrix2<f64> {
+    fn turned_block<S: Scalar + From<f64>>(
+        &self,
+        [i, j]: [usize; 2],
+        block: Matrix2<S>,
+    ) -> Matrix2<S> {
         let rows = [0, 1].map(|c| self.in_frame(j, [block[(c, 0)], block[(c, 1)]]));
         let columns = [0, 1].map(|d| self.in_frame(i, [rows[0][d], rows[1][d]]));
         Matrix2::from(columns)
@@ -174,16 +179,16 @@ impl Neighbours {
 
 /// The lower triangle of a sparse symmetric matrix, column by column, rows in increasing order, the diagonal first.
 #[derive(Clone, Debug)]
-pub struct LowerTriangle {
+pub struct LowerTriangle<S = f64> {
     /// Where each column starts, and where the last one ends.
     pub starts: Arc<Vec<usize>>,
     /// The row of each entry.
     pub rows: Arc<Vec<usize>>,
     /// The entries.
-    pub values: Vec<f64>,
+    pub values: Vec<S>,
 }
 
-impl LowerTriangle {
+impl<S: Scalar + From<f64>> LowerTriangle<S> {
     /// All entries that a matrix over these unknowns can have, zero.
     pub(crate) fn zero(numbering: &Numbering, neighbours: &Neighbours) -> Self {
         let (mut starts, mut rows) = (vec![0], Vec::new());
@@ -194,8 +199,15 @@ impl LowerTriangle {
             rows[start..].sort_unstable();
             starts.push(rows.len());
         }
-        let values = vec![0.0; rows.len()];
+        let values = vec![S::zero(); rows.len()];
         LowerTriangle { starts: starts.into(), rows: rows.into(), values }
+    }
+
+    /// The same entries in other numbers, zero.
+    pub(crate) fn zero_in<T: Scalar>(&self) -> LowerTriangle<T> {
+        let LowerTriangle { starts, rows, values } = self;
+        let values = vec![T::zero(); values.len()];
+        LowerTriangle { starts: Arc::clone(starts), rows: Arc::clone(rows), values }
     }
 
     /// Adds the blocks of an element matrix: `block(i, j)` has the rows of `nodes[i]` and the columns of `nodes[j]`.
@@ -206,7 +218,7 @@ impl LowerTriangle {
         &mut self,
         numbering: &Numbering,
         nodes: &[usize],
-        block: impl Fn(usize, usize) -> Matrix2<f64>,
+        block: impl Fn(usize, usize) -> Matrix2<S>,
     ) -> Result<(), OutsidePattern> {
         let turned = nodes.iter().any(|node| numbering.frames.contains_key(node));
         for (j, &column_node) in nodes.iter().enumerate() {
@@ -234,7 +246,7 @@ impl LowerTriangle {
         &mut self,
         column: usize,
         rows: [Option<usize>; 2],
-        entries: [f64; 2],
+        entries: [S; 2],
     ) -> Result<(), OutsidePattern> {
         let (mut place, end) = (self.starts[column], self.starts[column + 1]);
         for (row, entry) in rows.into_iter().zip(entries) {
@@ -281,17 +293,20 @@ pub fn assemble_stiffness(
     Ok(matrix)
 }
 
-fn add_stiffness<E: Element<N, M>, const N: usize, const M: usize>(
-    matrix: &mut LowerTriangle,
-    space: &Space,
-    materials: &Materials,
+fn add_stiffness<E: Element<N, M>, S: Scalar + From<f64>, const N: usize, const M: usize>(
+    matrix: &mut LowerTriangle<S>,
+    (space, materials): (&Space, &Materials),
     numbering: &Numbering,
+    exactly: impl Fn(Triangle<f64>) -> Triangle<S>,
 ) -> Result<(), OutsidePattern> {
-    for (t, (triangle, nodes)) in space.triangles::<N>().enumerate() {
+    let number = <S as From<f64>>::from;
+    for (t, (doubles, nodes)) in space.triangles::<N>().enumerate() {
         let material = materials.of(t);
-        let k = match material.radii(&triangle) {
-            None => stiffness::<E, _, _, _>(&triangle, material),
-            Some(radii) => axial::stiffness::<E, _, _, _>(&triangle, radii, material),
+        let (radii, material) = (material.radii(&doubles), material.map(number));
+        let triangle = exactly(doubles);
+        let k = match radii {
+            None => stiffness::<E, _, _, _>(&triangle, &material),
+            Some(radii) => axial::stiffness::<E, _, _, _>(&triangle, radii.map(number), &material),
         };
         matrix.add(numbering, nodes, |i, j| k[i][j])?;
     }
@@ -309,7 +324,24 @@ impl LowerTriangle {
         materials: &Materials,
         numbering: &Numbering,
     ) -> Result<(), OutsidePattern> {
-        with_element!(space.degree(), E => add_stiffness::<E, _, _>(self, space, materials, numbering))
+        self.add_stiffness_of((space, materials), numbering, identity)
+    }
+}
+
+impl<S: Scalar + From<f64>> LowerTriangle<S> {
+    /// Adds a(.,.) of triangles as `exactly` has them.
+    ///
+    /// # Errors
+    /// The pattern of another space.
+    pub(crate) fn add_stiffness_of(
+        &mut self,
+        (space, materials): (&Space, &Materials),
+        numbering: &Numbering,
+        exactly: impl Fn(Triangle<f64>) -> Triangle<S>,
+    ) -> Result<(), OutsidePattern> {
+        with_element!(space.degree(), E => {
+            add_stiffness::<E, S, _, _>(self, (space, materials), numbering, exactly)
+        })
     }
 
     /// Adds -int gamma sigma_n(.) sigma_n(.) on a piece.
@@ -319,7 +351,7 @@ impl LowerTriangle {
     pub fn add_contact_stress(
         &mut self,
         numbering: &Numbering,
-        piece: &Piece,
+        piece: &Piece<S>,
     ) -> Result<(), OutsidePattern> {
         let weight = -(piece.gamma * piece.length);
         self.add(numbering, &piece.nodes, |i, j| piece.stress_product(weight, i, j))
@@ -332,14 +364,14 @@ impl LowerTriangle {
     pub(crate) fn add_contact_springs(
         &mut self,
         numbering: &Numbering,
-        piece: &Piece,
-        h: &DMatrix<f64>,
+        piece: &Piece<S>,
+        h: &DMatrix<S>,
     ) -> Result<(), OutsidePattern> {
-        if h.iter().all(|h| *h == 0.0) {
+        if h.iter().all(|h| *h == S::zero()) {
             return Ok(());
         }
         let (p0, nodes) = (&piece.p0, piece.nodes.len());
-        let springs: Vec<Vector2<f64>> = (0..h.nrows() * nodes)
+        let springs: Vec<Vector2<S>> = (0..h.nrows() * nodes)
             .map(|at| {
                 let (a, j) = (at / nodes, at % nodes);
                 (0..h.ncols()).fold(Vector2::zeros(), |sum, b| sum + p0[b][j] * h[(a, b)])

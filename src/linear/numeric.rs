@@ -5,7 +5,9 @@
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::linalg::triangular_solve::{
+    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
+};
 use faer::{Accum, MatMut, MatRef, Par};
 use pulp::{Arch, NullaryFnOnce};
 
@@ -53,6 +55,47 @@ pub(super) fn forward(structure: &Structure, values: &[f64], x: &mut [f64]) {
 /// x <- L^-T x
 pub(super) fn backward(structure: &Structure, values: &[f64], x: &mut [f64]) {
     Arch::new().dispatch(Backward { structure, values, x });
+}
+
+/// x <- H^-1 x for `count` right sides, which take L from memory together: x row by row. On the way forward supernodes where all of them are
+/// zero are passed over.
+pub(super) fn solve_columns(structure: &Structure, values: &[f64], x: &mut [f64], count: usize) {
+    let block = |s: usize| {
+        let [rows, width] = structure.shape(s);
+        let values = &values[structure.start(s)..][..rows * width];
+        let block = MatRef::from_column_major_slice(values, rows, width);
+        let (first, end) = (structure.columns(s).start, structure.columns(s).end);
+        (block.split_at_row(width), first * count..end * count)
+    };
+    let mut known = Vec::new();
+    for s in 0..structure.supernodes() {
+        let ((diagonal, below), own) = block(s);
+        if x[own.clone()].iter().all(|x| *x == 0.0) {
+            continue;
+        }
+        let own = &mut x[own];
+        let mut own = MatMut::from_row_major_slice_mut(own, diagonal.ncols(), count);
+        solve_lower_triangular_in_place(diagonal, own.as_mut(), Par::Seq);
+        known.resize((below.nrows() * count).max(known.len()), 0.0);
+        let sums = &mut known[..below.nrows() * count];
+        let product = MatMut::from_row_major_slice_mut(&mut *sums, below.nrows(), count);
+        matmul(product, Accum::Replace, below, own.as_ref(), 1.0, Par::Seq);
+        for (sums, &row) in sums.chunks_exact(count).zip(structure.rows_below(s)) {
+            let x = &mut x[row * count..][..count];
+            x.iter_mut().zip(sums).for_each(|(x, sum)| *x -= sum);
+        }
+    }
+    for s in (0..structure.supernodes()).rev() {
+        let ((diagonal, below), own) = block(s);
+        known.clear();
+        for &row in structure.rows_below(s) {
+            known.extend_from_slice(&x[row * count..][..count]);
+        }
+        let known = MatRef::from_row_major_slice(&known, below.nrows(), count);
+        let mut own = MatMut::from_row_major_slice_mut(&mut x[own], diagonal.ncols(), count);
+        matmul(own.as_mut(), Accum::Add, below.transpose(), known, -1.0, Par::Seq);
+        solve_upper_triangular_in_place(diagonal.transpose(), own, Par::Seq);
+    }
 }
 
 struct Factorisation<'a, F> {
@@ -433,6 +476,31 @@ mod tests {
                 let mut other = system.matrix.clone();
                 other.values[0] *= 1.0 + 1e-6;
                 assert!(!is_the_factor(system, &other), "control");
+            });
+        }
+    }
+
+    #[test]
+    fn columns_that_are_solved_together_are_those_that_are_solved_one_by_one() {
+        for (degree, n) in [(Degree::One, 5), (Degree::One, 48), (Degree::Two, 24)] {
+            with_system(degree, n, |system| {
+                let factor = Factor::with(&system.structure, &system.matrix).unwrap();
+                let (n, count) = (system.numbering.count, 3);
+                // The second one has a single force, far up in the elimination tree.
+                let of = |i: usize| [(1.7 * i as f64).cos(), f64::from(u8::from(i == n - 1)), 1.0];
+                let mut together: Vec<f64> = (0..n).flat_map(of).collect();
+                factor.solve_columns(&mut together, count);
+                for k in 0..count {
+                    let mut alone: Vec<f64> = (0..n).map(|i| of(i)[k]).collect();
+                    factor.solve(&mut alone);
+                    let off = |column: usize| -> f64 {
+                        let pairs = alone.iter().zip(together[column..].iter().step_by(count));
+                        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+                    };
+                    let size = alone.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+                    assert!(off(k) <= 1e-11 * size);
+                    assert!(off((k + 1) % count) > 1e-2 * size, "control");
+                }
             });
         }
     }

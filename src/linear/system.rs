@@ -13,8 +13,8 @@ use super::factor::{Factor, Structure};
 use super::ordering::nested_dissection;
 use crate::contact::discretization::Discretization;
 use crate::contact::{Piece, residual};
-use crate::kernel::DoubleDouble;
 use crate::kernel::ball::larger;
+use crate::kernel::{DoubleDouble, PreciseBall};
 use crate::linear::matrix;
 use crate::linear::matrix::{LowerTriangle, Neighbours, Numbering, OutsidePattern};
 use crate::model::material::least_eigenvalue;
@@ -201,6 +201,22 @@ impl<'d, 'p> System<'d, 'p> {
             if h.iter().any(|h| *h != 0.0) {
                 tangent.to_mut().add_contact_springs(&self.numbering, piece, h)?;
             }
+        }
+        Ok(tangent)
+    }
+
+    /// A + B^T h B in balls, from the pieces in balls.
+    pub(crate) fn tangent_in_balls<'e>(
+        &self,
+        pieces: impl Iterator<Item = &'e Piece<PreciseBall>>,
+        springs: &[DMatrix<PreciseBall>],
+    ) -> Result<LowerTriangle<PreciseBall>, OutsidePattern> {
+        let mut tangent = self.matrix.zero_in();
+        let body = (&self.d.space, &self.d.problem.material);
+        tangent.add_stiffness_of(body, &self.numbering, residual::exactly)?;
+        for (piece, h) in pieces.zip(springs) {
+            tangent.add_contact_stress(&self.numbering, piece)?;
+            tangent.add_contact_springs(&self.numbering, piece, h)?;
         }
         Ok(tangent)
     }

@@ -377,7 +377,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
                 }
             };
             let lines = &self.lines;
-            let product = Product { system, lines, pressed, arithmetic, is_small: true };
+            let product = Product { system, lines, pressed, arithmetic };
             // With Coulomb's friction every further digit of the norm widens the ball without another solution.
             let negligible = if coulomb { 0.0 } else { negligible };
             dual = dual_norm(&product, factor, r, &crude, coercivity, negligible);
@@ -390,13 +390,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         let mut isolated = None;
         if let (true, Some(factor)) = (coulomb, factor) {
             let lines = &self.lines;
-            let times = |arithmetic| {
-                let product = Product { system, lines, pressed, arithmetic, is_small: false };
-                move |z: &[PreciseBall]| product.times(z)
-            };
-            let (doubles, balls) = (times(Arithmetic::Doubles), times(Arithmetic::Balls));
-            let times: [isolated::Product; 2] = [&doubles, &balls];
-            let body = isolated::Body { system, factor, times, crude: &crude, coercivity };
+            let body = isolated::Body { system, factor, pressed, crude: &crude };
             let (left, spread) = (up(dual.left + up_to), at.spread());
             let rest = isolated::Rest { rho, z: &dual.z, left, spread: &spread, size };
             let springs = (!pressed.is_nowhere()).then_some(springs.as_slice());
@@ -582,8 +576,6 @@ struct Product<'a, 'd, 'p> {
     lines: &'a Lines<'d>,
     pressed: &'a Pressed,
     arithmetic: Arithmetic,
-    /// Tells whether fields are next to nothing, so that sums in doubles do.
-    is_small: bool,
 }
 
 impl Product<'_, '_, '_> {
@@ -592,8 +584,7 @@ impl Product<'_, '_, '_> {
     fn times(&self, z: &[PreciseBall]) -> (Vec<PreciseBall>, f64) {
         let v = field(self.system, |number, _, _| z[number], |_, _| 0.0);
         let mut forces = vec![[PreciseBall::from(0); 2]; v.len()];
-        let add = if self.is_small { Arithmetic::add_small_forces } else { Arithmetic::add_forces };
-        let off = add(self.arithmetic, self.system.d, &v, &mut forces);
+        let off = self.arithmetic.add_small_forces(self.system.d, &v, &mut forces);
         let off = self.arithmetic.add_stresses(self.system.d, self.lines, &v, (&mut forces, off));
         self.pressed.add_springs(self.lines, &v, &mut forces);
         (free(self.system, &forces), off)

@@ -17,7 +17,8 @@ use nalgebra::DMatrix;
 
 use super::Unproved;
 use super::balls::{Lines, field, free, root};
-use super::pressed::{EdgePiece, Row};
+use super::columns::{AT_ONCE, Enclosed, Functional};
+use super::pressed::{EdgePiece, Pressed, Row};
 use crate::contact::law::{EdgeRule, Law};
 use crate::contact::{Discretization, Piece};
 use crate::kernel::Response;
@@ -25,6 +26,7 @@ use crate::kernel::ball::{PreciseBall, larger, up};
 use crate::linear::dense::norm;
 use crate::linear::factor::Factor;
 use crate::linear::system::System;
+use crate::memory;
 use crate::model::Degree;
 use crate::model::law::Bound;
 use crate::solve::coulomb::coefficient;
@@ -34,11 +36,7 @@ use crate::solve::coulomb::coefficient;
 const MOST_FUNCTIONALS: usize = 2_000;
 const MOST_ENTRIES: usize = 40_000_000;
 
-/// The number of solves for a column of the compliance: each takes off as many digits as the factor has.
-const MOST_CORRECTIONS: usize = 8;
-
-/// The shares of a column of the compliance that may be left: first so much that products in doubles do, which take a fraction
-/// of the time; where nothing is proved with that, a rounding error.
+/// The shares of a column of the compliance that may be left: first so much that one correction does; where nothing is proved with that, a rounding error.
 pub(super) const SHARES: [f64; 2] = [1e-7, f64::EPSILON];
 
 /// The proved facts about the solution near a displacement.
@@ -56,20 +54,15 @@ pub(super) struct Isolated {
     pub(crate) pressure: f64,
 }
 
-/// A product with A, enclosed: of a vector, off by a functional of at most the number that comes with it, times |v|_a.
-pub(super) type Product<'a> = &'a dyn Fn(&[PreciseBall]) -> (Vec<PreciseBall>, f64);
-
 /// Bounds of A.
 pub(super) struct Body<'a, 'd, 'p> {
     pub(crate) system: &'a System<'d, 'p>,
     /// Any factor, the better the nearer it is to that of A.
     pub(crate) factor: &'a Factor,
-    /// In doubles, and in balls.
-    pub(crate) times: [Product<'a>; 2],
+    /// What is pressed, if A has springs there.
+    pub(crate) pressed: &'a Pressed,
     /// |t|_A* <= the sum of these times |t_i|.
     pub(crate) crude: &'a [f64],
-    /// |v|_A^2 is at least this times |v|_a^2.
-    pub(crate) coercivity: f64,
 }
 
 /// The matrix G, enclosed.
@@ -103,7 +96,7 @@ impl Body<'_, '_, '_> {
     fn compliance(&self, pieces: &Lines, share: f64) -> Result<Compliance, Unproved> {
         let (system, count) = (self.system, self.system.functionals());
         let nodes = system.d.space.nodes().len();
-        let mut rows: Vec<Vec<(usize, PreciseBall)>> = Vec::with_capacity(count);
+        let mut rows: Vec<Functional> = Vec::with_capacity(count);
         let zero = PreciseBall::from(0);
         for piece in pieces.iter() {
             for i in 0..piece.p0.len() {
@@ -115,56 +108,29 @@ impl Body<'_, '_, '_> {
                 rows.push(row.filter(|(_, b)| b.magnitude() != 0.0).collect());
             }
         }
-        let sparse = |row: &[(usize, PreciseBall)], z: &[PreciseBall]| {
-            row.iter().fold(zero, |sum, &(k, b)| sum + b * z[k])
-        };
+        let (entries, n) = (system.matrix.values.len(), system.numbering.count);
+        let bytes = size_of::<PreciseBall>() * entries + 64 * n * AT_ONCE.min(count);
+        memory::check(bytes as u64).map_err(|_| Unproved::OutOfMemory)?;
+        let springs = self.pressed.springs_in_balls(pieces);
+        let matrix = system.tangent_in_balls(pieces.iter(), &springs);
+        let matrix = Enclosed::new(matrix.map_err(|_| Unproved::OutOfMemory)?, self.crude);
         let mut g = Mat::zeros(count, count);
         let mut radii: Mat<f64> = Mat::zeros(count, count);
         let (mut sizes, mut rests) = (vec![0.0; count], vec![0.0; count]);
-        for (j, row) in rows.iter().enumerate() {
-            let mut z = vec![zero; system.numbering.count];
-            let mut left = vec![zero; system.numbering.count];
-            row.iter().for_each(|&(k, b)| left[k] = b);
-            let mut rest = f64::INFINITY;
-            // Solves, and corrects by the residual as long as that leads on.
-            for times in self.times {
-                if rest <= share * root(sparse(row, &z)) {
-                    break;
+        for (first, block) in (0..count).step_by(AT_ONCE).zip(rows.chunks(AT_ONCE)) {
+            let z = matrix.columns(self.factor, block, share);
+            for (column, own) in block.iter().enumerate() {
+                let (j, rest) = (first + column, z.rests[column]);
+                if !rest.is_finite() {
+                    return Err(Unproved::OutOfRange);
                 }
-                rest = f64::INFINITY;
-                for _ in 0..MOST_CORRECTIONS {
-                    let mut correction: Vec<f64> = left.iter().map(|t| t.head()).collect();
-                    self.factor.solve(&mut correction);
-                    let mut next = z.clone();
-                    for (z, c) in next.iter_mut().zip(&correction) {
-                        *z = PreciseBall::point((*z + PreciseBall::from(*c)).centre());
-                    }
-                    let (az, off) = times(&next);
-                    let mut next_left: Vec<PreciseBall> =
-                        az.into_iter().map(|az| zero - az).collect();
-                    row.iter().for_each(|&(k, b)| next_left[k] += b);
-                    let sum: f64 =
-                        next_left.iter().zip(self.crude).map(|(t, c)| t.magnitude() * c).sum();
-                    let rounding = 1.0 + f64::EPSILON * (left.len() + 16) as f64;
-                    let next_rest = up(sum * rounding + off / self.coercivity.sqrt());
-                    let is_better = next_rest < rest / 2.0;
-                    if next_rest < rest {
-                        (z, left, rest) = (next, next_left, next_rest);
-                    }
-                    if !is_better || rest <= share * root(sparse(row, &z)) {
-                        break;
-                    }
+                rests[j] = rest;
+                sizes[j] = up(rest + root(z.value(column, own)));
+                for (i, row) in rows.iter().enumerate() {
+                    let entry = z.value(column, row);
+                    g[(i, j)] = entry.head();
+                    radii[(i, j)] = up(entry.radius() + (entry.head() * f64::EPSILON).abs());
                 }
-            }
-            if !rest.is_finite() {
-                return Err(Unproved::OutOfRange);
-            }
-            rests[j] = rest;
-            sizes[j] = up(rest + root(sparse(row, &z)));
-            for (i, row) in rows.iter().enumerate() {
-                let entry = sparse(row, &z);
-                g[(i, j)] = entry.head();
-                radii[(i, j)] = up(entry.radius() + (entry.head() * f64::EPSILON).abs());
             }
         }
         // The mean of an entry and its mirror is off by no more than the larger of their errors, as G is symmetric.

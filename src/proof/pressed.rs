@@ -14,9 +14,8 @@ use nalgebra::DMatrix;
 use crate::contact::law::Law;
 use crate::contact::piece::Stretch;
 use crate::contact::{Discretization, EdgeRule, Piece};
-use crate::kernel::Response;
 use crate::kernel::ball::{PreciseBall, up};
-use crate::kernel::edge_integral;
+use crate::kernel::{Response, Scalar, edge_integral};
 use crate::model::Degree;
 use crate::proof::balls::Lines;
 use crate::proof::korn::{Hold, Term};
@@ -356,13 +355,26 @@ impl Pressed {
 
     /// For each piece of Gamma_C the matrix of its springs, in doubles.
     pub(crate) fn springs(&self, lines: &Lines) -> Vec<DMatrix<f64>> {
-        let nothing = |line: &Piece| DMatrix::zeros(line.p0.len(), line.p0.len());
-        let mut springs: Vec<DMatrix<f64>> = lines.in_doubles().iter().map(nothing).collect();
+        self.springs_of(lines, |weight, mass| weight.head() * mass.head())
+    }
+
+    /// The same in balls.
+    pub(crate) fn springs_in_balls(&self, lines: &Lines) -> Vec<DMatrix<PreciseBall>> {
+        self.springs_of(lines, |weight, mass| weight * mass)
+    }
+
+    fn springs_of<S: Scalar>(
+        &self,
+        lines: &Lines,
+        spring: impl Fn(PreciseBall, PreciseBall) -> S,
+    ) -> Vec<DMatrix<S>> {
+        let nothing = |line: &Piece| DMatrix::from_element(line.p0.len(), line.p0.len(), S::zero());
+        let mut springs: Vec<DMatrix<S>> = lines.in_doubles().iter().map(nothing).collect();
         for part in &self.parts {
-            let weight = lines[part.edge].weight().head();
+            let weight = lines[part.edge].weight();
             for (i, row) in part.values.clone().zip(&part.mass) {
                 for (j, mass) in part.values.clone().zip(row) {
-                    springs[part.edge][(i, j)] = weight * mass.head();
+                    springs[part.edge][(i, j)] = spring(weight, *mass);
                 }
             }
         }
