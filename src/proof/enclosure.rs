@@ -24,7 +24,7 @@ use thiserror::Error;
 
 use super::balls::{Lines, field, free, kappa, length, root};
 use super::intervals::{Arithmetic, EnclosedResidual, Intervals};
-use super::isolated::{self, Isolated};
+use super::isolated::{self, Isolated, MOST_ENTRIES, MOST_FUNCTIONALS};
 use super::pressed::{self, Pressed};
 use crate::contact::Discretization;
 use crate::held::solvability::Slides;
@@ -103,9 +103,10 @@ pub enum Unproved {
     )]
     NotIsolated,
     #[error(
-        "Coulomb's friction: the proof is for up to 2000 contact functionals and 2e8 entries of their compliance; there are {count} functionals"
+        "Coulomb's friction: the proof is for up to {MOST_FUNCTIONALS} contact functionals, whose product with the number of unknowns is at most {most:e}; there are {count} functionals and {unknowns} unknowns",
+        most = MOST_ENTRIES as f64
     )]
-    TooManyFunctionals { count: usize },
+    TooManyFunctionals { count: usize, unknowns: usize },
     #[error("the bound over- or underflows double precision")]
     OutOfRange,
     #[error("out of memory")]

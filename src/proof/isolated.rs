@@ -33,8 +33,8 @@ use crate::solve::coulomb::coefficient;
 
 /// The largest number of functionals, and the largest product of functionals and unknowns, for which a proof is tried: the time
 /// grows with the cube of the first and with the second.
-const MOST_FUNCTIONALS: usize = 2_000;
-const MOST_ENTRIES: usize = 40_000_000;
+pub(super) const MOST_FUNCTIONALS: usize = 2_000;
+pub(super) const MOST_ENTRIES: usize = 200_000_000;
 
 /// The shares of a column of the compliance that may be left: first so much that one correction does; where nothing is proved with that, a rounding error.
 pub(super) const SHARES: [f64; 2] = [1e-7, f64::EPSILON];
@@ -707,8 +707,9 @@ impl Known {
         share: f64,
     ) -> Result<Self, Unproved> {
         let (system, count) = (body.system, body.system.functionals());
-        if count > MOST_FUNCTIONALS || count * system.numbering.count > MOST_ENTRIES {
-            return Err(Unproved::TooManyFunctionals { count });
+        let unknowns = system.numbering.count;
+        if count > MOST_FUNCTIONALS || count * unknowns > MOST_ENTRIES {
+            return Err(Unproved::TooManyFunctionals { count, unknowns });
         }
         let compliance = body.compliance(pieces, share)?;
         let root = Root::new(&compliance).ok_or(Unproved::NotIsolated)?;
