@@ -109,7 +109,8 @@ impl Traction<'_> {
 
     pub(crate) fn rule(&self) -> Rule {
         match self {
-            Traction::Vector([x, y]) => rule(if x.kink().is_some() { &**x } else { &**y }),
+            // One rule for both components: that of the one that asks for most.
+            Traction::Vector([x, y]) => rule(&**if demand(x) > demand(y) { x } else { y }),
             Traction::Pressure(f) | Traction::Component(_, f) => rule(&***f),
         }
     }
@@ -168,6 +169,11 @@ pub(super) fn length_and_normal(ends: [[f64; 2]; 2]) -> (f64, [f64; 2]) {
     let normal = Vector2::new(ends[1][1] - ends[0][1], ends[0][0] - ends[1][0]);
     let length = length(normal);
     (length, (normal / length).into())
+}
+
+/// What a function asks of its rule: functions with a kink and those of no known degree come last.
+pub(super) fn demand(function: &SharedFunction) -> (bool, u32) {
+    (function.kink().is_some(), function.degree().unwrap_or(u32::MAX))
 }
 
 /// A rule for a function of the place.

@@ -22,7 +22,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::bubbles;
 use super::certificate::{Certificate, Lift, Piece, Role, place};
-use super::data::{Data, POINTS, bulge_of, cancellation, is_within, length_and_normal};
+use super::data::{Data, POINTS, bulge_of, cancellation, demand, is_within, length_and_normal};
 use super::parts::{Boundary, ProblemParts};
 use crate::kernel::{Ball, Enclosing, Material, Triangle};
 use crate::model::material::least_eigenvalue;
@@ -257,7 +257,6 @@ pub(super) fn loads(
     let constants = constants(&triangle);
     // All by the rule of the force that asks for most.
     let curved = data.acting(t).filter(|(_, f, _)| !is_within(f, 1));
-    let demand = |f: &SharedFunction| (f.kink().is_some(), f.degree().unwrap_or(u32::MAX));
     let mut lacking = Vec::new();
     let mut least = 0.0;
     if let Some((_, _, rule)) = curved.max_by_key(|(_, f, _)| demand(f)) {

@@ -343,6 +343,23 @@ mod tests {
     }
 
     #[test]
+    fn what_sticks_between_two_roots_that_doubles_do_not_tell_apart_is_enclosed() {
+        // m = 1 and m - P = d - (2 s - 1)^2: P is below the bound on a stretch as long as the root of d.
+        let d = 1e-17_f64;
+        let m = [PreciseBall::from(1); 3];
+        let below = [-1.0, -1.0, d].map(PreciseBall::from);
+        let p: Vec<PreciseBall> = m.iter().zip(below).map(|(&m, below)| m - below).collect();
+        let moments = of_friction(&EdgeRule::Exact, Degree::Two, &p, &m);
+        let sum = moments.into_iter().fold(PreciseBall::from(0), |sum, moment| sum + moment);
+        // The integral of m less that of [m - P]+.
+        let less = PreciseBall::from(2.0 / 3.0 * d * d.sqrt());
+        let off = sum - (PreciseBall::from(1) - less);
+        assert!(off.lower() <= 0.0 && off.upper() >= 0.0 && sum.radius() <= 1e-15, "{sum:?}");
+        // The control: its centre is not the integral, to the digits that it has.
+        assert!(off.head().abs() > 1e-27, "{off:?}");
+    }
+
+    #[test]
     fn control_a_wrong_cut_costs_width() {
         // Positive on the left of 1/2, cut at 0.6: the part between is integrated with the wrong sign, and counted.
         let parabola = Parabola::new(Degree::One, &[0.5, -0.5].map(PreciseBall::from));

@@ -824,3 +824,71 @@ impl Piece {
         self.p0.iter().enumerate().map(value)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+    use crate::contact::{Pair, contact_line};
+    use crate::model::Problem;
+
+    /// Two bodies of one cell each, with this r at the left and right sides of each; the right side of the first faces the left one
+    /// of the second.
+    fn beside(sides: [[f64; 2]; 2], material: Material<f64>, reach: f64) -> Problem {
+        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+        for [left, right] in sides {
+            let k = vertices.len();
+            vertices.extend([[left, 0.0], [right, 0.0], [right, 1.0], [left, 1.0]]);
+            triangles.extend([[k, k + 1, k + 2], [k, k + 2, k + 3]]);
+        }
+        let pair = Pair::new("right", "left").with_reach(reach).with_clearance(|_| 0.0);
+        let named = [("right", [1, 2]), ("left", [7, 4])];
+        let named = named.map(|(name, edge)| (name.to_owned(), vec![edge]));
+        let mesh = Mesh::with_pairs(vertices, triangles, named, std::slice::from_ref(&pair));
+        Problem::of(mesh.unwrap(), material).with_pair(pair)
+    }
+
+    #[test]
+    fn the_jump_of_two_bodies_moves_as_far_as_both_together() {
+        let material = Material::lame(1.0, 1.0, crate::kernel::Plane::Strain);
+        let problem = beside([[0.0, 1.0], [1.0, 2.0]], material, 0.1);
+        let space = Space::new(&problem.mesh, Degree::One);
+        let pieces = contact_line::assemble(&problem, &space, 1.0).unwrap();
+        let [piece] = &pieces[..] else { panic!("one piece") };
+        // The vertices 1 and 2 on one side, 4 and 7 on the other.
+        assert_eq!(piece.farthest(|node| node as f64), 2.0 + 7.0);
+    }
+
+    #[test]
+    fn the_slip_bound_of_a_pair_is_that_halfway_between_the_bodies() {
+        let material = Material::lame(1.0, 1.0, crate::kernel::Plane::Strain);
+        let mut problem = beside([[1.0, 2.0], [3.0, 4.0]], material, 1.5);
+        problem.pairs[0].friction = Some(crate::contact::Friction::tresca(|[x, _]| x));
+        let space = Space::new(&problem.mesh, Degree::One);
+        let pieces = contact_line::assemble(&problem, &space, 1.0).unwrap();
+        let [piece] = &pieces[..] else { panic!("one piece") };
+        let halfway = crate::contact::friction::Bound::Tresca([2.5, 2.5]);
+        assert_eq!(piece.geometry.law, Law::Friction(halfway));
+    }
+
+    /// Rings with the radii 2 and 3 where they face each other: between them, at 5/2, a force per radian is spread over another length.
+    #[test]
+    fn the_stress_of_each_ring_counts_as_the_radii_are() {
+        let material = Material::lame(1.0, 1.0, crate::kernel::Plane::Axisymmetric);
+        let problem = beside([[1.0, 2.0], [3.0, 4.0]], material, 1.5);
+        let (mesh, space) = (&problem.mesh, Space::new(&problem.mesh, Degree::One));
+        let pieces = contact_line::assemble(&problem, &space, 1.0).unwrap();
+        let [piece] = &pieces[..] else { panic!("one piece") };
+        let chords = piece.geometry.chords(&[1.0, 1.0]).unwrap();
+        let corners = |edge: BoundaryEdge| material.radii(&mesh.triangle(edge.triangle));
+        for (i, radius) in [2.0, 3.0].into_iter().enumerate() {
+            let radii = piece.geometry.radii(i, corners);
+            let ratio = radius / 2.5;
+            assert_relative_eq!(chords.ratio(i, radii), ratio, max_relative = 1e-15);
+            // int_E (ratio sigma)^2 r over the piece, per int sigma^2 r over the side, for a constant sigma.
+            let share = ratio * ratio * 2.5 / radius;
+            assert_relative_eq!(chords.share(i, radii, f64::max), share, max_relative = 1e-15);
+        }
+    }
+}

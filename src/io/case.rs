@@ -406,6 +406,18 @@ fn read_output(table: &Table, mesh: &Mesh) -> Result<(Vec<[f64; 2]>, Option<f64>
 mod tests {
     use super::*;
 
+    #[test]
+    fn without_a_thickness_forces_and_moments_are_per_unit_of_it() {
+        let all = [Measure::Length, Measure::Stress, Measure::Force, Measure::Moment];
+        let of = |length: &str, force: &str, thickness| {
+            let units = Units { length: length.to_owned(), force: force.to_owned() };
+            all.map(|measure| units.of(measure, thickness))
+        };
+        assert_eq!(of("mm", "N", None), ["mm", "MPa", "N/mm", "N mm/mm"]);
+        assert_eq!(of("m", "N", Some(2.0)), ["m", "Pa", "N", "N m"]);
+        assert_eq!(of("cm", "kN", Some(1.0)), ["cm", "kN/cm^2", "kN", "kN cm"]);
+    }
+
     fn read(text: &str) -> Result<Case, FileError> {
         Case::parse(Path::new("x.toml"), text, &[])
     }

@@ -628,6 +628,15 @@ pub(super) mod tests {
     }
 
     #[test]
+    fn a_weight_is_along_its_own_axis() {
+        for (axis, along) in ["x", "y"].into_iter().enumerate() {
+            let weight = Weight::from(Ramp { axis, between: [2.0, 3.0], width: 0.5 });
+            let expected = Weight { along: along.to_owned(), between: [2.0, 3.0], ramp: 0.5 };
+            assert_eq!(weight, expected);
+        }
+    }
+
+    #[test]
     fn the_size_of_a_mesh_is_its_largest_diameter() {
         let vertices = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [3.0, 4.0]];
         let mesh = Mesh::new(vertices, vec![[0, 1, 2], [1, 3, 2]], []).unwrap();

@@ -768,6 +768,34 @@ mod tests {
     }
 
     #[test]
+    fn an_audit_shows_forces_of_the_whole_thickness() {
+        let text = "mesh.rectangle = { width = 1, height = 1, nx = 2, ny = 2 }\n\
+                    material = { lambda = 1, mu = 1 }\n[boundary]\n\
+                    top.displacement = [\"0\", \"-0.1 + 0.15*x\"]\nbottom.contact = { gap = \"0\" }\n";
+        let case = Case::parse(Path::new("punch.toml"), text, &[]).unwrap();
+        let (solution, _) =
+            crate::solve::solve(&case.problem, &case.method, &case.settings).unwrap();
+        let of = crate::certificates::certify(&case.problem, &solution).unwrap();
+        let forces = &of.quantities.evidence;
+        let (header, arrays) =
+            crate::certificates::encode("punch", &of.certificate, &of.proof, forces);
+        let shown = |thickness: Option<f64>| -> Vec<f64> {
+            let header = crate::certificates::format::Header { thickness, ..header.clone() };
+            let audit = crate::certificates::format::audit(header, &arrays).unwrap();
+            let text = audited(&audit, None).replace('\u{2212}', "-");
+            let intervals = text.lines().filter_map(|line| line.split_once(": between "));
+            let ends = intervals.flat_map(|(_, ends)| ends.split(" and "));
+            ends.map(|end| end.trim().parse().unwrap()).collect()
+        };
+        let (per_thickness, whole) = (shown(None), shown(Some(20.0)));
+        assert!(per_thickness.len() >= 4 && per_thickness.iter().any(|end| *end > 0.01));
+        for (one, all) in per_thickness.into_iter().zip(whole) {
+            // To the digits that are printed.
+            assert!((20.0 * one - all).abs() <= 0.02 * all.abs(), "{one} {all}");
+        }
+    }
+
+    #[test]
     fn an_interval_is_printed_around_itself_with_two_digits_of_its_width() {
         let printed = |ends: [f64; 2]| -> [f64; 2] {
             let text = between(ends);

@@ -102,3 +102,15 @@ impl Bound {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mean_of_a_slip_bound_is_that_over_the_edge_or_of_the_mean_pressure() {
+        assert_eq!(Bound::Tresca([1.0, 4.0]).mean(7.0), 2.5);
+        assert_eq!(Bound::Coulomb(0.5).mean(4.0), 2.0);
+        assert_eq!(Bound::Coulomb(0.5).mean(-4.0), 0.0);
+    }
+}

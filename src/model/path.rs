@@ -359,6 +359,15 @@ mod tests {
     }
 
     #[test]
+    fn edges_that_meet_at_zero_with_either_sign_are_one_line() {
+        let through =
+            |zero: f64| Path::through(&[[[-1.0, 0.0], [zero, zero]], [[0.0, 0.0], [1.0, 1.0]]]);
+        assert_eq!(through(-0.0), through(0.0));
+        assert!(through(0.0).is_ok());
+        assert!(matches!(through(1e-300), Err(PathError::NotOne { .. })));
+    }
+
+    #[test]
     fn a_rounded_corner_is_the_circle_that_touches_both_sides() {
         // To the right and then up: a corner to the left, around (2, 1).
         let path = Path::new(&[[0.0, 0.0], [3.0, 0.0], [3.0, 5.0]], &[1.0]).unwrap();

@@ -368,3 +368,105 @@ pub fn reference(d: &Discretization) -> f64 {
         1.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::contact::EdgeRule;
+    use crate::kernel::{Material, Plane};
+    use crate::model::{Condition, Degree, Diagonal, Problem, Rectangle};
+    use crate::proof::Intervals;
+
+    fn outcome(radius: Option<f64>, residual: f64) -> Outcome {
+        let intervals = Intervals {
+            energy: [0.0; 2],
+            max_displacement: [0.0; 2],
+            contact: Vec::new(),
+            reactions: BTreeMap::new(),
+        };
+        let enclosure = radius.map(|radius| Enclosure {
+            kappa: 0.5,
+            radius,
+            relative: Some(radius),
+            hardly_strains: false,
+            if_strained: 1.0,
+            pressure: radius,
+            nodes: Vec::new(),
+            intervals,
+            isolation: None,
+        });
+        Outcome {
+            u: Vec::new(),
+            forces: Vec::new(),
+            p: Vec::new(),
+            residuals: Vec::new(),
+            residual,
+            enclosure: enclosure.ok_or(Unproved::NotReached),
+            forward_error: 0.0,
+            condition: 1.0,
+            factorizations: 1,
+        }
+    }
+
+    #[test]
+    fn of_two_solutions_the_one_with_the_smaller_radius_is_better_and_then_that_with_the_smaller_residual()
+     {
+        let ordered = [
+            outcome(Some(1e-12), 1.0),
+            outcome(Some(1e-9), 1e-12),
+            outcome(Some(1e-9), 1e-6),
+            outcome(None, 1e-15),
+            outcome(None, 1e-3),
+        ];
+        for (i, first) in ordered.iter().enumerate() {
+            for (j, second) in ordered.iter().enumerate() {
+                assert_eq!(first.is_better_than(second), i < j, "{i} {j}");
+            }
+        }
+    }
+
+    /// Where it ends there are thirds, which doubles round, and it moves nothing.
+    struct Thirds;
+
+    impl Route for Thirds {
+        fn factored(&self) -> Option<Factored> {
+            None
+        }
+
+        fn factorizations(&self) -> usize {
+            0
+        }
+
+        fn pass(
+            &mut self,
+            iterate: &mut Iterate,
+            _: &mut Evaluation,
+            residuals: &mut Vec<f64>,
+            _: Until,
+        ) -> Result<Pass, SolveError> {
+            let third = DoubleDouble::from(1.0) / DoubleDouble::from(3.0);
+            iterate.u.iter_mut().for_each(|u| *u = [third; 2]);
+            residuals.push(0.0);
+            Ok(Pass { energy: 0.0, left: 0.0, softness: 1.0 })
+        }
+    }
+
+    #[test]
+    fn the_rounding_of_the_displacement_is_part_of_its_error() {
+        let cell = Rectangle { width: 1.0, height: 1.0, nx: 1, ny: 1, diagonal: Diagonal::Right };
+        let problem = Problem::of(cell.mesh().unwrap(), Material::lame(1.0, 1.0, Plane::Strain))
+            .with("top", Condition::displacement(|_| 0.0, |_| -0.1))
+            .with("bottom", Condition::contact(|_| 0.0));
+        let gamma =
+            |coercivity: &crate::contact::contact_line::Coercivity| coercivity.limit() / 2.0;
+        let d = Discretization::new(&problem, Degree::One, gamma, EdgeRule::Exact).unwrap();
+        let system = System::new(&d).unwrap();
+        let mut verifier = Verifier::new(&system, None);
+        let settings = Settings::default();
+        let of = refine(&system, &mut Thirds, &mut verifier, reference(&d), &settings).unwrap();
+        // Of a third doubles lack 2e-17.
+        assert!((1e-17..1e-15).contains(&of.forward_error), "{:e}", of.forward_error);
+    }
+}

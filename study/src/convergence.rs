@@ -269,6 +269,8 @@ mod tests {
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines.len(), 8);
         assert!(lines[1].ends_with("proved") && lines[7].starts_with("proved: "));
+        // 5 over (1 + 1 / (1 - 1/2))^(1/2).
+        assert!(lines[2].ends_with("5.000e0  2.89"), "{}", lines[2]);
         assert_eq!(lines[0], "P1, structured: gamma0 = 1.0000e-1");
         assert!(lines[4].contains("2.500e-1  1.00") && lines[4].contains("1.250e-1  1.50"));
         let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();

@@ -11,7 +11,8 @@ use crate::common::exact::{
 };
 use crate::common::*;
 use approx::assert_relative_eq;
-use signorini::certificates::proof::Role;
+use signorini::certificates::forces::Evidence;
+use signorini::certificates::proof::{Claim, Edge, Role};
 use signorini::certificates::{Continuous, Rejection, certify, certify_field};
 use signorini::io::Case;
 use signorini::io::certificate::{self, Header};
@@ -434,6 +435,82 @@ fn a_function_without_a_degree_makes_the_bound_say_that_it_rests_on_quadrature()
     assert!(!certified.rigorous && certified.energy.is_none());
     let reason = certified.reason.unwrap();
     assert!(reason.starts_with("the body force is not known to be affine"), "{reason}");
+}
+
+/// A cubic traction beside one that is 0: of the rule of the latter, one point, the middle of the edge, sees nothing of the former.
+#[test]
+fn the_bound_counts_a_traction_whose_other_component_is_constant() {
+    let of = |n: usize, degree: u32, y: &str| {
+        let text = format!(
+            "mesh.rectangle = {{ width = 1.0, height = 1.0, nx = {n}, ny = {n} }}\n\
+             material = {{ young = 1.0, poisson = 0.3 }}\nmethod.degree = {degree}\n[boundary]\n\
+             bottom.contact = {{ gap = \"0\" }}\nleft.displacement = [\"0\", \"0\"]\n\
+             top.traction = [\"(x - 0.5)^3\", \"{y}\"]\n"
+        );
+        let case = case_of(&text, &[]);
+        let (solution, _) = solve(&case.problem, &case.method, &case.settings).unwrap();
+        (case.problem, solution)
+    };
+    let norm = |solution: &Solution| solution.quantities.energy.sqrt();
+    let (problem, solution) = of(1, 1, "0");
+    let bound = certify(&problem, &solution).unwrap().bound;
+    let error = norm(&of(16, 2, "0").1) - norm(&solution);
+    assert!(bound > error, "{bound} for an error of {error} or more");
+    for degree in [1, 2] {
+        let [plain, cubic] = ["0", "0 * x^3"].map(|y| {
+            let (problem, solution) = of(2, degree, y);
+            certify(&problem, &solution).unwrap().bound
+        });
+        assert_relative_eq!(plain, cubic, max_relative = 1e-12);
+    }
+}
+
+#[test]
+fn an_oscillation_below_zero_is_refused() {
+    let (problem, solution) = block(4);
+    let certificate = certify(&problem, &solution).unwrap().certificate;
+    let with = |oscillation: f64| {
+        let mut certificate = certificate.clone();
+        certificate.pieces[0].oscillation = oscillation;
+        certificate.evaluate::<Ball>()
+    };
+    assert!(with(1e-3).is_ok());
+    for oscillation in [-1e-3, -f64::MIN_POSITIVE, f64::INFINITY, f64::NAN] {
+        let found = with(oscillation);
+        let is_refused = matches!(found, Err(Rejection::Wrong { what: "triangle", index: 0, .. }));
+        assert!(is_refused, "{oscillation}: {found:?}");
+    }
+}
+
+#[test]
+fn a_couple_on_an_edge_leaves_its_triangles_out_of_balance() {
+    let (problem, solution) = block(4);
+    let certificate = certify(&problem, &solution).unwrap().certificate;
+    let is_inner = |edge: &Edge| matches!(edge.role, Role::Inner(_));
+    let vertices = certificate.vertices.len();
+    let e = certificate
+        .edges
+        .iter()
+        .position(|edge| is_inner(edge) && edge.ends.iter().all(|&p| p < vertices))
+        .unwrap();
+    let audited = |size: f64| {
+        let mut certificate = certificate.clone();
+        let [a, b] = certificate.edges[e].ends.map(|p| certificate.vertices[p]);
+        let across = [b[1] - a[1], a[0] - b[0]];
+        if let Role::Inner(force) = &mut certificate.edges[e].role {
+            for c in 0..2 {
+                force[0][c] += size * across[c];
+                force[1][c] -= size * across[c];
+            }
+        }
+        // Who tampers can compute shares and bound, too.
+        let proof = certificate.evaluate::<Ball>().unwrap();
+        let (bound, forces) = (2.0 * proof.bound, Evidence::default());
+        certificate.audit(&Claim { shares: proof.shares, bound, forces })
+    };
+    assert!(audited(0.0).is_ok());
+    let found = audited(1e-3);
+    assert!(matches!(found, Err(Rejection::OutOfBalance { .. })), "{found:?}");
 }
 
 /// The certificate of the block as files.

@@ -227,6 +227,30 @@ fn control_where_the_perturbation_may_lift_the_body_off_nothing_is_claimed() {
     assert_eq!(around(&problem, Degree::One, &u), Err(Unproved::HeldByContact));
 }
 
+/// Between two walls that it does not touch: how near the solution is, is known with one vertex moved in the middle of the body, and whether
+/// it touches a wall is known only if the vertex is moved by far less than the gap.
+#[test]
+fn beside_walls_nothing_is_claimed_of_a_displacement_that_is_further_off_than_they_are() {
+    let gap = 2.0_f64.powi(-20);
+    let problem = pressed(4, 0.25, false)
+        .with("left", Condition::contact(move |_| gap))
+        .with("right", Condition::contact(move |_| gap));
+    let nodes = solved(&problem, Degree::One).nodes;
+    let moved = |by: f64| -> Vec<[f64; 2]> {
+        let at = |x: &[f64; 2]| if *x == [1.0, 0.5] { by } else { 0.0 };
+        nodes.iter().map(|x| [at(x), -0.25 * x[1]]).collect()
+    };
+    assert!(nodes.contains(&[1.0, 0.5]));
+    let near = around(&problem, Degree::One, &moved(gap * 2.0_f64.powi(-20)));
+    assert!(near.as_ref().is_ok_and(|near| near.radius < gap), "{near:?}");
+    let far = around(&problem, Degree::One, &moved(1024.0 * gap));
+    assert_eq!(far, Err(Unproved::HeldByContact));
+    // Walls far away do not matter.
+    let free = pressed(4, 0.25, false);
+    let far = around(&free, Degree::One, &moved(1024.0 * gap));
+    assert!(far.as_ref().is_ok_and(|far| far.radius > gap), "{far:?}");
+}
+
 #[test]
 fn a_disk_that_a_force_presses_is_enclosed_and_its_contact_force_is_the_load() {
     let case = case("disk_force.toml", &[]);

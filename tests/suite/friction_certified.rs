@@ -22,6 +22,27 @@ fn solved(problem: &Problem, degree: Degree) -> Solution {
     solution
 }
 
+/// What the shear lacks of its bound at least, on the edges of the floor between two places.
+fn margin(certificate: &Certificate, [from, to]: [f64; 2]) -> f64 {
+    let x = |p: usize| match p.checked_sub(certificate.vertices.len()) {
+        None => certificate.vertices[p][0],
+        Some(cut) => {
+            let cut = certificate.cuts[cut];
+            let [a, b] = cut.ends.map(|end| certificate.vertices[end][0]);
+            a + cut.at * (b - a)
+        }
+    };
+    let of = |edge: &Edge| {
+        let Role::Contact { law: Law::Friction { shear, bound }, .. } = edge.role else {
+            return f64::INFINITY;
+        };
+        let inside = edge.ends.iter().all(|&p| (from - 1e-12..=to + 1e-12).contains(&x(p)));
+        let at = |k: usize| if inside { bound[k] - shear[k].abs() } else { f64::INFINITY };
+        at(0).min(at(1))
+    };
+    certificate.edges.iter().map(of).fold(f64::INFINITY, f64::min)
+}
+
 #[test]
 fn the_bound_is_above_the_error_of_exact_solutions_and_falls_with_the_mesh() {
     for (exact, tip, degree, first, limit, rate) in [
@@ -44,6 +65,13 @@ fn the_bound_is_above_the_error_of_exact_solutions_and_falls_with_the_mesh() {
             // What is proved to stick is where the exact solution does: (f) for x < 1/2, (e) for x < 1/3.
             let is_slip = |zone: &&Zone| matches!(zone.limit, Limit::Slip(_));
             let stuck: Vec<&Zone> = c.quantities.zones.iter().filter(is_slip).collect();
+            for zone in &stuck {
+                let Limit::Slip(most) = zone.limit else { continue };
+                // M^2 over the least that the shear lacks of its bound, known to the balls in which it is found.
+                let margin = margin(&c.certificate, zone.ends.map(|x| x[0]));
+                let expected = c.quantities.mean_stress.powi(2) / margin;
+                approx::assert_relative_eq!(most, expected, max_relative = 1e-9);
+            }
             assert!(stuck.iter().all(|zone| zone.to <= tip + 1e-9), "{stuck:?}");
             assert!(
                 level < 2 || degree == Degree::One || !stuck.is_empty(),
@@ -157,6 +185,8 @@ fn no_certificate_of_a_block_at_random_is_false_beside_one_on_a_finer_mesh() {
             let slides = s.boundaries[0].friction.unwrap();
             let c = certify(&problem, &s).unwrap();
             assert!(c.rigorous, "{:?}", c.reason);
+            // Half the square of the bound is about J without the work of friction.
+            assert_eq!((c.energy, c.compliance), (None, None));
             let (header, bytes) = encoded(&c);
             let audit = format::audit(header, &bytes).unwrap();
             assert_eq!(compare(problem, &audit.certificate, &audit.forces), Ok(None));

@@ -247,6 +247,14 @@ fn a_dual_stress_that_is_not_one_is_refused() {
     *free = Role::Loaded([[1e-9, 0.0]; 2]);
     let found = c.certificate.forces::<Ball>(&evidence);
     assert!(matches!(found, Err(WrongPair::Differs { .. })), "{found:?}");
+    // What holds the body holds one component only.
+    let mut evidence = c.quantities.evidence.clone();
+    let is_top = |edge: &usize| matches!(c.certificate.edges[*edge].role, Role::Held(..));
+    let top = (0..c.certificate.edges.len()).find(is_top).unwrap();
+    let Role::Held([true, true], _) = evidence.pairs[0].1.roles[top] else { panic!("held") };
+    evidence.pairs[0].1.roles[top] = Role::Held([false, true], [[0.0; 2]; 2]);
+    let found = c.certificate.forces::<Ball>(&evidence);
+    assert!(matches!(found, Err(WrongPair::Differs { what: "edge", .. })), "{found:?}");
     // An edge less.
     let mut evidence = c.quantities.evidence.clone();
     evidence.pairs[0].1.roles.pop();
@@ -495,6 +503,55 @@ fn evidence_that_is_wrong_at_one_vertex_of_the_boundary_is_refused() {
     }
 }
 
+#[test]
+fn a_bulge_of_w_where_the_body_is_held_is_refused() {
+    let c = certified(&tilted_punch(4), Degree::Two);
+    let is_held = |edge: &usize| matches!(c.certificate.edges[*edge].role, Role::Held(..));
+    let held = (0..c.certificate.edges.len()).find(is_held).unwrap();
+    for size in [0.0, 1e-6] {
+        let mut evidence = c.quantities.evidence.clone();
+        assert!(!evidence.liftings.is_empty());
+        for (_, w) in &mut evidence.liftings {
+            w.beyond.as_mut().unwrap()[1][held][0] += size;
+        }
+        for found in c.certificate.forces::<Ball>(&evidence).unwrap() {
+            let is_refused = matches!(found, Err(WrongLifting::OnSupport { edge }) if edge == held);
+            assert!(if size == 0.0 { found.is_ok() } else { is_refused }, "{size}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn the_checker_reports_the_intervals_that_were_proved() {
+    for degree in DEGREES {
+        let c = certified(&tilted_punch(4), degree);
+        let (header, bytes) = encoded(&c);
+        let audit = signorini::certificates::format::audit(header, &bytes).unwrap();
+        let mut signs = [0, 0];
+        for force in audit.forces() {
+            let is = |q: &&signorini::certificates::quantities::Quantity| {
+                let name = match q.name {
+                    Name::Reaction(k) => ["reaction force x", "reaction force y"][k],
+                    name => match name {
+                        Name::ContactForce => "contact force",
+                        Name::ContactMoment => "contact moment",
+                        Name::ReactionMoment => "reaction moment",
+                        _ => "another one",
+                    },
+                };
+                force.name == format!("{name} of {:?}", q.boundary)
+            };
+            let quantity = c.quantities.list.iter().find(is).unwrap();
+            assert_eq!(Ok(force.between), quantity.interval, "{}", force.name);
+            // Minus an interval would be another one.
+            let [low, high] = force.between;
+            assert!(low != -high, "{}", force.name);
+            signs[usize::from(high < 0.0)] += 1;
+        }
+        assert!(signs[0] >= 1 && signs[1] >= 1, "{signs:?}");
+    }
+}
+
 /// The places on Gamma_C, y = 0, where v is known, with g - v_n there: the vertices and the cuts of a v that is affine.
 fn gaps_of(certificate: &Certificate) -> Vec<(f64, f64)> {
     let at = |k: usize| (certificate.vertices[k], certificate.displacement[k]);
@@ -565,6 +622,21 @@ fn limits_of_zones_and_the_peak_are_what_the_theorem_says_of_the_certificate() {
         // Control: without what may be elsewhere it would be another number.
         assert!(forgetful > (1.0 + 1e-6) * peak, "n = {n}: {forgetful} {peak}");
     }
+}
+
+#[test]
+fn zones_are_measured_from_where_their_own_boundary_begins() {
+    // The floor runs to the right from (0, 0), the left side down to it from (0, 1); there nothing touches.
+    let problem = tilted_punch(8).with("left", Condition::Contact { gap: expression("1") });
+    let c = certified(&problem, Degree::One);
+    let mut zones = [0, 0];
+    for zone in &c.quantities.zones {
+        let is_left = zone.ends.iter().all(|x| x[0] == 0.0);
+        let along = zone.ends.map(|[x, y]| if is_left { 1.0 - y } else { x });
+        approx::assert_abs_diff_eq!(&along[..], &[zone.from, zone.to][..], epsilon = 1e-12);
+        zones[usize::from(is_left)] += 1;
+    }
+    assert!(zones[0] > 0 && zones[1] > 0, "{zones:?}");
 }
 
 #[test]

@@ -208,6 +208,19 @@ mod tests {
     }
 
     #[test]
+    fn a_named_point_on_the_cut_is_one_of_both_bodies_and_a_point_beside_it_stays_one() {
+        let glued = halves(|[x, _]| x < 2.0);
+        let vertex = |place| glued.vertices().iter().position(|x| *x == place).unwrap();
+        let points = [("on", [2.0, 1.0]), ("off", [1.0, 1.0])];
+        let points = points.map(|(name, place)| (name.to_owned(), vec![vertex(place)]));
+        let named = glued.clone().with_names(glued.surfaces().clone(), points.into()).unwrap();
+        let mesh = named.split_between(&names(["a", "b"])).unwrap();
+        assert!(named.point("on").is_ok());
+        assert!(matches!(mesh.point("on"), Err(MeshError::NotOnePoint { count: 2, .. })));
+        assert_eq!(mesh.point("off").unwrap(), named.point("off").unwrap());
+    }
+
+    #[test]
     fn surfaces_that_do_not_meet_are_named() {
         let glued = halves(|[x, _]| x < 2.0);
         let split = glued.split_between(&names(["a", "b"])).unwrap();

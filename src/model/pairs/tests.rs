@@ -383,6 +383,13 @@ fn the_reach_is_bounded_by_the_curvature_and_by_the_bodies() {
             && error.contains("expected a smaller reach"),
         "{error}"
     );
+    // One and a half times the radius.
+    let Err(DataError::Pair(PairError::TooFar { most, .. })) =
+        Pair::new("inner.top", "outer.bottom").with_reach(0.76).reach_on(&mesh, &smooth)
+    else {
+        panic!("too far");
+    };
+    assert_abs_diff_eq!(most, 0.75, epsilon = ROUNDING);
 }
 
 #[test]

@@ -804,6 +804,19 @@ fn tied_bodies_that_the_space_has_are_proved_to_rounding() {
 }
 
 #[test]
+fn where_glue_has_a_jump_the_loads_are_not_the_only_data() {
+    let with = |clearance: &str| {
+        let mut problem = squares([3, 4], [1.0, 2.0]).problem();
+        problem.pairs[0].law = Law::Bonded;
+        problem.pairs[0].clearance = Some(expression(clearance));
+        certified(&problem.with("upper.top", Condition::Pressure(expression("0.1"))), Degree::One)
+    };
+    let [closed, apart] = ["0", "0.01"].map(with);
+    assert!(closed.energy.is_some() && closed.compliance.is_some());
+    assert!(apart.energy.is_some() && apart.compliance.is_none());
+}
+
+#[test]
 fn a_certificate_of_tied_bodies_that_is_tampered_with_is_refused() {
     for (law, degree) in TIED.into_iter().flat_map(|law| DEGREES.map(|degree| (law, degree))) {
         let problem = tied([4, 6], [1.0, 2.0], law);
@@ -842,8 +855,36 @@ fn a_certificate_of_tied_bodies_that_is_tampered_with_is_refused() {
             }
         });
         assert!(matches!(gap.evaluate::<Ball>(), Err(Rejection::Wrong { .. })));
-        let difference = compare(problem, &gap, &c.quantities.evidence).unwrap_err();
+        let difference = compare(problem.clone(), &gap, &c.quantities.evidence).unwrap_err();
         assert!(difference.to_string().contains("the gap"), "{difference}");
+        if law == Law::Bonded {
+            let offset = changed(&|certificate| {
+                for edge in &mut certificate.edges {
+                    if let Role::Contact { law: EdgeLaw::Bonded { offset, .. }, .. } =
+                        &mut edge.role
+                    {
+                        *offset = offset.map(|g| g + 1e-9);
+                    }
+                }
+            });
+            assert!(offset.evaluate::<Ball>().is_ok());
+            let difference = compare(problem, &offset, &c.quantities.evidence).unwrap_err();
+            assert!(difference.to_string().contains("the jump along y"), "{difference}");
+            // One edge the other way round: its ends are tied to what is tied to them.
+            let round = changed(&|certificate| {
+                let all = || (0..c.certificate.edges.len()).filter(tied);
+                let ends = |f: usize| c.certificate.edges[f].ends;
+                let f = all().find(|&f| all().any(|g| ends(g)[1] == ends(f)[0])).unwrap();
+                let second = certificate.facing[&f];
+                certificate.edges[second].role = certificate.edges[f].role;
+                certificate.edges[f].role = Role::Facing;
+            });
+            let refused = round.evaluate::<Ball>();
+            assert!(
+                matches!(refused, Err(Rejection::Wrong { what: "point", .. })),
+                "{degree:?}: {refused:?}"
+            );
+        }
         // v on the first body is what it is on the second one, whatever the file says.
         let moved = changed(&|certificate| {
             let p = certificate.edges[e].ends[0];

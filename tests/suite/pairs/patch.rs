@@ -168,6 +168,10 @@ fn glued_bodies_are_exact_in_shear() {
             let s = proved(&bonded, &method(degree));
             let error = off(&bonded, &s.displacement, degree, exact);
             assert!(error <= ROUNDING, "{moduli:?} {degree:?}: {error:e}");
+            // All of the interface is in contact, once.
+            for length in [s.quantities.contact_length, s.boundaries[0].length] {
+                assert!((length - 1.0).abs() <= 1e-12, "{length}");
+            }
             // The force on the lower body, and nothing along the normal.
             let [x, y] = s.boundaries[0].resultant;
             assert!(abs_diff_eq!(x, shear, epsilon = 1e-11) && y.abs() <= 1e-11, "{x} {y}");
