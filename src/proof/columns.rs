@@ -78,7 +78,7 @@ impl<'a> Enclosed<'a> {
             let rows = z.z.chunks_exact_mut(count).zip(c.chunks_exact(count));
             for ((z, c), by) in rows.zip(&self.of_factor) {
                 for ((z, c), moved) in z.iter_mut().zip(c).zip(&mut moved) {
-                    *z = *z + DoubleDouble::from(*c);
+                    *z += DoubleDouble::from(*c);
                     *moved += by * (c.abs() + z.head().abs());
                 }
             }
@@ -273,7 +273,7 @@ mod tests {
             let left = |a: &LowerTriangle<PreciseBall>, z: &Columns, column: usize| -> f64 {
                 let at = |k: usize| PreciseBall::point(z.z[k * all.len() + column]);
                 let mut left = times(a, &(0..n).map(at).collect::<Vec<_>>());
-                all[column].iter().for_each(|&(k, b)| left[k] = left[k] - b);
+                all[column].iter().for_each(|&(k, b)| left[k] -= b);
                 left.iter().zip(&crude).map(|(t, c)| c * t.least_magnitude()).sum()
             };
             // Corrected as far as that leads on.
