@@ -651,6 +651,17 @@ mod tests {
         }
     }
 
+    #[test]
+    fn the_controls_that_are_counted_are_those_that_are_listed() {
+        let page = ledger().expect("a page");
+        let lines = page.lines().filter(|line| line.starts_with("- *Controls:*"));
+        let listed = lines.flat_map(links).filter(|(shown, _)| !shown.starts_with('`')).count();
+        let checks = claims::all().into_iter().flat_map(|claim| claim.checks);
+        assert!(page.contains(&format!("; {listed} controls.")), "{listed}");
+        // What is asked can fail: one of them is a control of two engines.
+        assert!(listed < checks.filter(|check| check.control).count());
+    }
+
     /// A name that is called, behind that of a module or a type, or `.` for a method.
     type Call<'a> = (&'a str, &'a str);
 
