@@ -48,7 +48,13 @@ const RESIDUAL: Place = ("src/contact/discretization.rs", "pub fn residual(");
 const LINEAR: Place = ("src/contact/residual.rs", "pub fn linear_residual<");
 const EXACT_RESIDUAL: Place = ("props/src/discrete.rs", "pub fn residual(");
 const B: Place = ("props/src/bodies/definition.rs", "pub fn b(");
+const A_ON: Place = ("props/src/bodies/definition.rs", "pub fn a_on(");
 const BIG_A: Place = ("props/src/bodies/definition.rs", "pub fn big_a(");
+const CONTACT: Place = ("props/src/bodies/definition.rs", "pub fn contact_on(");
+const MATRICES: Place = ("props/src/bodies/definition.rs", "pub fn matrices_on(");
+const STRESSES_ON: Place = ("props/src/bodies/definition.rs", "fn stresses_on(");
+const AFFINE_SOLUTION: Place = ("props/src/claims/lemma_3_1.rs", "fn solution(");
+const A: Place = ("props/src/bodies/definition.rs", "pub fn a(");
 const DEFINED_PART: Place = ("props/src/naive.rs", "pub fn positive_part_times(");
 const BOUND: Place = ("study/src/interpolation.rs", "pub fn bound(");
 const COROLLARY: Place = ("study/src/a_priori.rs", "pub fn corollary_bound<");
@@ -58,12 +64,12 @@ const COROLLARY: Place = ("study/src/a_priori.rs", "pub fn corollary_bound<");
 pub const ITEMS: &[Item] = &[
     item("(1)", "equilibrium, Hooke's law with a tensor A, boundary conditions",
         &[("src/kernel/material.rs", "pub fn stress<")],
-        "H2; the boundary conditions away from Gamma_C, but on bodies with affine fields"),
+        "H2; f; the boundary conditions away from Gamma_C, but on bodies with affine fields"),
     item("(2)", "the contact conditions", &[("src/kernel/contact.rs", "pub fn violation(")],
-        "(iv), no shear, but for the solutions of row 8: it is natural in (8)"),
+        "(iv), no shear, for which (8) has no term, but for the solutions of row 8"),
     item("V", "displacements in H^1 that vanish on Gamma_D", &[], "that V is complete (analysis)")
         .beside(&[("src/model/constraints.rs", "pub struct Constraints")]),
-    item("K", "the cone v_n <= 0 in V", &[BIG_A],
+    item("K", "the cone v_n <= 0 in V", &[A],
         "as (3)")
         .beside(&[("src/audit/balanced.rs", "pub fn penetrations(")]),
     item("L", "the loads", &[("src/model/loads.rs", "pub(crate) fn assemble_twice(")],
@@ -74,43 +80,43 @@ pub const ITEMS: &[Item] = &[
     item("(3)", "find u in K with a(u, v - u) >= L(v - u) for all v in K", &[],
         "that it has one solution (Stampacchia); that it is (1)-(2): H2, H5; (3) itself, but for affine u and v - u a shape function of P1 or its opposite"),
     item("(4)", "a <= [a]+, a [a]+ = [a]+^2", &[POSITIVE_PART], ""),
-    item("Proposition 2.1", "with gamma > 0, (2)(i)-(iii) on Gamma_C are equivalent to (5)", &[PRESSURE], "H5, H6"),
-    item("(5)", "sigma_n = -(1/gamma)[u_n - gamma sigma_n]+", &[PRESSURE], "H5, H6"),
+    item("Proposition 2.1", "with gamma > 0, (2)(i)-(iii) on Gamma_C are equivalent to (5)", &[PRESSURE], "H6"),
+    item("(5)", "sigma_n = -(1/gamma)[u_n - gamma sigma_n]+", &[PRESSURE], "H6"),
     item("Remark 2.2", "gamma may be a positive function on Gamma_C", &[PRESSURE],
         "that gamma is measurable: it is constant on each edge"),
-    item("(6)", "a(u, v) - int gamma sigma_n(u) sigma_n(v) + int (1/gamma)[P(u)]+ P0(v) = L(v), from a(u, v) - int sigma_n(u) v_n = L(v) and (5)", &[PRESSURE, B], "H2"),
+    item("(6)", "a(u, v) - int gamma sigma_n(u) sigma_n(v) + int (1/gamma)[P(u)]+ P0(v) = L(v), from a(u, v) - int sigma_n(u) v_n = L(v) and (5)", &[PRESSURE, B], "H2, H5, H6"),
     item("(7)", "gamma(x) = gamma0 h_T for x in T", &[("src/contact/contact_line.rs", "let gamma = gamma0(t) * mesh.diameter(t);")],
         "meshes of more than eight triangles"),
-    item("Remark 2.3", "(8) holds formally for u", &[PRESSURE], "the regularity that the formula asks for"),
+    item("Remark 2.3", "(8) holds formally for u", &[PRESSURE], "H2, H5, H6"),
     item("(8)", "the method: A_gamma(u^h, v^h) + int (1/gamma)[P(u^h)]+ P0(v^h) = L(v^h) for all v^h in V^h", &[LINEAR, INTEGRALS],
-        "loads and gaps of degree above 2; P2 without quadrature error, whose roots are irrational, but in doubles (`assembled.rs`, `edges.rs` in `props/tests/program`); meshes of more than eight triangles, but beside other programs")
+        "loads and gaps of degree above 2; P2 without quadrature error, but in doubles (`assembled.rs`, `edges.rs` in `props/tests/program`); meshes of more than eight triangles, but beside other programs")
         .beside(&[RESIDUAL]),
     item("P_gamma, A_gamma", "v_n - gamma sigma_n(v); a(u, v) - int gamma sigma_n(u) sigma_n(v)", &[P, EDGE, STRESSES],
-        "meshes of more than eight triangles"),
+        "as (7)"),
     item("(9)", "lambda^h is the L^2-projection of -(1/gamma)P(u^h) on the nonpositive mu", &[PRESSURE],
         "H5, but for affine mu and P1"),
     item("(10)", "(9) with the weight gamma", &[PRESSURE], "H5, but for affine mu and P1"),
     item("the mixed problem", "(8) is a mixed method with stabilisation; sigma_n(u^h) is not lambda^h", &[PRESSURE],
         "H5, but for P1, and for P2 by the points of a rule"),
-    item("Lemma 3.1", "consistency: the solution u of (1)-(2), in H^(3/2 + nu) with nu > 0, is one of (8)", &[B],
-        "solutions other than affine ones and, for isotropic A, a curved one and, by quadrature, drawn smooth ones, ends of contact and corners: for others it is (6), or `tests/suite/tensor.rs`")
+    item("Lemma 3.1", "consistency: the solution u of (1)-(2), in H^(3/2 + nu) with nu > 0, is one of (8)", &[AFFINE_SOLUTION, B, BIG_A, CONTACT, LINEAR],
+        "H6; solutions other than affine ones and, for isotropic A, a curved one and, by quadrature, drawn smooth ones, ends of contact and corners: for others it is (6), or `tests/suite/tensor.rs`")
         .beside(&[RESIDUAL]),
     item("Lemma 3.2", "A_gamma is elliptic on V^h for small gamma0, C independent of gamma0 and h", &[COERCIVITY],
         "H1, H5; an A that varies inside a triangle"),
-    item("(11)", "|gamma^1/2 sigma_n(v^h)|^2 <= C gamma0 |v^h|_1^2", &[COERCIVITY, STIFFNESS],
+    item("(11)", "|gamma^1/2 sigma_n(v^h)|^2 <= C gamma0 |v^h|_1^2", &[COERCIVITY, STIFFNESS, MATRICES, A_ON, STRESSES_ON],
         "H3, H5; an A that varies inside a triangle"),
     item("a(., .)", "it is continuous in |.|_1", &[("src/kernel/material.rs", "pub fn stress<")],
         "H4; an A that is not isotropic")
         .beside(&[("src/kernel/element.rs", "pub fn stiffness<")]),
     item("Theorem 3.3", "(8) has one solution for small gamma0", &[POSITIVE_PART, EXACT_RESIDUAL],
-        "that a(., .) is positive definite on V^h, but on the meshes of row 10; that a strongly convex function on R^N has one minimiser: in place of Brezis (`docs/theory.md`, 3.2)"),
-    item("(12)", "B^h is strongly monotone", &[POSITIVE_PART, B, DEFINED_PART],
-        "H1, (11); H5: on random bodies it is asked of the definitions written out, which its first exact check compares with the solver's loops"),
+        "H5; P1 with a cut edge, whose solution is irrational: Newton's point is near u~ to 2^-40; that a(., .) is positive definite on V^h, but on the meshes of row 10; that a strongly convex function on R^N has one minimiser: in place of Brezis (`docs/theory.md`, 3.2)"),
+    item("(12)", "B^h is strongly monotone", &[POSITIVE_PART, B, BIG_A, CONTACT, DEFINED_PART, LINEAR],
+        "H1, (11); H5: bodies (P2: 5, by two points) have the definitions written out, which its first exact check compares with the solver's loops"),
     item("Theorem 3.4", "for small gamma0, |u - u^h|_1 + |gamma^1/2 (sigma_n(u) + [P(u^h)]+/gamma)| <= C inf over v^h of (|u - v^h|_1 + |gamma^-1/2 (u_n - v_n^h)| + |gamma^1/2 sigma_n(u - v^h)|)", &[PRESSURE],
-        "(8), (11), H2, H4, H5; it is in |.|_a: for |.|_1 see (13)")
+        "(8), (11), H2, H4, H5, H6; |.|_1, but by (13); Rocq starts from [9.4] of `docs/theory.md`")
         .beside(&[("study/src/a_priori.rs", "pub fn plain_squared<"), ("props/tests/program/a_priori.rs", "pub fn plain_bound_is_that_of_theorem_3_4<")]),
     item("(13)", "Theorem 3.4 with C independent of h and u", &[],
-        "H1, H3, H4 and all of Theorem 3.4"),
+        "H1, H3, H4 and all of Theorem 3.4; squared: roots of sums and the infimum are not run"),
     item("(14)", "ellipticity, Young, (8) and Green", &[],
         "H1, H2, H3, (8), and H5 for its last step"),
     item("(15)", "u_n <= 0 is used", &[], "H5; the sum of these terms with (14)"),
@@ -122,10 +128,10 @@ pub const ITEMS: &[Item] = &[
     item("(20)", "(18) and (19) in (17), and the last estimate", &[],
         "(15) to (19) as integrals: H5"),
     item("Theorem 3.5", "the rate of convergence", &[],
-        "H1: all is in |.|_a; for P1, nu = 1/2, isotropic A and exact integrals the number, on c_T of (22) as quoted, is proved in `docs/theory.md`, 9.6, and compared with the solver's errors (`tests/suite/convergence.rs`); otherwise (22)-(24) are hypotheses, and rates are observed there on finitely many meshes")
+        "H1, H3, (13) squared, (22)-(24); for P1, nu = 1/2, isotropic A and exact integrals a bound with numbers (c_T as quoted) is proved on paper (`docs/theory.md`, 9.6); it and the rates are compared with errors on meshes (`tests/suite/convergence.rs`)")
         .beside(&[BOUND]),
     item("(21)", "h^(1/2 + nu), C independent of h and u", &[],
-        "(13) and all of Theorem 3.5; rates at corners (nu < 1/2) are observed there, too")
+        "as Theorem 3.5; rates at corners (nu < 1/2) are observed there, too")
         .beside(&[BOUND]),
     item("(22)-(24)", "interpolation estimates",
         &[("study/src/interpolation.rs", "pub fn gradient_constant_squared<"), ("study/src/interpolation.rs", "pub fn trace_constant_squared<")],

@@ -17,10 +17,10 @@ use crate::solvers;
 const HEAD: &str = "\
 # What is verified
 
-`cargo run -p props -- ledger` prints this page from the claims; a test compares. Sentences are read, in a quarter of an hour; lines
-of links are looked up. An item of the paper has the lines that its checks call (*Code*), others that it
-is about (*Uncalled*), and its checks; a check leads to the function that states what is compared, a control to its mistake. §9 is
-row 9.
+`cargo run -p props -- ledger` prints this page from the claims; a test compares. Read the sentences, look
+links up. An item of the paper has the lines that its checks call (*Code*), others that it
+is about (*Uncalled*), and its checks; a check leads to the function that states what is compared, a control to its mistake, § to a
+row. Numbers without a row were rows that are tests now.
 
 The paper is F. Chouly, P. Hild, *A Nitsche-based method for unilateral contact problems: numerical analysis*, SIAM J.
 Numer. Anal. 51 (2013) 1295-1307. n is the outward normal, sigma_n negative in compression, P(v) = v_n - g - gamma sigma_n(v)
@@ -34,21 +34,22 @@ const BODY: &str = "\
 A statement is a Rust function, generic over the number type. It compares the kernel's own functions with the paper's formulas, or
 is a step of the paper's algebra, which calls nothing of the kernel (most of rows 11 and 15). It *holds*, with the class of its
 data (each must be reached), is *vacuous*, where its hypothesis is not met, or *fails*. Other checks assemble on random bodies,
-solve, or compare doubles with exact numbers. Every row has **controls**: planted mistakes, which the same check must reject. The
-label of a check is the strongest that it has:
+solve, or compare doubles with exact numbers. Every row has **controls**: planted mistakes, which the same check must reject. A
+check's label is its strongest:
 
 - **Rocq**: the statement, written by hand in [`paper.v`](props/rocq/paper.v), is a theorem over the reals; neither the function nor the
   engine that found its *proof* is trusted.
 - **proof**: every comparison of polynomials forks the path, and each path that fails contradicts itself, by a certificate (a sum of
   products of facts and squares that is positive and zero): the statement holds over every ordered field, so over the reals.
-- **exact**: random rationals without a tolerance; 200 draws of a statement, and more until 100 meet its hypothesis.
-- **doubles**: 5,000 random finite doubles with edge values and ties, or a comparison with exact rationals and a stated bound.
-- **Kani**: the model checker has decided a harness for all numbers that it ranges over, by a receipt made of these very files.
+- **exact**: rationals, random or given, without a tolerance; 200 draws of a statement, more until 100 meet its hypothesis; of
+  bodies 3 to 90.
+- **doubles**: 5,000 random draws with edge values and ties (bitwuzla was asked about all finite doubles), or a comparison with
+  exact rationals and a stated bound.
+- **Kani**: the model checker has decided a harness for all its numbers, by a receipt made of these files.
 - **all cases**: each of at most 2^20 cases is run. **draws**: random draws of a harness, *and no more is known*; `for_all` in its
   name is what Kani is asked.
 
-Receipts (`props/receipts`) are written by `props receipt`, `.ci/rocq.py` and
-`.ci/smt.py`. Promises beyond the paper are tested in `props/tests/program`, beside exact rationals, and in `tests/suite`.
+Receipts are in `props/receipts`. Promises beyond the paper are tested in `props/tests/program`, beside exact rationals, and in `tests/suite`.
 
 ## What is trusted
 
@@ -60,12 +61,13 @@ For this page: the compiler, the standard library, num-rational, num-bigint, pro
 *proof*: [rationals](props/rational/src/lib.rs), [polynomials](props/src/proof/polynomial.rs),
 [symbols](props/src/proof/symbol.rs), the [forking of paths](props/src/proof/explorer.rs) and the
 [checker of certificates](props/src/proof/certificate.rs), not the search for them;
-[`check_certificates.py`](reference/check_certificates.py) checks exported proofs again with fractions alone, and their hashes, not that the polynomials are
-those of the function. What Rocq has proved needs neither. On meshes: the definitions written out
+[`check_certificates.py`](reference/check_certificates.py) checks exported proofs again with fractions alone, not that their polynomials are
+those of the function. On meshes: the definitions written out
 ([fields](props/src/naive.rs), [bodies](props/src/bodies.rs), [method](props/src/bodies/definition.rs),
 [matrices](props/src/discrete.rs)), [exact elimination](props/src/elimination.rs), the
 [counts of roundings](props/src/claims/assembled/compare.rs), the [number types](props/src/numbers/mod.rs). For harnesses: the
-[stand-in of Kani](props/src/harness.rs). Random bodies have lambda and mu or a tensor that couples all strains.
+[stand-in of Kani](props/src/harness.rs). Random bodies are two or four triangles, isotropic or with a tensor that couples all strains;
+gamma is gamma0 times a drawn number there, and gamma0 h_T on meshes of the solver.
 
 ## Errata of the paper
 
@@ -75,19 +77,19 @@ stress^2 length, that of the other terms gamma stress^2 length. As printed both 
 - (17) with gamma = 2, sigma_n(u) = -1, all else 0: 0 + 2 <= 1; with the factor 2 <= 2.
 - (18) with z = sigma_n(u - v^h) = 1, gamma = 1/4, beta_2 = 1: 1 <= 1/8 + 1/8; with the factor 1/4 <= 1/4.
 
-With it both are proved, and the rest of the proof uses them so: the theorem stands (row 11). In section 2.3 the set of the
-multipliers is printed as L^2(Gamma_C), for the cone of its nonpositive functions. Before (23) the last equality is h_T <= h.
+With it both are proved, and used so: the theorem stands (row 11). In section 2.3 the set of the
+multipliers is printed as L^2(Gamma_C), for its nonpositive functions. Before (23) the last equality is h_T <= h.
 
 ## What is taken from analysis
 
 No check establishes these. Where an item has them, or other items, as *Unchecked*, its checks start from them.
 
 - **H1**: Korn's inequality alpha |v|_1^2 <= a(v, v), with meas(Gamma_D) > 0, on every body; alpha is not computed.
-- **H2**: Green's formula, but for affine fields (row 8 has it inside the residual, for a piecewise polynomial one).
-- **H3**: the continuity of a(., .), from |.|_a to |.|_1; it has a number for isotropic A only (row 15).
-- **H4**: the Cauchy-Schwarz and triangle inequalities of the norms.
-- **H5**: from a point of Gamma_C to integrals, and from an edge to any mesh, which is a sum: on the page (`docs/theory.md`, 2.3,
-  3.2, 8), run on random bodies where a check says so. What has H5 is checked at a point.
+- **H2**: Green's formula, but for affine fields, and inside the residuals of row 8.
+- **H3**: |v|_a^2 <= M |v|_1^2; M is a number for isotropic A only (row 15).
+- **H4**: the Cauchy-Schwarz and triangle inequalities of norms.
+- **H5**: what holds at points of Gamma_C holds for integrals, and what holds on edges or triangles for meshes: on paper
+  (`docs/theory.md`, 2.3, 3.2, 8), and run where an *exact* check integrates over bodies.
 - **H6**: the traces u_n and sigma_n exist, and are square integrable.
 ";
 
@@ -139,6 +141,9 @@ impl Places {
         for folder in ["props/src", "props/tests", "src", "study/src"] {
             add(&root().join(folder), &mut files).map_err(|why| format!("{folder}: {why}"))?;
         }
+        let theorems =
+            std::fs::read_to_string(root().join(PAPER)).map_err(|why| format!("{PAPER}: {why}"))?;
+        files.push((PAPER.to_owned(), theorems));
         Ok(Places { files })
     }
 
@@ -194,10 +199,16 @@ impl Places {
     fn line(&self, (file, text): Place) -> Result<usize, String> {
         let source = self.files.iter().find(|(name, _)| name == file);
         let (_, source) = source.ok_or(format!("there is no file {file}"))?;
-        let line = source.lines().position(|line| line.trim_start().starts_with(text));
+        let line = source.lines().position(|line| {
+            let line = line.trim_start();
+            line.strip_prefix("Theorem ").unwrap_or(line).starts_with(text)
+        });
         line.map(|line| line + 1).ok_or(format!("no line of {file} begins with '{text}'"))
     }
 }
+
+/// Where the theorems are.
+const PAPER: &str = "props/rocq/paper.v";
 
 /// Where the claims are.
 const CLAIMS: &str = "props/src/claims/";
@@ -322,6 +333,14 @@ fn linked(label: &str, code: &[Place], places: &Places) -> Result<String, String
     Ok(if code.is_empty() { String::new() } else { format!(" *{label}:* {}.", links?.join(", ")) })
 }
 
+/// The theorem with the name of an item that Rocq has proved without the paths of a predicate.
+fn by_hand(item: &Item) -> Vec<Place> {
+    let name = item.name.to_lowercase().replace([' ', '.'], "_");
+    let theorems = paper::theorems().into_iter().filter(|theorem| theorem.is_proved());
+    let found = theorems.filter(|theorem| theorem.predicate.is_none() && theorem.name == name);
+    found.map(|theorem| (PAPER, theorem.name)).collect()
+}
+
 /// The anchor that GitHub makes of the heading of a row.
 fn anchor(Claim { id, title, .. }: &Claim) -> String {
     let kept = |c: &char| c.is_alphanumeric() || [' ', '-', '_'].contains(c);
@@ -349,6 +368,7 @@ fn of_item(item: &Item, claims: &[Claim], places: &Places) -> Result<String, Str
     }
     let mut links = linked("Code", item.code, places)?;
     links += &linked("Uncalled", item.uncalled, places)?;
+    links += &linked("Rocq, by hand", &by_hand(item), places)?;
     let (included, own) = beyond(item, claims);
     if let Some(included) = included {
         let _ = write!(links, " Those of {included}, and:");
@@ -358,6 +378,11 @@ fn of_item(item: &Item, claims: &[Claim], places: &Places) -> Result<String, Str
         let _ = write!(text, "\n{LINKS}{}", links.trim_start());
     }
     Ok(text + "\n")
+}
+
+/// The controls of a row, each once.
+fn controls(claim: &Claim) -> Vec<Vec<&Check>> {
+    by_name(claim.checks.iter().filter(|check| check.control))
 }
 
 /// What holds by which engines, and what the receipts are about.
@@ -395,7 +420,7 @@ fn state(claims: &[Claim]) -> String {
         of(Engine::Doubles, true),
         of(Engine::Doubles, false),
         harnesses.iter().filter(|harness| harness.counterexample.is_none()).count(),
-        checks().filter(|check| check.control).count(),
+        claims.iter().map(|claim| controls(claim).len()).sum::<usize>(),
         rocq.head.join(", "),
         rocq.date,
         theorems.len(),
@@ -411,17 +436,21 @@ fn state(claims: &[Claim]) -> String {
 fn ranges(harnesses: &[Harness]) -> String {
     let holds: Vec<&str> =
         harnesses.iter().filter(|h| h.counterexample.is_none()).map(|h| h.name).collect();
-    let over_doubles = holds.iter().filter(|name| name.ends_with("doubles")).count();
-    let over_words = holds.iter().filter(|name| name.ends_with("i16")).count();
+    let ending = |ends: &[&str]| {
+        holds.iter().filter(|name| ends.iter().any(|end| name.ends_with(end))).count()
+    };
+    let over_doubles = ending(&["_for_all_doubles", "_for_all_finite_doubles"]);
+    let over_numbers = ending(&["_for_all_doubles_but_nan"]);
+    let over_words = ending(&["i16"]);
     let over_bytes = holds
         .iter()
         .filter(|name| name.contains("for_all_i8") || name.ends_with("i8_gamma"))
         .count();
     format!(
-        "Of the {} harnesses that must hold, {over_doubles} range over all doubles or all finite ones, {over_words} over i16, \
-         {over_bytes} over bytes, {} over smaller sets, which their names say.",
+        "Of the {} harnesses that must hold, {over_doubles} range over all doubles or all finite ones, {over_numbers} over all but NaN, \
+         {over_words} over i16, {over_bytes} over bytes, {} over smaller sets, which their names say.",
         holds.len(),
-        holds.len() - over_doubles - over_words - over_bytes,
+        holds.len() - over_doubles - over_numbers - over_words - over_bytes,
     )
 }
 
@@ -489,7 +518,7 @@ fn row(claim: &Claim, places: &Places) -> Result<String, String> {
         text.push('\n');
     }
     let _ = write!(text, "{LINKS}{}", links.trim_start());
-    let controls = by_name(claim.checks.iter().filter(|check| check.control));
+    let controls = controls(claim);
     let mut shown = Vec::new();
     let mut at: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for control in controls.iter().map(|checks| checks[0]) {
@@ -622,22 +651,44 @@ mod tests {
         }
     }
 
-    /// A name that is called, behind that of a module or a type.
+    #[test]
+    fn the_controls_that_are_counted_are_those_that_are_listed() {
+        let page = ledger().expect("a page");
+        let lines = page.lines().filter(|line| line.starts_with("- *Controls:*"));
+        let listed = lines.flat_map(links).filter(|(shown, _)| !shown.starts_with('`')).count();
+        let checks = claims::all().into_iter().flat_map(|claim| claim.checks);
+        assert!(page.contains(&format!("; {listed} controls.")), "{listed}");
+        // What is asked can fail: one of them is a control of two engines.
+        assert!(listed < checks.filter(|check| check.control).count());
+    }
+
+    /// A name that is called, behind that of a module or a type, or `.` for a method.
     type Call<'a> = (&'a str, &'a str);
 
-    /// A function: its name, its file, the header of the `impl` around it, and what it calls.
+    /// A function: its name, its file, the header of the `impl` around it, whether it is a method, and what it calls.
     struct Function<'a> {
         name: &'a str,
         file: &'a str,
         header: &'a str,
+        is_method: bool,
         calls: Vec<Call<'a>>,
     }
 
-    /// The functions of the sources, which of them have a name, and which of them each one calls.
+    /// A name that is called, with the file of the function that it means, if that is known.
+    type Reached<'a> = (&'a str, Option<&'a str>);
+
+    /// The functions of the sources, which of them have a name, and what each one calls.
     struct Functions<'a> {
         all: Vec<Function<'a>>,
         named: BTreeMap<&'a str, Vec<usize>>,
-        called: Vec<Vec<usize>>,
+        called: Vec<Vec<(&'a str, Option<usize>)>>,
+        imported: BTreeMap<&'a str, BTreeSet<&'a str>>,
+    }
+
+    /// The names in the imports of a text.
+    fn imports(text: &str) -> BTreeSet<&str> {
+        let statements = text.split("use ").skip(1).filter_map(|rest| rest.split(';').next());
+        statements.flat_map(|names| names.split(|c| !is_name(c))).collect()
     }
 
     fn is_name(c: char) -> bool {
@@ -671,7 +722,8 @@ mod tests {
                 depth == 0
             });
             let body = &part[open..close.map_or(part.len(), |close| open + close)];
-            found.push(Function { name: &part[..end], file, header, calls: calls(body) });
+            let (name, is_method) = (&part[..end], part[..open].contains("self"));
+            found.push(Function { name, file, header, is_method, calls: calls(body) });
         }
         found
     }
@@ -695,57 +747,92 @@ mod tests {
             for (i, function) in all.iter().enumerate() {
                 named.entry(function.name).or_default().push(i);
             }
-            let mut functions = Functions { all, named, called: Vec::new() };
-            functions.called = (0..functions.all.len())
-                .map(|i| functions.meant(functions.all[i].file, &functions.all[i].calls))
-                .collect();
+            let files = places.files.iter();
+            let imported = files.map(|(file, text)| (file.as_str(), imports(text))).collect();
+            let mut functions = Functions { all, named, called: Vec::new(), imported };
+            let called = functions.all.iter().map(|f| functions.meant_by(f.file, &f.calls));
+            functions.called = called.collect();
             functions
         }
 
-        /// Which functions names in a file mean: those of the module or the type before a name; else those of this file, or the only one
-        /// of props/src or of all.
-        fn meant(&self, file: &str, calls: &[Call]) -> Vec<usize> {
-            let mut found = Vec::new();
-            for &(before, name) in calls {
-                let Some(all) = self.named.get(name) else { continue };
-                let of = |is_meant: &dyn Fn(&Function) -> bool| -> Vec<usize> {
-                    all.iter().copied().filter(|&i| is_meant(&self.all[i])).collect()
-                };
-                let is_in = |f: &Function| {
-                    let module =
-                        f.file.strip_suffix(".rs").and_then(|file| file.rsplit('/').next());
-                    module == Some(before)
-                        || f.header.split(|c| !is_name(c)).any(|name| name == before)
-                };
-                let mut meant = if before.is_empty() { Vec::new() } else { of(&is_in) };
-                if meant.is_empty() {
-                    meant = of(&|f| f.file == file);
-                }
-                if meant.is_empty() {
-                    let near = of(&|f| f.file.starts_with("props/src/"));
-                    let is_near = file.starts_with("props/src/") && !near.is_empty();
-                    let found = if is_near { near } else { all.clone() };
-                    meant = if found.len() == 1 { found } else { Vec::new() };
-                }
-                found.extend(meant);
-            }
-            found.sort_unstable();
-            found.dedup();
-            found
+        /// Whether a file, or the one above it where it has all of that, imports this name.
+        fn imports(&self, file: &str, name: &str) -> bool {
+            let above = file.rsplit_once('/').map(|(folder, _)| format!("{folder}.rs"));
+            let names = |file: &str| self.imported.get(file).is_some_and(|n| n.contains(name));
+            names(file) || above.is_some_and(|above| names(&above) || self.has(&above, name))
         }
 
-        /// All names that are called by these calls in a file, by the functions that they mean, and so on.
-        fn reached(&self, file: &str, calls: &[Call<'a>]) -> BTreeSet<&'a str> {
-            let mut names: BTreeSet<&str> = calls.iter().map(|(_, name)| *name).collect();
+        fn has(&self, file: &str, name: &str) -> bool {
+            let of = self.named.get(name).into_iter().flatten();
+            of.copied().any(|i| self.all[i].file == file)
+        }
+
+        /// Which functions a name in a file means: those of the module or the type before the name; else those of this file, or the only one
+        /// of props/src or of all.
+        fn meant(&self, file: &str, (before, name): Call) -> Vec<usize> {
+            let Some(all) = self.named.get(name) else { return Vec::new() };
+            let of = |is_meant: &dyn Fn(&Function) -> bool| -> Vec<usize> {
+                all.iter().copied().filter(|&i| is_meant(&self.all[i])).collect()
+            };
+            let is_in = |f: &Function| {
+                let mut modules = f.file.trim_end_matches(".rs").split('/');
+                modules.any(|module| module == before)
+                    || f.header.split(|c| !is_name(c)).any(|name| name == before)
+            };
+            let is_path = before.starts_with(char::is_alphabetic);
+            let mut meant = if is_path { of(&is_in) } else { Vec::new() };
+            // Another module than those with the functions.
+            let beside = ["self", "super", "crate"];
+            if is_path && before.starts_with(char::is_lowercase) && !beside.contains(&before) {
+                return meant;
+            }
+            // A method, one of the crates below; or a function that the file has, or imports.
+            let is_such = |f: &Function| {
+                let is_below = |folder| file.starts_with(folder) && !f.file.starts_with(folder);
+                let is_near = !["src/kernel/", "src/"].iter().any(is_below);
+                match before {
+                    "." => f.is_method && is_near,
+                    _ => is_path || !f.is_method && (f.file == file || self.imports(file, name)),
+                }
+            };
+            if meant.is_empty() {
+                meant = of(&|f| f.file == file && is_such(f));
+            }
+            if meant.is_empty() {
+                let all: Vec<usize> = of(&is_such);
+                let near = of(&|f| f.file.starts_with("props/src/") && is_such(f));
+                let is_near = file.starts_with("props/src/") && !near.is_empty();
+                let found = if is_near { near } else { all };
+                meant = if found.len() == 1 { found } else { Vec::new() };
+            }
+            meant
+        }
+
+        /// What is called by these calls in a file, by the functions that they mean, and so on: each name with the file of the function
+        /// that it means, or without one where it means none or any of several.
+        fn reached(&self, file: &str, calls: &[Call<'a>]) -> BTreeSet<Reached<'a>> {
+            let mut found = BTreeSet::new();
             let mut seen = vec![false; self.all.len()];
-            let mut left = self.meant(file, calls);
-            while let Some(i) = left.pop() {
-                if !std::mem::replace(&mut seen[i], true) {
-                    names.extend(self.all[i].calls.iter().map(|(_, name)| *name));
+            let mut left = self.meant_by(file, calls);
+            while let Some((name, meant)) = left.pop() {
+                found.insert((name, meant.map(|i| self.all[i].file)));
+                if let Some(i) = meant.filter(|&i| !std::mem::replace(&mut seen[i], true)) {
                     left.extend(&self.called[i]);
                 }
             }
-            names
+            found
+        }
+
+        /// The names of calls in a file, each with a function that it means or without one.
+        fn meant_by(&self, file: &str, calls: &[Call<'a>]) -> Vec<(&'a str, Option<usize>)> {
+            let of = |&(before, name): &Call<'a>| {
+                let meant = self.meant(file, (before, name));
+                let is_one = self.named.get(name).is_some_and(|all| all.len() == 1);
+                let is_unsure = meant.is_empty() || before == "." && !is_one;
+                let none = is_unsure.then_some((name, None));
+                meant.into_iter().map(move |i| (name, Some(i))).chain(none)
+            };
+            calls.iter().flat_map(of).collect()
         }
     }
 
@@ -757,14 +844,17 @@ mod tests {
         while let Some(start) = text[end..].find(is_name).map(|start| end + start) {
             end = text[start..].find(|c| !is_name(c)).map_or(text.len(), |length| start + length);
             let (before, name, after) = (&text[..start], &text[start..end], &text[end..]);
-            let is_argument = before.trim_end().ends_with(['(', ','])
+            let path = before.strip_suffix("::");
+            let path = path.map(|path| &path[path.rfind(|c| !is_name(c)).map_or(0, |at| at + 1)..]);
+            let start = before.strip_suffix("::").map_or(before, |b| b.trim_end_matches(is_name));
+            let is_argument = start.trim_end().ends_with(['(', ','])
                 && after.trim_start().starts_with([')', ',']);
             let is_constant =
                 !name.contains(char::is_lowercase) && name.starts_with(char::is_alphabetic);
             let is_called = after.starts_with('(') || after.starts_with("::<");
             if is_called || is_argument || is_constant {
-                let path = before.strip_suffix("::").unwrap_or_default();
-                found.push((&path[path.rfind(|c| !is_name(c)).map_or(0, |at| at + 1)..], name));
+                let beside = if before.ends_with('.') { "." } else { "" };
+                found.push((path.unwrap_or(beside), name));
             }
         }
         found
@@ -775,7 +865,7 @@ mod tests {
         check: &'a Check,
         places: &'a Places,
         functions: &Functions<'a>,
-    ) -> Option<BTreeSet<&'a str>> {
+    ) -> Option<BTreeSet<Reached<'a>>> {
         let place = match check.subject {
             Subject::Function(..) => places.registered(check),
             _ => places.of(check),
@@ -805,17 +895,19 @@ mod tests {
             let Subject::Function(_, stated) = check.subject else { continue };
             let names = called_by(check, &places, &functions).expect("a line of a row");
             let name = parts(stated.by()).1;
-            assert!(names.contains(name.as_str()), "{} does not call {name}", check.name);
-            strangers += usize::from(names.contains("monotone_on_bodies"));
+            let calls = |asked: &str| names.iter().any(|(name, _)| *name == asked);
+            assert!(calls(&name), "{} does not call {name}", check.name);
+            strangers += usize::from(calls("monotone_on_bodies"));
             count += 1;
         }
         assert!(count > 50, "{count}");
-        // What is asked can fail: few checks seem to call this one, which two do.
-        assert!((2..10).contains(&strangers), "{strangers}");
+        // What is asked can fail: two checks call this one.
+        assert_eq!(strangers, 2);
         let text = "fn a() { b(); }\nfn b() { c(); }\nfn d() { e(); }\n";
         let places = Places { files: vec![("src/a.rs".to_owned(), text.to_owned())] };
         let names = Functions::of(&places).reached("src/a.rs", &[("", "a")]);
-        assert_eq!(names.into_iter().collect::<Vec<_>>(), ["a", "b", "c"]);
+        let here = Some("src/a.rs");
+        assert_eq!(names.into_iter().collect::<Vec<_>>(), [("a", here), ("b", here), ("c", None)]);
     }
 
     /// The lines of code that no check of an item calls.
@@ -829,7 +921,7 @@ mod tests {
         for (_, check) in item.found(claims) {
             called.extend(called_by(check, places, functions).expect("a check stands in a file"));
         }
-        let is_called = |&(file, start): &&Place| {
+        let is_called = |&&(file, start): &&Place| {
             // A constant, or a function; of another line, the one around it.
             let (_, text) = places.files.iter().find(|(name, _)| name == file).expect("a file");
             let line = places.line((file, start)).expect("a line");
@@ -837,7 +929,9 @@ mod tests {
             let start = if start.starts_with("const ") { "const " } else { "fn " };
             let header = lines.iter().rev().find_map(|line| line.split_once(start));
             let name = header.and_then(|(_, rest)| rest.split(|c| !is_name(c)).next());
-            name.is_some_and(|name| called.contains(name))
+            name.is_some_and(|name| {
+                [None, Some(file)].iter().any(|&of| called.contains(&(name, of)))
+            })
         };
         code.iter().filter(|place| !is_called(place)).map(|(_, start)| *start).collect()
     }
@@ -850,11 +944,18 @@ mod tests {
         for item in ITEMS {
             let not_called = |code| not_called(item, code, &claims, (&places, &functions));
             assert_eq!(not_called(item.code), Vec::<&str>::new(), "{}", item.name);
-            uncalled += not_called(item.uncalled).len();
+            assert_eq!(not_called(item.uncalled).len(), item.uncalled.len(), "{}", item.name);
+            uncalled += item.uncalled.len();
         }
-        // What is asked can fail: none of these lines is found to be called, but four that bear the name of another function.
-        let beside = ITEMS.iter().map(|item| item.uncalled.len()).sum::<usize>();
-        assert!(uncalled >= 8 && uncalled + 4 >= beside, "{uncalled} of {beside}");
+        assert!(uncalled >= 8, "{uncalled}");
+        // What is asked can fail for lines that checks of other items call.
+        let of_k = ITEMS.iter().find(|item| item.name == "K").expect("an item");
+        for place in [
+            ("props/src/bodies/definition.rs", "pub fn big_a("),
+            ("src/kernel/contact.rs", "pub fn pressure(&self)"),
+        ] {
+            assert_eq!(not_called(of_k, &[place], &claims, (&places, &functions)), [place.1]);
+        }
     }
 
     #[test]

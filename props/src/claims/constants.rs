@@ -147,9 +147,9 @@ pub fn estimate_13_holds_with_a_constant_without_h<S: Ordered>(
     Verdict::Holds("always")
 }
 
-/// (21) and (25) from (13), Corollary 3.6 and (22)-(24), which are hypotheses: with r = h^(1/2 + nu) |u|_(3/2 + nu), m =
-/// |eta|_1 <= c_1 r, d <= c_2 r, s <= c_3 r. Squares of the left side of (21); x = |sigma_n(e)|_g of (25), k = kappa^(1/2).
-pub fn rates_21_and_25_follow_from_13_and_22_to_24<S: Ordered>(
+/// (21), squared, from (13), squared, and (22)-(24), which are hypotheses: with r = h^(1/2 + nu) |u|_(3/2 + nu), m = |eta|_1
+/// <= c_1 r, d = |gamma^(-1/2) eta_n| <= c_2 r, s = |sigma_n(eta)|_g <= c_3 r; `left` is the left side.
+pub fn rate_21_follows_from_13_and_22_to_24<S: Ordered>(
     [left, m, d, s, r, c1, c2, c3, most]: [S; 9],
 ) -> Verdict {
     let zero = S::from(0);
@@ -205,7 +205,7 @@ mod row {
                         about "Lemma 3.2", "(11)", "(12)";
                     proved estimate_13_holds_with_a_constant_without_h[e2, h2, z2, s, r, d, kappa, n, m, alpha, most]
                         about "(13)";
-                    proved rates_21_and_25_follow_from_13_and_22_to_24[left, m, d, s, r, c1, c2, c3, most]
+                    proved rate_21_follows_from_13_and_22_to_24[left, m, d, s, r, c1, c2, c3, most]
                         about "Theorem 3.5", "(21)";
                     proved rate_25_follows_from_corollary_3_6[x, s, e, h, k, r, c1, c3, c4]
                         about "Corollary 3.6", "(25)";

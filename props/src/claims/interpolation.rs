@@ -7,6 +7,8 @@
 //! (23)  |w|_E <= (|E|/pi) |w'|_E, w = 0 at both ends       sigma(v):eps(v) <= (2 mu + 2 [lambda]+) |grad v|^2
 //! ```
 
+use num_bigint::BigInt;
+use num_rational::BigRational;
 use proptest::prelude::*;
 use signorini::kernel::{Material, Plane, Triangle, positive_part};
 use signorini::nalgebra::{Matrix2, Vector2};
@@ -65,8 +67,15 @@ fn estimate_22(&(vertices, form): &Draw, factor: (i64, i64)) -> Verdict {
     Verdict::Holds("always")
 }
 
-/// The trace inequality for the affine q with these values at the vertices, on the edge opposite vertex 0, squared where
-/// its mixed term has roots; `mixed` = 1, or 0 for the inequality without that term.
+/// The root of a number that is not negative, rounded down to a multiple of 2^-40.
+fn root_below(x: Exact) -> Exact {
+    let [scale, squared] = [40, 80].map(|n| BigRational::from_integer(BigInt::from(1) << n));
+    let root = (x.value() * squared).to_integer().sqrt();
+    Exact::new(BigRational::from_integer(root) / scale)
+}
+
+/// The trace inequality for the affine q with these values at the vertices, on the edge opposite vertex 0, with roots of its mixed term
+/// that are rounded down; `mixed` = 1, or 0 for the inequality without that term.
 fn trace(&(vertices, values): &Draw, mixed: i32) -> Verdict {
     let Some(triangle) = triangle(vertices.map(Exact::from)) else { return Verdict::Vacuous };
     let q = values.map(Exact::from);
@@ -81,14 +90,17 @@ fn trace(&(vertices, values): &Draw, mixed: i32) -> Verdict {
     let edge = (q[1] * q[1] + q[1] * q[2] + q[2] * q[2]) / Exact::from(3);
     let squares = [0, 1, 2].map(|i| triangle.edge(i).dot(&triangle.edge(i)));
     let diameter = squares.into_iter().fold(zero, |a, b| if a < b { b } else { a });
-    // With roots of 1 the function of the solver is (1 + 1) |E|/|T|: its parts are taken from it.
-    let two = trace_constant_squared([one, one, one], one);
-    ensure!(two == Exact::from(2));
-    let left = edge - mean;
-    if left <= zero {
+    ensure!(trace_constant_squared([one, one, one], one) == Exact::from(2));
+    if edge <= mean {
         return Verdict::Holds("without the gradient");
     }
-    ensure!(left * left <= Exact::from(mixed) * diameter * mean * gradient.dot(&gradient));
+    let area = triangle.double_area() / Exact::from(2);
+    let square = gradient.dot(&gradient);
+    // Both sides over |E| and |grad q|_T^2 = |T| |grad q|^2, so that c = |q|_T/|grad q|_T; roots that are rounded down make the right
+    // side smaller.
+    let (c, h) = (root_below(mean / square), root_below(diameter));
+    let bound = trace_constant_squared([one, area, Exact::from(mixed) * h], c);
+    ensure!(edge <= bound * area * square);
     Verdict::Holds("with it")
 }
 

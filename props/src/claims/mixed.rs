@@ -250,7 +250,7 @@ mod row {
             checks: [
                 statements! {
                     proved + tested contact_pressure_is_the_projection[u_n, g, sigma_n, gamma, mu]: "pressed", "open"
-                        about "(9)";
+                        about "(9)", "(10)";
                     proved + tested conditions_9_and_10_are_equivalent[u_n, g, sigma_n, gamma, mu, l]
                         : "both hold", "neither holds" about "(10)";
                     proved + tested condition_9_leaves_only_the_contact_pressure[u_n, g, sigma_n, gamma, l]

@@ -122,7 +122,7 @@ harnesses! {
         assert!(lost.is_nan());
     }
     /// The slope that Newton uses: 1 exactly where a > 0.
-    holds slope_is_one_exactly_for_positive_doubles() {
+    holds slope_is_one_exactly_where_positive_for_all_doubles_but_nan() {
         let a = number();
         assert!(positive_part_slope(a) == if a > 0.0 { 1.0 } else { 0.0 });
     }

@@ -209,7 +209,7 @@ mod row {
             id: "10",
             title: "One solution",
             paper: "",
-            limits: "Meshes of more than 10 free nodes; data before the solver rounds them (gamma, the loads, lambda* of plane stress); P2 without quadrature error, for its roots are irrational; solved bodies that are not isotropic.",
+            limits: "Meshes of more than 10 free nodes; data before the solver rounds them (gamma, the loads, lambda* of plane stress); P1 with a cut edge (6 of 16 draws), but up to 2^-40; P2 without quadrature error; solved bodies that are not isotropic.",
             checks: [
                 statements! {
                     proved + tested positive_parts_are_monotone[a, b]

@@ -19,9 +19,12 @@ pub(crate) fn close(length: f64, square: Exact) -> bool {
 
 /// (7) for every contact edge of the solver: gamma^2 is gamma0^2 times `square`, the square of h_T or a planted mistake, of
 /// the triangle and its edge.
-pub(crate) fn gamma_is(draw: &Draw, square: impl Fn([Exact; 3], usize) -> Exact) -> Verdict {
+pub(crate) fn gamma_is<const N: usize>(
+    draw: &Draw,
+    square: impl Fn([Exact; 3], usize) -> Exact,
+) -> Verdict {
     let problem = draw.problem();
-    let Some(d) = discretized::<3>(draw, &problem) else {
+    let Some(d) = discretized::<N>(draw, &problem) else {
         return Verdict::Fails("the problem is refused");
     };
     let (vertices, triangles, _) = draw.parts();
@@ -47,12 +50,19 @@ pub(crate) fn longest([a, b, c]: [Exact; 3]) -> Exact {
 
 /// (7): gamma = gamma0 h_T, h_T the diameter of the triangle that owns the edge.
 pub fn gamma_by_the_diameter() -> Outcome {
-    draws::hold(60, problems(Contact::Any, false), &["always"], |draw| {
-        gamma_is(draw, |squares, _| longest(squares))
-    })
+    let p1 = draws::hold(60, problems(Contact::Any, false), &["always"], |draw| {
+        gamma_is::<3>(draw, |squares, _| longest(squares))
+    })?;
+    let p2 = draws::hold(20, problems(Contact::Any, true), &["always"], |draw| {
+        gamma_is::<6>(draw, |squares, _| longest(squares))
+    })?;
+    Ok(format!("P1: {p1}; P2: {p2}"))
 }
 
 /// The control of [`gamma_by_the_diameter`]: |E| for h_T.
 pub fn gamma_by_the_edge() -> Outcome {
-    draws::reject(problems(Contact::Any, false), |draw| gamma_is(draw, |squares, i| squares[i]))
+    draws::reject(problems(Contact::Any, false), |draw| {
+        gamma_is::<3>(draw, |squares, i| squares[i])
+    })?;
+    draws::reject(problems(Contact::Any, true), |draw| gamma_is::<6>(draw, |squares, i| squares[i]))
 }
