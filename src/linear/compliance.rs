@@ -324,6 +324,43 @@ mod tests {
         is_what_substitutions_give(Degree::Two);
     }
 
+    /// The multiplications for X, by substitutions with the blocks of L in which a column is not zero, and for the lower half of G.
+    fn counted(structure: &Structure, columns: &[Vec<f64>]) -> [f64; 2] {
+        let (mut for_x, mut for_g) = (0, 0);
+        for s in 0..structure.supernodes() {
+            let rows = structure.columns(s);
+            let is_there = |column: &&Vec<f64>| column[rows.clone()].iter().any(|x| *x != 0.0);
+            let count = columns.iter().filter(is_there).count();
+            let entries: usize =
+                (0..rows.len()).map(|k| k + 1 + structure.rows_below(s).len()).sum();
+            for_x += count * entries;
+            for_g += rows.len() * count * (count + 1) / 2;
+        }
+        [for_x as f64, for_g as f64]
+    }
+
+    #[test]
+    fn as_many_operations_are_predicted_as_substitutions_and_products_of_their_columns_take() {
+        let problem = problem();
+        for degree in [Degree::One, Degree::Two] {
+            let rule = EdgeRule::Exact;
+            let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, rule).unwrap();
+            let system = System::new(&d).unwrap();
+            let structure = &system.structure;
+            let reach = Reach::new(structure, &system.pieces());
+            let factor = Factor::with(structure, &system.matrix).unwrap();
+            let mut columns = vec![vec![0.0; system.numbering.count]; reach.functionals()];
+            system.each_functional(|row, i, entry| columns[i][row] += entry);
+            columns.iter_mut().for_each(|column| factor.forward(column));
+            let [x, g] = counted(structure, &columns);
+            // Half of a square counts for n^2 / 2, which is n / 2 less than with the diagonal: for X and G together, 1 for each entry of X.
+            let predicted = reach.operations(structure) + reach.stored_entries(structure) as f64;
+            assert_eq!(predicted, x + g);
+            // The control: the products for G are not few.
+            assert!(g > 0.25 * predicted);
+        }
+    }
+
     #[test]
     fn a_functional_off_the_elimination_path_is_an_error() {
         let problem = problem();

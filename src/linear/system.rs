@@ -284,3 +284,42 @@ impl<'d, 'p> System<'d, 'p> {
         starts[..self.numbering.count].iter().map(|&k| values[k])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+    use crate::contact::EdgeRule;
+    use crate::kernel::{Material, Plane};
+    use crate::model::{Condition, Degree, Mesh, Problem};
+
+    /// A body between r = 1 and r = 2, as long as 3; `moved` as far as that.
+    fn norm_if_strained(plane: Plane, moved: f64) -> f64 {
+        let vertices = vec![[1.0, 0.0], [2.0, 0.0], [2.0, 3.0], [1.0, 3.0]];
+        let named = [("bottom", [0, 1]), ("top", [2, 3])];
+        let named = named.map(|(name, edge)| (name.to_owned(), vec![edge]));
+        let mesh = Mesh::new(vertices, vec![[0, 1, 2], [0, 2, 3]], named).unwrap();
+        let problem = Problem::of(mesh, Material::lame(1.0, 1.0, plane))
+            .with("top", Condition::clamped())
+            .with("bottom", Condition::contact(|_| 0.0));
+        let rule = EdgeRule::Exact;
+        let d = Discretization::new(&problem, Degree::One, |c| c.limit() / 2.0, rule).unwrap();
+        System::new(&d).unwrap().norm_if_strained(&[[0.0, moved]; 4])
+    }
+
+    #[test]
+    fn the_norm_if_strained_is_that_of_a_shear_of_the_size_of_the_displacement_over_the_longest_side()
+     {
+        // v = (0, k r) has no hoop strain and the strain k / 2 across, so |eps|^2 = k^2 / 2 and sigma:eps = mu k^2. Of r the integral over
+        // the body is 9/2, of 1 it is 3.
+        for (plane, weight) in [(Plane::Axisymmetric, 4.5), (Plane::Strain, 3.0)] {
+            for (moved, strain) in [(0.03, 0.01), (6.0, 1.0)] {
+                let k = strain * 2.0_f64.sqrt();
+                let energy = k * k * weight;
+                let found = norm_if_strained(plane, moved);
+                assert_relative_eq!(found, energy.sqrt(), max_relative = 1e-14);
+            }
+        }
+    }
+}

@@ -665,3 +665,51 @@ fn weighted(v: &[PreciseBall], weights: &[f64]) -> f64 {
     let underflown = f64::MIN_POSITIVE * v.len() as f64;
     sum * (1.0 + f64::EPSILON * (v.len() + 16) as f64) + underflown
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::EdgeRule;
+    use crate::kernel::{Material, Plane};
+    use crate::model::{Condition, Degree, Diagonal, Problem, Rectangle};
+
+    #[test]
+    fn the_only_solution_near_the_reported_one_is_near_the_one_that_is_known_of_too() {
+        let mesh = Rectangle { width: 1.0, height: 1.0, nx: 2, ny: 2, diagonal: Diagonal::Right };
+        let problem = Problem::of(mesh.mesh().unwrap(), Material::lame(1.0, 1.0, Plane::Strain))
+            .with("top", Condition::clamped())
+            .with("bottom", Condition::contact(|_| 0.0));
+        let rule = EdgeRule::Exact;
+        let d = Discretization::new(&problem, Degree::One, |c| c.limit() / 2.0, rule).unwrap();
+        let (system, lines) = (System::new(&d).unwrap(), Lines::new(&d));
+        let nodes = d.space.nodes();
+        let zero = vec![[PreciseBall::from(0); 2]; nodes.len()];
+        for by in [0.0, 0.25, f64::EPSILON] {
+            // Stretched by that: lambda + 2 mu is 3, and so is the square of the energy norm beside that of the stretch.
+            let reported: Vec<[f64; 2]> =
+                nodes.iter().map(|[_, y]| [0.0, by * (1.0 - y)]).collect();
+            let apart = by * 3.0_f64.sqrt();
+            let u = vec![[0.0; 2]; nodes.len()];
+            let load = (&zero[..], Arithmetic::Balls);
+            let at = EnclosedResidual::new(&system, &lines, (&u, &reported), None, load).unwrap();
+            let of = |within: f64, radius: f64| {
+                let limits = [0.0; 2];
+                let within = Some(within);
+                let isolated =
+                    Isolated { rho: radius, within, everywhere: false, limits, pressure: 0.0 };
+                isolation(isolated, &at, radius, false).within
+            };
+            for within in [1.0, 0.7, 16.0 * f64::EPSILON] {
+                // A ball around one that lies in a ball around the other; negative where there is none.
+                let found = of(within, f64::NEG_INFINITY).unwrap();
+                let most = PreciseBall::from(within) - PreciseBall::from(apart);
+                assert!((PreciseBall::from(found) - most).upper() <= f64::EPSILON * apart);
+                // The controls: nothing much larger would be true, and none is said to be in a ball that is smaller than its radius.
+                let least = (within - apart) - 8.0 * f64::EPSILON * (within + apart);
+                assert!(found >= least, "{found:e} {least:e} {:e} {apart:e}", at.moved);
+                assert_eq!(of(within, found.abs()).is_some(), found >= 0.0);
+                assert_eq!(of(within, 1.01 * found.abs()), None);
+            }
+        }
+    }
+}

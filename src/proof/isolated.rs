@@ -968,6 +968,10 @@ fn power(n: usize, times: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::Friction;
+    use crate::kernel::{Material, Plane};
+    use crate::model::quadrature::gauss;
+    use crate::model::{Condition, Diagonal, Problem, Rectangle};
 
     /// Numbers between -1 and 1.
     fn draws(seed: f64) -> impl FnMut() -> f64 {
@@ -1052,5 +1056,131 @@ mod tests {
             is_positive_definite(&less, row_sum(&root.by))
         };
         assert!(above(1.0) && !above(1.0 + 1e-9));
+    }
+
+    const MU: f64 = 0.6;
+
+    /// A block on a floor as rough as `MU`.
+    fn on_a_floor() -> Problem {
+        let mesh = Rectangle { width: 1.0, height: 1.0, nx: 2, ny: 1, diagonal: Diagonal::Crossed };
+        Problem::of(mesh.mesh().unwrap(), Material::lame(1.0, 1.0, Plane::Strain))
+            .with("top", Condition::clamped())
+            .with("bottom", Condition::contact(|_| 0.0))
+            .with_friction("bottom", Friction::Coulomb(MU))
+    }
+
+    /// Calls `f` with each piece of that block, and the number of functionals.
+    fn each_piece(mut f: impl FnMut(&Discretization, &Piece<PreciseBall>, usize)) {
+        let problem = on_a_floor();
+        for degree in [Degree::One, Degree::Two] {
+            let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, EdgeRule::Exact);
+            let d = d.unwrap();
+            let count = d.contact.iter().map(|piece| piece.p0.len()).sum();
+            Lines::new(&d).iter().for_each(|piece| f(&d, piece, count));
+        }
+    }
+
+    /// a P0_n(v) + b P0_t(v) at the place `s` of a piece, where the components at the nodes are products of v and columns of `z`.
+    fn at(s: f64, piece: &Piece<PreciseBall>, [a, b]: [f64; 2], z: &Mat<f64>) -> Vec<f64> {
+        let (first, values) = (piece.functionals().start, piece.degree.edge_values(s));
+        let across = first + values.len();
+        let row = |row: usize| {
+            let node = |i: usize| a * z[(row, first + i)] + b * z[(row, across + i)];
+            values.iter().enumerate().map(|(i, value)| value * node(i)).sum()
+        };
+        (0..z.nrows()).map(row).collect()
+    }
+
+    /// Places of an edge that are an eighth apart: a polynomial of degree 2 whose values at the nodes are 1, 1 and -1 is largest at one
+    /// of them.
+    fn places() -> impl Iterator<Item = f64> {
+        (0..=8).map(|k| f64::from(k) / 8.0)
+    }
+
+    #[test]
+    fn no_field_reaches_farther_between_nodes_than_its_reach_and_one_of_each_degree_as_far() {
+        let mut next = draws(0.41);
+        each_piece(|_, piece, count| {
+            for _ in 0..20 {
+                let z = Mat::from_fn(3, count, |_, _| next());
+                let reach = Reach::new(piece, &compliance(&z));
+                let [a, b] = [next(), next()];
+                for ((of, most), s) in [
+                    ([a, b], reach.of(a, b)),
+                    ([1.0, 0.0], reach.normal),
+                    ([0.0, 1.0], reach.across),
+                ]
+                .into_iter()
+                .flat_map(|found| places().map(move |s| (found, s)))
+                {
+                    let found = norm(&at(s, piece, of, &z));
+                    assert!(found <= most, "{of:?} at {s}: {found} {most}");
+                }
+            }
+            let first = piece.functionals().start;
+            let z = Mat::from_fn(1, count, |_, j| if j == first + 1 { -1.0 } else { 1.0 });
+            let most = Reach::new(piece, &compliance(&z)).normal;
+            let along = |s: f64| norm(&at(s, piece, [1.0, 0.0], &z));
+            let found = places().map(along).fold(0.0, larger);
+            assert!(most >= found && most <= found * (1.0 + 1e-9), "{most} {found}");
+            // The control: of degree 2, values at nodes say less.
+            assert_eq!(found > 1.2, piece.degree == Degree::Two);
+        });
+    }
+
+    /// The pressure and the shear of Coulomb's law, times gamma.
+    fn stresses([p, t]: [f64; 2]) -> [f64; 2] {
+        let most = MU * p.max(0.0);
+        [p.max(0.0), t.clamp(-most, most)]
+    }
+
+    #[test]
+    fn pressure_and_shear_change_no_more_than_is_said_and_with_the_bound_of_shear_by_nearly_as_much()
+     {
+        let mut next = draws(0.29);
+        let mut least_control: f64 = f64::INFINITY;
+        each_piece(|d, piece, count| {
+            let (first, nodes) = (piece.functionals().start, piece.degree.nodes_per_edge());
+            let u = vec![[PreciseBall::from(0); 2]; d.space.nodes().len()];
+            let rule = gauss(24);
+            // The integral of the squares of what a field changes, where P_n and P_t have these values at the nodes.
+            let change = |p: &[[f64; 2]], z: &Mat<f64>, v: &[f64]| -> f64 {
+                let of = |&(s, weight): &(f64, f64)| {
+                    let values: Vec<f64> = piece.degree.edge_values(s);
+                    let sum = |c: usize| values.iter().zip(p).map(|(n, p)| n * p[c]).sum::<f64>();
+                    let before = [sum(0), sum(1)];
+                    let by = [[1.0, 0.0], [0.0, 1.0]].map(|of| {
+                        at(s, piece, of, z).iter().zip(v).map(|(z, v)| z * v).sum::<f64>()
+                    });
+                    let after = [before[0] + by[0], before[1] + by[1]];
+                    let [before, after] = [before, after].map(stresses);
+                    let square = (after[0] - before[0]).powi(2) + (after[1] - before[1]).powi(2);
+                    weight * square
+                };
+                piece.weight().head() * rule.iter().map(of).sum::<f64>()
+            };
+            for k in 0..40 {
+                let share = if k % 2 == 0 { 1.0 } else { 0.1 };
+                let is_across = |j: usize| (first + nodes..first + 2 * nodes).contains(&j);
+                let z =
+                    Mat::from_fn(3, count, |_, j| next() * if is_across(j) { share } else { 1.0 });
+                let most = OnPiece::new(d, (piece, &compliance(&z)), &u).pressure();
+                let p: Vec<[f64; 2]> = (0..nodes).map(|_| [next(), next()]).collect();
+                let v: Vec<f64> = (0..3).map(|_| next()).collect();
+                let (found, size) = (change(&p, &z, &v), norm(&v));
+                assert!(found <= most * size * size, "{found} {most}");
+            }
+            // All of the piece slides, and is pressed more: the shear grows by MU times as much, and hardly by P_t.
+            let z = Mat::from_fn(1, count, |_, j| {
+                if (first..first + nodes).contains(&j) { 1.0 } else { 1e-3 }
+            });
+            let on = OnPiece::new(d, (piece, &compliance(&z)), &u);
+            let (most, found) = (on.pressure(), change(&vec![[5.0, 9.0]; nodes], &z, &[1.0]));
+            let between = on.reach.between;
+            assert!(found <= most && found >= 0.99 * most / (between * between));
+            let Reach { normal: n, across: t, .. } = on.reach;
+            least_control = least_control.min(on.weight * (n * n + t * t) / found);
+        });
+        assert!(least_control < 0.75, "control: less without what MU P_n does, {least_control}");
     }
 }

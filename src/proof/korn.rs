@@ -297,9 +297,15 @@ fn squared_remainder(
         affine
     } else {
         let turning = 1.0 + 3.0 * square / area;
-        let factor = if materials.are_of_revolution() { 20.0 } else { 12.0 };
+        let factor = at_corners(materials.are_of_revolution());
         factor * affine * turning * turning
     })
+}
+
+/// The most that the squares of an affine function at the corners of a triangle add up to, beside its mean square: with the weight r over
+/// the mean of r in a body of revolution.
+fn at_corners(is_of_revolution: bool) -> f64 {
+    if is_of_revolution { 20.0 } else { 12.0 }
 }
 
 /// |r_p| <= these times |v|_a on the parts p that `holds` hold together, for the motions r_p = (a, b) + c J (x - origin_p) / size of
@@ -439,5 +445,39 @@ mod tests {
             let korn = Korn::new(&space, &problem.material, &constraints, &[]);
             assert_eq!(korn.is_some(), held);
         }
+    }
+
+    /// The mean over a triangle of the square of an affine function, with a weight: both have these values at the corners.
+    fn mean_square(weight: [f64; 3], e: [f64; 3]) -> f64 {
+        // The mean of a product of three barycentric coordinates, by how often each occurs.
+        let mean = |all: [usize; 3]| {
+            let mut counts = [0, 0, 0];
+            all.into_iter().for_each(|i| counts[i] += 1);
+            let factorial = |n: u8| (1..=n).map(f64::from).product::<f64>();
+            2.0 * counts.map(factorial).iter().product::<f64>() / factorial(5)
+        };
+        let all = (0..27).map(|k| [k / 9, k / 3 % 3, k % 3]);
+        all.map(|at| weight[at[0]] * e[at[1]] * e[at[2]] * mean(at)).sum()
+    }
+
+    #[test]
+    fn strains_at_corners_are_no_more_than_said_of_their_mean_square_and_as_much_beside_the_axis() {
+        let share = |radii: [f64; 3], e: [f64; 3]| {
+            let squares = e.iter().map(|e| e * e).sum::<f64>();
+            squares * radii.iter().sum::<f64>() / 3.0 / mean_square(radii, e)
+        };
+        let [plane, revolution] = [false, true].map(at_corners);
+        for k in 1..2000 {
+            let draw = |by: f64| (0.37 * by * f64::from(k)).sin();
+            let e = [1.0, 2.3, 5.1].map(draw);
+            assert!(share([1.0; 3], e) <= plane * (1.0 + 1e-12));
+            assert!(share([0.7, 1.9, 3.3].map(|by| draw(by).abs()), e) <= revolution);
+        }
+        // The worst ones: a change along one edge, with nothing at the third corner, in a triangle that has that edge on the axis.
+        let worst = [0.0, 1.0, -1.0];
+        let attained = |found: f64, most: f64| (found - most).abs() <= 1e-12 * most;
+        assert!(attained(share([1.0; 3], worst), plane));
+        assert!(attained(share([1.0, 0.0, 0.0], worst), revolution));
+        assert!(revolution > plane, "control: the one in the plane is no bound beside an axis");
     }
 }

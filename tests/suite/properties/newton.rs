@@ -281,6 +281,64 @@ fn line_searches(full: bool) -> Outcome {
     if soft.get() > 0 { Ok(()) } else { Err("no search with soft springs".to_owned()) }
 }
 
+/// A body that remembers the slope of its last step, and how much of that it made.
+struct Remembering {
+    body: Body,
+    slope: f64,
+    made: f64,
+}
+
+impl body::Body for Remembering {
+    fn y(&self) -> Cow<'_, [DoubleDouble]> {
+        self.body.y()
+    }
+
+    fn residual(&self, at: &Derivatives) -> Residual {
+        body::Body::residual(&self.body, at)
+    }
+
+    fn start(&mut self, edges: &impl ContactEnergy) -> Result<Option<f64>, SolveError> {
+        self.body.start(edges)
+    }
+
+    fn step(&mut self, at: &Derivatives) -> Result<Step, SolveError> {
+        let step = self.body.step(at)?;
+        (self.slope, self.made) = (step.slope, 0.0);
+        Ok(step)
+    }
+
+    fn advance(&mut self, t: f64, step: &Step) {
+        self.made = t;
+        self.body.advance(t, step);
+    }
+}
+
+/// After each number of steps the decrement of the last one is left if that was cut short, and nothing if it was `whole`.
+fn what_is_left(whole: f64) -> Outcome {
+    let (cut, full) = (Cell::new(0), Cell::new(0));
+    for_all(500, any_body(), |body| {
+        for steps in 0..8 {
+            let mut body = Remembering { body: body.clone(), slope: 0.0, made: whole };
+            let until = Until { steps, residual: 0.0, near: 0.0 };
+            let mut residuals = Vec::new();
+            let left = newton::minimise(&Springs, &mut body, false, &mut residuals, until);
+            let left = left.map_err(text)?;
+            let expected = if body.made < whole { -body.slope } else { 0.0 };
+            if left != expected {
+                return Err(format!("{left} is left after {steps} steps, not {expected}"));
+            }
+            let count = if left > 0.0 { &cut } else { &full };
+            count.set(count.get() + 1);
+        }
+        Ok(())
+    })?;
+    if cut.get() > 0 && full.get() > 0 {
+        Ok(())
+    } else {
+        Err("no step that is cut, or none that is not".to_owned())
+    }
+}
+
 /// The verdict: what is proved is a result, whatever else is said of it; without a proof a residual within the tolerance makes
 /// one that is not proved, and anything else none. `proof` is the relative radius that is asked for.
 fn verdict_is_honest(proof: f64) -> Outcome {
@@ -337,5 +395,6 @@ properties! {
     newton_ends_at_the_minimiser_where_full_steps_cycle: the_cycle(false); not the_cycle(true);
     newton_ends_at_the_minimiser_from_any_start: from_any_start(NEAR); not from_any_start(0.0);
     the_line_search_ends_where_the_derivative_is_a_hundredth: line_searches(false); not line_searches(true);
+    the_decrement_of_a_step_that_is_cut_short_is_left: what_is_left(1.0); not what_is_left(0.0);
     the_verdict_is_the_proof: verdict_is_honest(Settings::default().proof); not verdict_is_honest(f64::INFINITY);
 }
