@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 use num_bigint::BigInt;
 use num_integer::Integer;
 use num_rational::BigRational;
-use num_traits::{One, Signed};
+use num_traits::{One, Signed, ToPrimitive, Zero};
 
 /// k where a number is 2^k.
 fn exponent(number: &BigInt) -> Option<u64> {
@@ -21,12 +21,16 @@ fn dyadic(numerator: BigInt, exponent: u64) -> BigRational {
     BigRational::new_raw(numerator, BigInt::one() << (exponent - zeros))
 }
 
-/// The greatest common divisor with a divisor that may be much smaller.
-fn common(number: &BigInt, divisor: &BigInt) -> BigInt {
-    if number.bits() > divisor.bits() {
-        (number % divisor).gcd(divisor)
-    } else {
-        number.gcd(divisor)
+/// The greatest common divisor, by words where both numbers, or what one leaves of the other, fit into two of them.
+fn common(a: &BigInt, b: &BigInt) -> BigInt {
+    let (large, small) = if a.bits() > b.bits() { (a, b) } else { (b, a) };
+    if small.is_zero() {
+        return large.abs();
+    }
+    let rest = if large.bits() > small.bits() { large % small } else { large.clone() };
+    match (rest.magnitude().to_u128(), small.magnitude().to_u128()) {
+        (Some(rest), Some(small)) => rest.gcd(&small).into(),
+        _ => rest.gcd(small),
     }
 }
 
@@ -37,7 +41,7 @@ pub fn sum(a: &BigRational, b: &BigRational) -> BigRational {
         (Some(p), Some(q)) if p < q => dyadic((a.numer() << (q - p)) + b.numer(), q),
         (Some(p), Some(q)) => dyadic(a.numer() + (b.numer() << (p - q)), p),
         _ => {
-            let both = a.denom().gcd(b.denom());
+            let both = common(a.denom(), b.denom());
             let (p, q) = (a.denom() / &both, b.denom() / &both);
             let sum = a.numer() * &q + b.numer() * &p;
             let shared = common(&sum, &both);
@@ -65,10 +69,7 @@ pub fn product(a: &BigRational, b: &BigRational) -> BigRational {
 
 /// a / b
 pub fn quotient(a: &BigRational, b: &BigRational) -> BigRational {
-    match exponent(b.numer()) {
-        Some(_) => product(a, &b.recip()),
-        None => a / b,
-    }
+    product(a, &b.recip())
 }
 
 /// a = b
