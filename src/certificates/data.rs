@@ -171,7 +171,7 @@ pub(super) fn length_and_normal(ends: [[f64; 2]; 2]) -> (f64, [f64; 2]) {
     (length, (normal / length).into())
 }
 
-/// What a function asks of its rule: functions with a kink and those of no known degree come last.
+/// Orders functions by the rule that they need: those with a kink and those of no known degree come last.
 pub(super) fn demand(function: &SharedFunction) -> (bool, u32) {
     (function.kink().is_some(), function.degree().unwrap_or(u32::MAX))
 }

@@ -203,7 +203,7 @@ impl<S: Scalar + From<f64>> LowerTriangle<S> {
         LowerTriangle { starts: starts.into(), rows: rows.into(), values }
     }
 
-    /// The same entries in other numbers, zero.
+    /// A zero matrix of other numbers with the pattern of this one.
     pub(crate) fn zero_in<T: Scalar>(&self) -> LowerTriangle<T> {
         let LowerTriangle { starts, rows, values } = self;
         let values = vec![T::zero(); values.len()];

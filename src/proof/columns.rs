@@ -147,7 +147,7 @@ fn each_entry(a: &LowerTriangle<PreciseBall>, mut f: impl FnMut(usize, usize, Pr
     }
 }
 
-/// What is left of functionals, row by row: the sums of these.
+/// Residuals of functionals, row by row: heads plus tails.
 struct Left {
     heads: Vec<f64>,
     tails: Vec<f64>,

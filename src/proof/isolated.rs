@@ -59,7 +59,7 @@ pub(super) struct Body<'a, 'd, 'p> {
     pub(crate) system: &'a System<'d, 'p>,
     /// Any factor, the better the nearer it is to that of A.
     pub(crate) factor: &'a Factor,
-    /// What is pressed, if A has springs there.
+    /// Stretches that press, which A has springs on.
     pub(crate) pressed: &'a Pressed,
     /// |t|_A* <= the sum of these times |t_i|.
     pub(crate) crude: &'a [f64],

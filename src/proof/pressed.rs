@@ -358,7 +358,7 @@ impl Pressed {
         self.springs_of(lines, |weight, mass| weight.head() * mass.head())
     }
 
-    /// The same in balls.
+    /// For each piece of Gamma_C the matrix of its springs, in balls.
     pub(crate) fn springs_in_balls(&self, lines: &Lines) -> Vec<DMatrix<PreciseBall>> {
         self.springs_of(lines, |weight, mass| weight * mass)
     }

@@ -309,7 +309,7 @@ struct Reduced<'r, 'a, 'd, 'p> {
     p: Option<Vec<f64>>,
     /// The magnitudes that y was computed from.
     start: Vec<f64>,
-    /// What the factor sees of the change.
+    /// The part of the change that the factor sees.
     change: Vec<f64>,
     /// The rest, D dy.
     taken: Vec<f64>,

@@ -99,7 +99,7 @@ pub(crate) struct Coulomb<'a, 'd, 'p> {
     metric: Option<Arc<Factor>>,
     of_a: Option<Factored>,
     factorizations: usize,
-    /// Those of the problems with Tresca's friction at the start.
+    /// Factorisations of the problems with Tresca's friction at the start.
     at_start: usize,
     first: bool,
 }
@@ -287,7 +287,7 @@ impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
 /// combination, with weights that add up to 1, whose changes nearly cancel.
 #[derive(Default)]
 struct Mixing {
-    /// What each problem began with and what it came to.
+    /// Pressures that each problem began with, and those that it came to.
     steps: Vec<[Vec<[f64; 3]>; 2]>,
 }
 
