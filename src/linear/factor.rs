@@ -12,6 +12,7 @@ use faer::sparse::linalg::cholesky::supernodal::{
     factorize_supernodal_symbolic_cholesky_scratch,
 };
 
+use super::entries::Entries;
 use super::numeric;
 use crate::linear::matrix::LowerTriangle;
 use crate::memory;
@@ -115,10 +116,9 @@ impl Structure {
 const BESIDE: usize = 320;
 
 /// L of H = L L^T.
-#[derive(Clone)]
 pub struct Factor {
     structure: Arc<Structure>,
-    values: Vec<f64>,
+    values: Entries,
 }
 
 impl Factor {
@@ -141,8 +141,9 @@ impl Factor {
     pub fn with(structure: &Arc<Structure>, matrix: &LowerTriangle) -> Result<Self, SolveError> {
         let scratch = numeric::scratch_bytes(structure);
         let entries = structure.stored_entries();
-        memory::check((8 * entries + scratch + BESIDE * structure.size()) as u64)?;
-        let mut values = vec![0.0; entries];
+        let bytes = (8 * entries + scratch + BESIDE * structure.size()) as u64;
+        memory::check(bytes)?;
+        let mut values = Entries::zeros(entries).ok_or(SolveError::OutOfMemory { bytes })?;
         numeric::factorise(structure, matrix, &mut values, |_| true)?;
         Ok(Factor { structure: Arc::clone(structure), values })
     }
@@ -154,7 +155,7 @@ impl Factor {
     /// # Errors
     /// As [`Factor::with`].
     pub(crate) fn changed(
-        mut self: Arc<Self>,
+        self: Arc<Self>,
         matrix: &LowerTriangle,
         unknowns: impl Iterator<Item = usize>,
     ) -> Result<Arc<Self>, SolveError> {
@@ -166,10 +167,14 @@ impl Factor {
                 stale[structure.supernode_of(row)] = true;
             }
         }
-        memory::check(8 * structure.stored_entries() as u64)?;
-        let values = &mut Arc::make_mut(&mut self).values;
-        numeric::factorise(&structure, matrix, values, |s| stale[s])?;
-        Ok(self)
+        let bytes = 8 * structure.stored_entries() as u64;
+        memory::check(bytes)?;
+        let mut values = match Arc::try_unwrap(self) {
+            Ok(own) => own.values,
+            Err(shared) => shared.values.copied().ok_or(SolveError::OutOfMemory { bytes })?,
+        };
+        numeric::factorise(&structure, matrix, &mut values, |s| stale[s])?;
+        Ok(Arc::new(Factor { structure, values }))
     }
 
     /// Its structure.

@@ -140,40 +140,54 @@ pub struct OutsidePattern {
 /// The nodes around each node: those that share a triangle or a piece of Gamma_C with it, itself included.
 #[derive(Clone, Debug)]
 pub struct Neighbours {
-    of: Vec<Vec<usize>>,
+    /// Where the room for the neighbours of each node starts, and where the last one ends.
+    starts: Vec<usize>,
+    /// The number of neighbours of each node.
+    counts: Vec<usize>,
+    /// The neighbours, in rooms for all that there can be.
+    all: Vec<usize>,
 }
 
 impl Neighbours {
     /// The neighbours in a space.
     pub fn new(space: &Space) -> Self {
-        let of = (0..space.nodes().len()).map(|node| vec![node]).collect();
-        let mut neighbours = Neighbours { of };
-        space.elements().for_each(|nodes| neighbours.join(nodes));
-        neighbours
+        Neighbours::of_cliques(space.nodes().len(), space.elements())
     }
 
     /// The neighbours in a space with these pieces of Gamma_C.
     pub fn across(space: &Space, pieces: &[Piece]) -> Self {
-        let mut neighbours = Neighbours::new(space);
-        for piece in pieces.iter().filter(|piece| piece.sides.len() > 1) {
-            neighbours.join(&piece.nodes);
-        }
-        neighbours
+        let pairs = pieces.iter().filter(|piece| piece.sides.len() > 1);
+        let joined = pairs.map(|piece| &*piece.nodes);
+        Neighbours::of_cliques(space.nodes().len(), space.elements().chain(joined))
     }
 
-    fn join(&mut self, nodes: &[usize]) {
-        for &node in nodes {
-            for other in nodes {
-                if !self.of[node].contains(other) {
-                    self.of[node].push(*other);
+    /// The neighbours where the nodes of each of `cliques` are neighbours of each other.
+    fn of_cliques<'a>(nodes: usize, cliques: impl Iterator<Item = &'a [usize]> + Clone) -> Self {
+        let mut starts = vec![1; nodes + 1];
+        starts[0] = 0;
+        for clique in cliques.clone() {
+            clique.iter().for_each(|&node| starts[node + 1] += clique.len() - 1);
+        }
+        (0..nodes).for_each(|node| starts[node + 1] += starts[node]);
+        let (mut counts, mut all) = (vec![1; nodes], vec![0; starts[nodes]]);
+        (0..nodes).for_each(|node| all[starts[node]] = node);
+        for clique in cliques {
+            for &node in clique {
+                let (room, count) = (&mut all[starts[node]..], &mut counts[node]);
+                for other in clique {
+                    if !room[..*count].contains(other) {
+                        room[*count] = *other;
+                        *count += 1;
+                    }
                 }
             }
         }
+        Neighbours { starts, counts, all }
     }
 
     /// The nodes around `node`, each once.
     pub(crate) fn of(&self, node: usize) -> &[usize] {
-        &self.of[node]
+        &self.all[self.starts[node]..][..self.counts[node]]
     }
 }
 
@@ -397,10 +411,8 @@ mod tests {
         let space = Space::new(&mesh, Degree::One);
         let nodes = space.nodes().len();
         let numbering = Numbering::new(&(0..nodes).collect::<Vec<_>>(), &vec![[None; 2]; nodes]);
-        let mut neighbours = Neighbours::new(&space);
-        if joined {
-            neighbours.join(&between);
-        }
+        let pair = joined.then_some(&between[..]);
+        let neighbours = Neighbours::of_cliques(nodes, space.elements().chain(pair));
         let mut matrix = LowerTriangle::zero(&numbering, &neighbours);
         let block = |i: usize, j: usize| Matrix2::identity() * if i == j { 1.0 } else { -1.0 };
         matrix.add(&numbering, &between, block)?;

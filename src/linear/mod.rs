@@ -3,6 +3,7 @@
 pub(crate) mod cholesky;
 pub(crate) mod compliance;
 pub(crate) mod dense;
+mod entries;
 pub mod factor;
 pub mod matrix;
 mod numeric;

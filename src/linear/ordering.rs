@@ -11,7 +11,8 @@ const LEAF: usize = 8;
 /// The order of elimination of nodes at the given places with the given neighbours.
 pub fn nested_dissection(places: &[[f64; 2]], neighbours: &Neighbours) -> Vec<usize> {
     let mut order = Vec::with_capacity(places.len());
-    let mut dissection = Dissection { places, neighbours, side: vec![Half::Outside; places.len()] };
+    let side = vec![Half::Outside; places.len()];
+    let mut dissection = Dissection { places, neighbours, side, back: Vec::new() };
     let mut all: Vec<usize> = (0..places.len()).collect();
     dissection.cut(&mut all, &mut order);
     order
@@ -22,6 +23,8 @@ struct Dissection<'a> {
     neighbours: &'a Neighbours,
     /// Scratch: where each node lies with regard to the set at hand.
     side: Vec<Half>,
+    /// Scratch of [`partition`].
+    back: Vec<usize>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -38,15 +41,18 @@ impl Dissection<'_> {
             order.extend_from_slice(set);
             return;
         };
-        let lower = partition(set, |node| self.places[node][axis] < line);
+        let (places, mut back) = (self.places, std::mem::take(&mut self.back));
+        let lower = partition(set, &mut back, |node| places[node][axis] < line);
         self.mark(&set[..lower], Half::Lower);
         self.mark(&set[lower..], Half::Upper);
         let touches = |node: usize, side: Half| {
             self.neighbours.of(node).iter().any(|&other| self.side[other] == side)
         };
         // The lower half without its border, then the border; the border of the upper half, then the rest of it.
-        let low = partition(&mut set[..lower], |node| !touches(node, Half::Upper));
-        let high = lower + partition(&mut set[lower..], |node| touches(node, Half::Lower));
+        let low = partition(&mut set[..lower], &mut back, |node| !touches(node, Half::Upper));
+        let high =
+            lower + partition(&mut set[lower..], &mut back, |node| touches(node, Half::Lower));
+        self.back = back;
         self.mark(set, Half::Outside);
         let separator = if lower - low <= high - lower { low..lower } else { lower..high };
         let (rest, upper) = set.split_at_mut(separator.end);
@@ -95,10 +101,20 @@ impl Dissection<'_> {
     }
 }
 
-/// Moves the nodes for which `first` holds to the front, keeping the order within both groups, and counts them.
-fn partition(set: &mut [usize], first: impl Fn(usize) -> bool) -> usize {
-    let (front, back): (Vec<usize>, Vec<usize>) = set.iter().partition(|&&node| first(node));
-    set[..front.len()].copy_from_slice(&front);
-    set[front.len()..].copy_from_slice(&back);
-    front.len()
+/// Moves the nodes for which `first` holds to the front, keeping the order within both groups, and counts them. The others are in `back`
+/// for a while.
+fn partition(set: &mut [usize], back: &mut Vec<usize>, first: impl Fn(usize) -> bool) -> usize {
+    back.clear();
+    let mut front = 0;
+    for place in 0..set.len() {
+        let node = set[place];
+        if first(node) {
+            set[front] = node;
+            front += 1;
+        } else {
+            back.push(node);
+        }
+    }
+    set[front..].copy_from_slice(back);
+    front
 }
