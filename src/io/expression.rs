@@ -110,38 +110,32 @@ const SHORT: usize = 16;
 
 /// The value of the instructions at (x, y).
 fn evaluate<T: Number>(instructions: &[Instruction], at: [T; 2]) -> T {
+    let room = || at[0].clone();
     if instructions.len() <= SHORT {
-        evaluate_on(&mut [const { None }; SHORT], instructions, at)
+        evaluate_on(&mut std::array::from_fn::<T, SHORT, _>(|_| room()), instructions, at)
     } else {
-        evaluate_on(&mut vec![None; instructions.len()], instructions, at)
+        evaluate_on(&mut vec![room(); instructions.len()], instructions, at)
     }
 }
 
 /// [`evaluate`] with room for as many values as there are instructions. These find as many values as they take.
-fn evaluate_on<T: Number>(
-    values: &mut [Option<T>],
-    instructions: &[Instruction],
-    [x, y]: [T; 2],
-) -> T {
-    let take = |place: usize, values: &mut [Option<T>]| {
-        values[place].take().unwrap_or_else(|| T::from_double(f64::NAN))
-    };
+fn evaluate_on<T: Number>(values: &mut [T], instructions: &[Instruction], [x, y]: [T; 2]) -> T {
     let mut count = 0;
     for instruction in instructions {
         let (value, taken) = match *instruction {
             Instruction::Number(value) => (T::from_double(value), 0),
             Instruction::X => (x.clone(), 0),
             Instruction::Y => (y.clone(), 0),
-            Instruction::Unary(f) => (T::unary(f, take(count - 1, values)), 1),
+            Instruction::Unary(f) => (T::unary(f, values[count - 1].clone()), 1),
             Instruction::Binary(f) => {
-                let [a, b] = [count - 2, count - 1].map(|place| take(place, values));
+                let [a, b] = [count - 2, count - 1].map(|place| values[place].clone());
                 (T::binary(f, a, b), 2)
             }
         };
-        values[count - taken] = Some(value);
+        values[count - taken] = value;
         count = count + 1 - taken;
     }
-    take(0, values)
+    values[0].clone()
 }
 
 /// The value of the instructions, if neither x nor y is among them.

@@ -1,6 +1,5 @@
 //! L(v) = int_Omega f . v + int_{Gamma_N} t . v for every basis function v; in a body of revolution with the weight r, for a radian.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::data::{DataError, checked};
@@ -41,7 +40,10 @@ fn vanishes(load: &dyn Function) -> bool {
 /// # Errors
 /// [`DataError::NotFinite`] where a load has no value, and unknown boundary names.
 pub fn assemble(problem: &Problem, space: &Space) -> Result<Vec<[f64; 2]>, DataError> {
-    assemble_with(problem, space, |load| points(load, tested(problem, space)))
+    let mut load = vec![[0.0; 2]; space.nodes().len()];
+    let add = |force: Force| force.add_to(&force.shapes.in_doubles, &mut load);
+    each_force(problem, space, enough(tested(problem, space)), add)?;
+    Ok(load)
 }
 
 /// The degree of the test functions: shape functions, in a body of revolution times r.
@@ -49,18 +51,56 @@ fn tested(problem: &Problem, space: &Space) -> usize {
     space.degree().number() + usize::from(problem.material.are_of_revolution())
 }
 
-/// [`assemble`] with as many points along each direction as `points` says for a load.
+/// [`assemble`] at points, as many along each direction as `points` says for a load.
 ///
 /// # Errors
 /// As [`assemble`].
 pub fn assemble_with(
     problem: &Problem,
     space: &Space,
-    points: impl Fn(&dyn Function) -> usize,
+    points: impl Fn(&dyn Function) -> usize + Copy,
 ) -> Result<Vec<[f64; 2]>, DataError> {
     let mut load = vec![[0.0; 2]; space.nodes().len()];
-    each_force(problem, space, points, |force| force.add_to(&force.shapes.in_doubles, &mut load))?;
+    let add = |force: Force| force.add_to(&force.shapes.in_doubles, &mut load);
+    each_force(problem, space, Rules { points, corners: false }, add)?;
     Ok(load)
+}
+
+/// The rules for loads.
+#[derive(Clone, Copy)]
+struct Rules<P> {
+    /// The number of points along each direction for a load.
+    points: P,
+    /// Affine forces on the body are taken at the corners of triangles, not at points.
+    corners: bool,
+}
+
+/// The rules that lose nothing of a load times functions of degree `shape`.
+fn enough(shape: usize) -> Rules<impl Fn(&dyn Function) -> usize + Copy> {
+    Rules { points: move |load: &dyn Function| points(load, shape), corners: true }
+}
+
+/// Where a force on the body is evaluated.
+enum BodyRule {
+    /// At the corners of triangles.
+    Corners,
+    Points(Rule),
+}
+
+impl<P: Fn(&dyn Function) -> usize> Rules<P> {
+    /// The rule on edges.
+    fn on_edges(&self, load: &dyn Function) -> Rule {
+        Rule::new(Features { kink: load.kink(), singular: None }, (self.points)(load))
+    }
+
+    /// The rule on triangles for a load, times a weight of this degree.
+    fn on_triangles(&self, load: &dyn Function, weight: u32) -> BodyRule {
+        let is_affine = load.degree().is_some_and(|degree| degree + weight <= 1);
+        if self.corners && is_affine && load.kink().is_none() {
+            return BodyRule::Corners;
+        }
+        BodyRule::Points(self.on_edges(load))
+    }
 }
 
 /// L at every node and component.
@@ -79,15 +119,10 @@ pub struct LoadVector {
 pub(crate) fn assemble_twice(problem: &Problem, space: &Space) -> Result<LoadVector, DataError> {
     let mut in_doubles = vec![[0.0; 2]; space.nodes().len()];
     let mut in_balls = vec![[PreciseBall::from(0.0); 2]; space.nodes().len()];
-    each_force(
-        problem,
-        space,
-        |load| points(load, tested(problem, space)),
-        |force| {
-            force.add_to(&force.shapes.in_doubles, &mut in_doubles);
-            force.add_to(&force.shapes.in_balls, &mut in_balls);
-        },
-    )?;
+    each_force(problem, space, enough(tested(problem, space)), |force| {
+        force.add_to(&force.shapes.in_doubles, &mut in_doubles);
+        force.add_to(&force.shapes.in_balls, &mut in_balls);
+    })?;
     Ok(LoadVector { in_doubles, in_balls })
 }
 
@@ -105,6 +140,23 @@ impl Shapes {
             in_doubles: E::values(l).to_vec(),
             in_balls: E::values(l.map(PreciseBall::from)).to_vec(),
         })
+    }
+
+    /// For an affine load, whose value is that at the corners times their barycentric coordinates: the integrals of corner k's times
+    /// the shape functions, beside a third of the area.
+    fn for_corner(degree: Degree, k: usize) -> Self {
+        let ratio = |a: i32, b: i32| PreciseBall::from(a) / PreciseBall::from(b);
+        let near = |i: usize| std::array::from_fn(|j| ratio(if i == j { 3 } else { 1 }, 5));
+        let points = [[ratio(1, 3); 3], near(0), near(1), near(2)];
+        // Exact for cubic polynomials.
+        let weights = [ratio(-9, 16), ratio(25, 48), ratio(25, 48), ratio(25, 48)];
+        let mut in_balls = vec![PreciseBall::from(0); degree.nodes_per_triangle()];
+        for (l, weight) in points.into_iter().zip(weights) {
+            let values = with_element!(degree, E => E::values(l).to_vec());
+            let weight = weight * PreciseBall::from(3) * l[k];
+            in_balls.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+        }
+        Shapes { in_doubles: in_balls.iter().map(|ball| ball.head()).collect(), in_balls }
     }
 
     /// Between the ends of an edge, from 0 to 1.
@@ -171,12 +223,12 @@ impl Resultants {
 /// As [`assemble`].
 pub fn resultants(problem: &Problem, space: &Space) -> Result<Resultants, DataError> {
     let mut all = Resultants::default();
-    let points = |load: &dyn Function| points(load, space.degree().number());
-    each_force_on_body(problem, space, points, |force| all.body[force.c] += force.value)?;
+    let rules = enough(space.degree().number());
+    each_force_on_body(problem, space, rules, |force| all.body[force.c] += force.value)?;
     for (name, condition) in &problem.conditions {
         let mut sum = [0.0; 2];
         let add = |force: Force| sum[force.c] += force.value;
-        each_force_of(problem, (name, condition), space, points, add)?;
+        each_force_of(problem, (name, condition), space, rules, add)?;
         if condition.has_load() {
             all.boundaries.insert(name.clone(), sum);
         }
@@ -188,19 +240,14 @@ pub fn resultants(problem: &Problem, space: &Space) -> Result<Resultants, DataEr
 fn each_force(
     problem: &Problem,
     space: &Space,
-    points: impl Fn(&dyn Function) -> usize,
+    rules: Rules<impl Fn(&dyn Function) -> usize + Copy>,
     mut add: impl FnMut(Force),
 ) -> Result<(), DataError> {
-    each_force_on_body(problem, space, &points, &mut add)?;
+    each_force_on_body(problem, space, rules, &mut add)?;
     for (name, condition) in &problem.conditions {
-        each_force_of(problem, (name, condition), space, &points, &mut add)?;
+        each_force_of(problem, (name, condition), space, rules, &mut add)?;
     }
     Ok(())
-}
-
-/// The rule for a load, with as many points along each direction as `points` says.
-fn rule(load: &dyn Function, points: impl Fn(&dyn Function) -> usize) -> Rule {
-    Rule::new(Features { kink: load.kink(), singular: None }, points(load))
 }
 
 /// Takes a force at its place: with the weight r in a body of revolution.
@@ -215,11 +262,12 @@ fn weighted(problem: &Problem, mut add: impl FnMut(Force)) -> impl FnMut(Force, 
 fn each_force_on_body(
     problem: &Problem,
     space: &Space,
-    points: impl Fn(&dyn Function) -> usize,
+    rules: Rules<impl Fn(&dyn Function) -> usize>,
     add: impl FnMut(Force),
 ) -> Result<(), DataError> {
     let mut add = weighted(problem, add);
-    let rule = |load: &dyn Function| rule(load, &points);
+    let weight = u32::from(problem.material.are_of_revolution());
+    let rule = |load: &dyn Function| rules.on_triangles(load, weight);
     for (c, f) in acting(&problem.body_force) {
         let what = || format!("[load] body[{c}]");
         each_body_force(c, f, &rule(f), space, 0..space.elements().len(), what, &mut add)?;
@@ -239,11 +287,11 @@ fn each_force_of(
     problem: &Problem,
     (name, condition): (&str, &Condition),
     space: &Space,
-    points: impl Fn(&dyn Function) -> usize,
+    rules: Rules<impl Fn(&dyn Function) -> usize>,
     add: impl FnMut(Force),
 ) -> Result<(), DataError> {
     let mut add = weighted(problem, add);
-    let rule = |load: &dyn Function| rule(load, &points);
+    let rule = |load: &dyn Function| rules.on_edges(load);
     match condition {
         Condition::Traction(traction) | Condition::Mixed { traction, .. } => {
             let is_held = |c: usize| match condition {
@@ -276,7 +324,7 @@ fn acting(load: &[SharedFunction; 2]) -> impl Iterator<Item = (usize, &dyn Funct
 fn each_body_force(
     c: usize,
     f: &dyn Function,
-    rule: &Rule,
+    rule: &BodyRule,
     space: &Space,
     triangles: impl Iterator<Item = usize>,
     what: impl Fn() -> String,
@@ -284,20 +332,38 @@ fn each_body_force(
 ) -> Result<(), DataError> {
     let mut wrong = None;
     let shapes_at = |l| Shapes::inside(space.degree(), l);
+    let mut act = |nodes: &[usize], x: [f64; 2], weight: f64, shapes: &Shapes| match checked(
+        f.at(x),
+        x,
+        &what,
+    ) {
+        Ok(f) => add(Force { c, value: weight * f, nodes, shapes }, x),
+        Err(error) => wrong = wrong.take().or(Some(error)),
+    };
     // The same on every triangle that is not cut.
-    let known: Vec<([f64; 3], Shapes)> = rule.plain().map(|l| (l, shapes_at(l))).collect();
+    let known: Vec<(Option<[f64; 3]>, Shapes)> = match rule {
+        BodyRule::Corners => {
+            (0..3).map(|k| (None, Shapes::for_corner(space.degree(), k))).collect()
+        }
+        BodyRule::Points(rule) => rule.plain().map(|l| (Some(l), shapes_at(l))).collect(),
+    };
     for t in triangles {
-        let (nodes, mut expected) = (space.nodes_of(t), known.iter());
-        rule.on_triangle(&space.mesh().triangle(t), |l, x, weight| {
-            let shapes = match expected.next() {
-                Some((at, shapes)) if *at == l => Cow::Borrowed(shapes),
-                _ => Cow::Owned(shapes_at(l)),
-            };
-            match checked(f.at(x), x, &what) {
-                Ok(f) => add(Force { c, value: weight * f, nodes, shapes: &shapes }, x),
-                Err(error) => wrong = wrong.take().or(Some(error)),
+        let (nodes, triangle) = (space.nodes_of(t), space.mesh().triangle(t));
+        match rule {
+            BodyRule::Corners => {
+                let weight = triangle.double_area().abs() / 6.0;
+                for (&x, (_, shapes)) in triangle.vertices.iter().zip(&known) {
+                    act(nodes, x.into(), weight, shapes);
+                }
             }
-        });
+            BodyRule::Points(rule) => {
+                let mut expected = known.iter();
+                rule.on_triangle(&triangle, |l, x, weight| match expected.next() {
+                    Some((at, shapes)) if *at == Some(l) => act(nodes, x, weight, shapes),
+                    _ => act(nodes, x, weight, &shapes_at(l)),
+                });
+            }
+        }
     }
     wrong.map_or(Ok(()), Err)
 }

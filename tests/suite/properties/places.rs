@@ -54,6 +54,7 @@ fn located(off: f64) -> Outcome {
 }
 
 /// A polynomial of this degree along x + y / 2 from x + y / 2 = `from` on, of which so much is told.
+#[derive(Clone, Copy)]
 struct Power {
     degree: u32,
     from: Option<f64>,
@@ -79,7 +80,7 @@ impl Function for Power {
 }
 
 /// Body forces and tractions of degree 7 that tell nothing, of degree 13 with a kink, and of any degree that is told are
-/// integrated as by thirty points a direction; those that tell nothing have a degree `higher` by that.
+/// integrated as by thirty points a direction, in bodies of revolution too; those that tell nothing have a degree `higher` by that.
 fn integrated(degree: Degree, higher: u32) -> Outcome {
     let told = |degree| Power { degree, from: None, told: true };
     let mut powers = vec![
@@ -88,10 +89,11 @@ fn integrated(degree: Degree, higher: u32) -> Outcome {
     ];
     powers.extend([1, 2, 3, 5, 8, 12, 17].map(told));
     let cells = Rectangle { width: 1.0, height: 1.0, nx: 1, ny: 1, diagonal: Diagonal::Left };
-    for power in powers {
+    let materials = [unit_material(), unit_material().of_revolution(1.0)];
+    for (power, material) in powers.iter().flat_map(|power| materials.map(|m| (power, m))) {
         let (power_of, kink) = (power.degree, power.from);
-        let power: SharedFunction = Arc::new(power);
-        let mut problem = body(cells.mesh().map_err(text)?);
+        let power: SharedFunction = Arc::new(*power);
+        let mut problem = Problem::of(cells.mesh().map_err(text)?, material);
         problem.body_force = [Arc::clone(&power), constant(0.0)];
         for name in ["right", "top"] {
             let traction = Condition::Traction([constant(0.0), Arc::clone(&power)]);
