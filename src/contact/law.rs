@@ -175,14 +175,9 @@ impl EdgeRule {
         match (self, radii) {
             (EdgeRule::Exact, radii) => E::exact_with(p.map(DoubleDouble::head), radii),
             (EdgeRule::Gauss(rule), radii) => {
-                let (points, radii) = (in_double_doubles(rule), fine(radii));
-                let fine = edge_integral::gauss::<E, _, _, _>(p, radii, points);
-                EdgeIntegrals {
-                    energy: fine.energy.head(),
-                    gradient: fine.gradient.map(DoubleDouble::head),
-                    hessian: fine.hessian.map(|row| row.map(DoubleDouble::head)),
-                    active: fine.active.head(),
-                }
+                let value = |s: f64| edge_integral::value_at::<E, _, _, _>(p, s.into()).head();
+                let values = rule.iter().map(|&(s, weight)| (value(s), s, weight));
+                edge_integral::gauss_of::<E, _, _, _>(values, radii)
             }
         }
     }

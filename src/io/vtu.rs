@@ -72,6 +72,11 @@ impl<'a> DataArray<'a> {
         DataArray { name, numbers: tensors.as_flattened(), given: 4, components }
     }
 
+    /// The bytes of all values.
+    fn bytes(&self) -> usize {
+        size_of::<f64>() * self.numbers.len() / self.given * self.components.len().max(1)
+    }
+
     fn append_to(&self, data: &mut Vec<u8>) {
         match (self.given, self.components.len()) {
             (2, 3) => append::<2, 3>(self.numbers, data),
@@ -98,7 +103,12 @@ pub(super) fn vtu(grid: &Grid) -> Result<Vec<u8>, NotFinite> {
     }
     let (kind, order) = grid.kind.vtk();
     let (points, cells) = (grid.points.len(), grid.connectivity.len() / order.len());
+    let arrays = grid.point_data.iter().chain(grid.cell_data).chain([&places]);
+    let bytes: usize = arrays.map(DataArray::bytes).sum();
+    let integers = size_of::<usize>() * (grid.connectivity.len() + 2 * cells);
     let mut file = Writer::default();
+    // At once: a file that grows is copied from place to place.
+    file.bytes.reserve((bytes + integers) / 3 * 4 + (1 << 14));
     file.line("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">");
     file.line(&format!(
         "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">"

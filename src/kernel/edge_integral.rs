@@ -180,9 +180,21 @@ where
     E: Element<N, M>,
     S: Scalar,
 {
+    let value = |(s, weight)| (value_at::<E, S, N, M>(p, s), s, weight);
+    gauss_of::<E, S, N, M>(rule.into_iter().map(value), radii)
+}
+
+/// The integrals by a rule on the whole edge, from the values of P at its points: each with the point and its weight.
+pub fn gauss_of<E, S, const N: usize, const M: usize>(
+    values: impl IntoIterator<Item = (S, S, S)>,
+    radii: Option<[S; 2]>,
+) -> EdgeIntegrals<S, M>
+where
+    E: Element<N, M>,
+    S: Scalar,
+{
     let mut sum = EdgeIntegrals::of(S::from(0));
-    for (s, weight) in rule {
-        let value = value_at::<E, S, N, M>(p, s);
+    for (value, s, weight) in values {
         let (positive, slope) = (positive_part(value), positive_part_slope(value));
         sum.add([weight, times_radius(weight, radii, s)], positive, slope, E::edge_values(s));
     }
