@@ -102,11 +102,16 @@ fn mark(at: Point, style: &Style) -> Circle {
         .set("stroke-width", 1.2)
 }
 
-/// An axis around these numbers, with some space.
-fn plain(numbers: impl Iterator<Item = f64>, page: [f64; 2]) -> PageAxis {
+/// The part of the largest number that a plain y axis shows at least: what changes by less looks as constant as it is.
+const LEAST: f64 = 0.02;
+
+/// An axis around these numbers, with some space; no shorter than `least` times the largest of them.
+fn plain(numbers: impl Iterator<Item = f64>, least: f64, page: [f64; 2]) -> PageAxis {
     let range = range(numbers);
     let [low, high] = if range[0] <= range[1] { range } else { [0.0, 1.0] };
     let space = if high > low { 0.06 * (high - low) } else { 0.06 * high.abs().max(1.0) };
+    let missing = least * low.abs().max(high.abs()) - (high - low);
+    let space = space.max(missing / 2.0);
     PageAxis { range: [low - space, high + space], page }
 }
 
@@ -162,7 +167,8 @@ fn draw(panel: &Panel, figure: &Figure, left: f64) -> Group {
     let scaled = |p: Point| if is_log { p.map(f64::log10) } else { p };
     let range = |c: usize, page| {
         let numbers = all().map(|&p| scaled(p)[c]);
-        if is_log { logarithmic(numbers, page) } else { plain(numbers, page) }
+        let least = [0.0, LEAST][c];
+        if is_log { logarithmic(numbers, page) } else { plain(numbers, least, page) }
     };
     let axes = Axes { x: range(0, [left, left + WIDTH]), y: range(1, [TOP + HEIGHT, TOP]) };
     let page = |p: Point| axes.at(scaled(p));
@@ -170,10 +176,14 @@ fn draw(panel: &Panel, figure: &Figure, left: f64) -> Group {
         true => ticks(axis),
         false => numbers::ticks(axis.range[0], axis.range[1]),
     };
+    // No half step between the numbers of steps.
+    let whole = !is_log && all().all(|p| p[0].fract() == 0.0);
+    let mut x_ticks = ticks(&axes.x);
+    x_ticks.retain(|(x, _)| !whole || x.fract() == 0.0);
     let middle = left + WIDTH / 2.0;
     let mut group = Group::new()
         .add(anchored("middle", &*panel.title, [middle, TOP - 12.0]))
-        .add(axes.grid([ticks(&axes.x), ticks(&axes.y)]))
+        .add(axes.grid([x_ticks, ticks(&axes.y)]))
         .add(axes.frame())
         .add(anchored("middle", &*figure.x_label, [middle, TOP + HEIGHT + 34.0]));
     for (slope, corners) in triangles {
@@ -233,6 +243,21 @@ mod tests {
         // One mark more in the legend.
         assert_eq!(text.matches("<circle").count(), 4);
         assert!(text.contains("\n-0.1\n") && text.contains("\n2\n"), "{text}");
+    }
+
+    #[test]
+    fn numbers_that_hardly_change_lie_beside_each_other_and_those_of_steps_are_whole() {
+        // Ordinates of the marks of a line.
+        let drawn = |points: Vec<[f64; 2]>| {
+            let text = figure(&Figure { logarithmic: false, ..sample(points) }).unwrap();
+            let y = |mark: &str| mark.split("cy=\"").nth(1)?.split('"').next()?.parse::<f64>().ok();
+            let y: Vec<f64> = text.split("<circle").skip(1).filter_map(y).collect();
+            ((y[0] - y[1]).abs(), text)
+        };
+        let (hardly, text) = drawn(vec![[1.0, 941.111], [2.0, 941.114]]);
+        assert!(hardly < 1.0 && text.contains("\n2\n") && !text.contains("\n1.5\n"), "{text}");
+        let (much, text) = drawn(vec![[1.0, 941.0], [2.5, 1000.0]]);
+        assert!(much > 100.0 && text.contains("\n1.5\n"), "control: {text}");
     }
 
     #[test]
