@@ -107,6 +107,8 @@ pub const LEFT_OUT: &str = "## Tried, and left out
 - faer's minimum degree in place of nested dissection: at n = 256 order, analysis and factorisation take 1.8 times as long.
 - No correction where the first pass is accurate enough: 4 to 8 % less time, but forces balance to 1e-12 and not to 1e-15, and
   enclosures are ten times as wide.
+- Fused products in the loops of the factor: 2 % fewer instructions of it at n = 256, but of 25 nearly incompressible blocks that fall far
+  6 converge, and all without.
 - Softer springs once more where the first steps from the start by some pieces are cut short: the graded square takes 47 steps in
   place of 49 of P2, but 17 in place of 12 of P1.
 ";
