@@ -171,10 +171,15 @@ where
         let g = E::gradients(l, barycentric);
         let weighted = material.times(weight * area);
         for i in 0..N {
-            for j in 0..N {
+            for j in 0..=i {
                 matrix[i][j] += weighted.energy_of_shapes(g[i], g[j]);
             }
         }
     });
+    for i in 0..N {
+        for j in 0..i {
+            matrix[j][i] = matrix[i][j].transpose();
+        }
+    }
     matrix
 }

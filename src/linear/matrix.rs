@@ -207,6 +207,12 @@ impl<S: Scalar + From<f64>> LowerTriangle<S> {
     pub(crate) fn zero(numbering: &Numbering, neighbours: &Neighbours) -> Self {
         let (mut starts, mut rows) = (vec![0], Vec::new());
         for (column, &node) in numbering.nodes.iter().enumerate() {
+            if column > 0 && numbering.nodes[column - 1] == node {
+                // The second column of a node has the rows of the first one but the first.
+                rows.extend_from_within(starts[column - 1] + 1..);
+                starts.push(rows.len());
+                continue;
+            }
             let numbers = neighbours.of(node).iter().flat_map(|&other| numbering.of[other]);
             let start = rows.len();
             rows.extend(numbers.flatten().filter(|&row| row >= column));
