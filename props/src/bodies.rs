@@ -147,14 +147,8 @@ impl Draw {
                 }
             }
         }
-        let (lambda, mu) = (self.lambda(), exact(self.mu));
-        let two = Exact::from(2);
-        let plane = if self.stress { Plane::Stress } else { Plane::Strain };
-        let star = if self.stress { two * lambda * mu / (lambda + two * mu) } else { lambda };
-        let (material, hooke) = match self.tensor.map(|rows| square(rows.map(exact))) {
-            Some(c) => (Material::tensor(c, None), Hooke::Tensor(c)),
-            None => (Material::lame(lambda, mu, plane), Hooke::Isotropic { lambda: star, mu }),
-        };
+        let tensor = self.tensor.map(|rows| square(rows.map(exact)));
+        let (material, hooke) = law([self.lambda(), exact(self.mu)], self.stress, tensor);
         let count = triangles.len();
         let mut body = Body {
             top: (0..=nx).map(|i| ny * (nx + 1) + i).collect(),
@@ -208,6 +202,25 @@ impl Draw {
     }
 }
 
+/// A law for the kernel and for the transcription: this tensor, or lambda and mu in plane stress or strain.
+pub fn law<S: Scalar>(
+    [lambda, mu]: [S; 2],
+    stress: bool,
+    tensor: Option<[S; 6]>,
+) -> (Material<S>, Hooke<S>) {
+    let two = S::from(2);
+    match (tensor, stress) {
+        (Some(c), _) => (Material::tensor(c, None), Hooke::Tensor(c)),
+        (None, false) => {
+            (Material::lame(lambda, mu, Plane::Strain), Hooke::Isotropic { lambda, mu })
+        }
+        (None, true) => {
+            let star = two * lambda * mu / (lambda + two * mu);
+            (Material::lame(lambda, mu, Plane::Stress), Hooke::Isotropic { lambda: star, mu })
+        }
+    }
+}
+
 /// L L^T as C11, C12, C16, C22, C26, C66, from the rows of L: a symmetric matrix without negative eigenvalues, and every
 /// one of these is of this form.
 pub fn square<S: Scalar>([a, b, c, d, e, f]: [S; 6]) -> [S; 6] {
@@ -223,9 +236,9 @@ impl Body {
     /// Finds contact edges and free edges, and numbers the middles.
     fn sort_edges(&mut self, left_too: bool, gaps: &[[(i64, i64); 3]]) {
         let mut owners: BTreeMap<[usize; 2], Vec<(usize, usize)>> = BTreeMap::new();
-        for (t, corners) in self.triangles.iter().enumerate() {
+        for t in 0..self.triangles.len() {
             for i in 0..3 {
-                let (a, b) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
+                let [a, b] = self.ends(t, i);
                 owners.entry([a.min(b), a.max(b)]).or_default().push((t, i));
             }
         }
@@ -234,15 +247,12 @@ impl Body {
             self.middles.insert([a, b], next);
             let [(triangle, local)] = owners[..] else { continue };
             let (p, q) = (self.unturned[a], self.unturned[b]);
-            let zero = Exact::from(0);
-            let normal = if p[1] == zero && q[1] == zero {
-                Some((([zero, Exact::from(-1)]), (q[0] - p[0]).abs()))
-            } else if left_too && p[0] == zero && q[0] == zero {
-                Some((([Exact::from(-1), zero]), (q[1] - p[1]).abs()))
-            } else {
-                None
-            };
-            if let Some((n, length)) = normal {
+            let (zero, outwards) = (Exact::from(0), Exact::from(-1));
+            let bottom = p[1] == zero && q[1] == zero;
+            if bottom || left_too && p[0] == zero && q[0] == zero {
+                let along = if bottom { 0 } else { 1 };
+                let length = (q[along] - p[along]).abs();
+                let n = if bottom { [zero, outwards] } else { [outwards, zero] };
                 let n = rotated(n, self.turn);
                 let gap = gaps[self.contact.len()].map(exact);
                 self.contact.push(Side { triangle, local, length, n, gap });
@@ -294,14 +304,18 @@ impl Body {
 impl<S: Scalar> Body<S> {
     /// The nodes of a triangle for degree 1 (N = 3) or 2 (N = 6).
     pub fn nodes<const N: usize>(&self, t: usize) -> [usize; N] {
-        let corners = self.triangles[t];
         let mut nodes = [0; N];
-        nodes[..3].copy_from_slice(&corners);
+        nodes[..3].copy_from_slice(&self.triangles[t]);
         for i in 3..N {
-            let (a, b) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
+            let [a, b] = self.ends(t, i % 3);
             nodes[i] = self.middles[&[a.min(b), a.max(b)]];
         }
         nodes
+    }
+
+    /// The vertices of edge i of a triangle, from start to end.
+    pub fn ends(&self, t: usize, i: usize) -> [usize; 2] {
+        [1, 2].map(|k| self.triangles[t][(i + k) % 3])
     }
 
     /// How many nodes there are.

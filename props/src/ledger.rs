@@ -224,10 +224,8 @@ fn parts(function: &str) -> (Option<String>, String) {
 
 /// Adds the sources below a folder, in the order of their names.
 fn add(folder: &Path, files: &mut Vec<(String, String)>) -> std::io::Result<()> {
-    let mut paths = Vec::new();
-    for entry in std::fs::read_dir(folder)? {
-        paths.push(entry?.path());
-    }
+    let entries = std::fs::read_dir(folder)?.map(|entry| Ok(entry?.path()));
+    let mut paths: Vec<_> = entries.collect::<std::io::Result<_>>()?;
     paths.sort();
     for path in paths {
         if path.is_dir() {
@@ -262,6 +260,10 @@ fn theorem(name: &str) -> Option<&'static str> {
     proved.get(name).copied()
 }
 
+fn are_by(engine: Engine, checks: &[&Check]) -> bool {
+    checks.iter().any(|check| check.engine == engine)
+}
+
 fn is_a_statement(check: &Check) -> bool {
     matches!(check.subject, Subject::Statement(_))
 }
@@ -269,7 +271,7 @@ fn is_a_statement(check: &Check) -> bool {
 /// What stands in front of checks of one name, and its rank: the strongest of what was said of them, for Rocq includes a proof,
 /// and the list of the proofs says which were drawn; and doubles beside it.
 fn label(checks: &[&Check]) -> (usize, String) {
-    let of = |engine| checks.iter().any(|check| check.engine == engine);
+    let of = |engine| are_by(engine, checks);
     let is_theorem = is_a_statement(checks[0]) && theorem(checks[0].name).is_some();
     let (rank, strongest) = match () {
         () if is_theorem && of(Engine::Proof) => (0, "Rocq"),
@@ -391,11 +393,13 @@ fn state(claims: &[Claim]) -> String {
     let evidence: Vec<Vec<&Check>> = by_name(checks().filter(|check| !check.control));
     let of = |engine: Engine, statement: bool| {
         let asked = |checks: &&Vec<&Check>| {
-            is_a_statement(checks[0]) == statement && checks.iter().any(|c| c.engine == engine)
+            is_a_statement(checks[0]) == statement && are_by(engine, checks)
         };
         evidence.iter().filter(asked).count()
     };
-    let drawn = drawn_too(&evidence);
+    let both =
+        |checks: &&Vec<&Check>| [Engine::Proof, Engine::Exact].iter().all(|&e| are_by(e, checks));
+    let drawn = evidence.iter().filter(both).count();
     let harnesses = claims::harnesses();
     let theorems = paper::theorems();
     let proved = theorems.iter().filter(|theorem| theorem.is_proved()).count();
@@ -463,14 +467,6 @@ fn joined(words: &[&str]) -> String {
     }
 }
 
-/// How many statements are both proved and drawn.
-fn drawn_too(evidence: &[Vec<&Check>]) -> usize {
-    let both = |checks: &&Vec<&Check>| {
-        [Engine::Proof, Engine::Exact].iter().all(|e| checks.iter().any(|c| c.engine == *e))
-    };
-    evidence.iter().filter(both).count()
-}
-
 /// The proofs of all rows, one a line, as `reference/check_certificates.py` reads them.
 fn proofs(claims: &[Claim], places: &Places) -> Result<String, String> {
     let mut text = String::new();
@@ -523,21 +519,17 @@ fn row(claim: &Claim, places: &Places) -> Result<String, String> {
     let mut at: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for control in controls.iter().map(|checks| checks[0]) {
         let name = control.name.trim_start_matches("control_");
-        match control.subject {
-            Subject::Function(_, Stated::At(function)) => {
-                let asked = format!("[`{}`]({})", parts(function).1, places.of(control)?);
-                let place = places.registered(control)?;
-                at.entry(asked).or_default().push(format!("[{name}]({place})"));
-            }
-            // Evidence by another engine has the same name.
-            _ if name == control.name => {
-                shown.push(format!(
-                    "[{name}]({}) in doubles, where rounding breaks it",
-                    places.of(control)?
-                ));
-            }
-            _ => shown.push(format!("[{name}]({})", places.of(control)?)),
+        let place = places.of(control)?;
+        if let Subject::Function(_, Stated::At(function)) = control.subject {
+            let asked = format!("[`{}`]({place})", parts(function).1);
+            let line = places.registered(control)?;
+            at.entry(asked).or_default().push(format!("[{name}]({line})"));
+            continue;
         }
+        // Evidence by another engine has the same name.
+        let is_evidence = name == control.name;
+        let why = if is_evidence { " in doubles, where rounding breaks it" } else { "" };
+        shown.push(format!("[{name}]({place}){why}"));
     }
     let of_function =
         |(asked, controls): (String, Vec<String>)| format!("in {asked}: {}", controls.join(", "));
