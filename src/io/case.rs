@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-pub use self::body::MaterialEcho;
+pub(crate) use self::body::MaterialEcho;
 use self::body::{PLANES, only_isotropic, read_loads, read_materials};
 use self::boundary::{Depth, read_boundaries, read_points};
 use self::exact::read_exact;

@@ -25,7 +25,8 @@ mod algebra;
 mod condition;
 mod parser;
 
-pub use condition::PlaceCondition;
+#[cfg(feature = "files")]
+pub(crate) use condition::PlaceCondition;
 use thiserror::Error;
 
 use crate::kernel::{Ball, Enclosing};
