@@ -122,10 +122,6 @@ pub struct Body<S = Exact> {
     pub values: Vec<[S; 2]>,
 }
 
-fn exact((n, d): (i64, i64)) -> Exact {
-    Exact::ratio(n, d)
-}
-
 impl Draw {
     /// The body with these data; its material is one: A is elliptic, or mu > 0 and 3 lambda + 2 mu > 0.
     pub fn body(&self) -> Body {
@@ -147,8 +143,8 @@ impl Draw {
                 }
             }
         }
-        let tensor = self.tensor.map(|rows| square(rows.map(exact)));
-        let (material, hooke) = law([self.lambda(), exact(self.mu)], self.stress, tensor);
+        let tensor = self.tensor.map(|rows| square(rows.map(Exact::from)));
+        let (material, hooke) = law([self.lambda(), Exact::from(self.mu)], self.stress, tensor);
         let count = triangles.len();
         let mut body = Body {
             top: (0..=nx).map(|i| ny * (nx + 1) + i).collect(),
@@ -157,13 +153,13 @@ impl Draw {
             triangles,
             contact: Vec::new(),
             free: Vec::new(),
-            diameters: self.diameters[..count].iter().map(|&h| exact(h)).collect(),
+            diameters: self.diameters[..count].iter().copied().map(Exact::from).collect(),
             material,
             hooke,
-            gamma0: exact(self.gamma0),
+            gamma0: Exact::from(self.gamma0),
             turn,
             middles: BTreeMap::new(),
-            values: self.values.iter().map(|v| v.map(exact)).collect(),
+            values: self.values.iter().map(|v| v.map(Exact::from)).collect(),
         };
         body.sort_edges(self.left_too, &self.gaps);
         body
@@ -189,7 +185,7 @@ impl Draw {
 
     /// lambda, lifted where 3 lambda + 2 mu would not be positive.
     fn lambda(&self) -> Exact {
-        let (lambda, mu) = (exact(self.lambda), exact(self.mu));
+        let (lambda, mu) = (Exact::from(self.lambda), Exact::from(self.mu));
         let floor = -(mu / Exact::from(2));
         if lambda > floor { lambda } else { floor }
     }
@@ -254,7 +250,7 @@ impl Body {
                 let length = (q[along] - p[along]).abs();
                 let n = if bottom { [zero, outwards] } else { [outwards, zero] };
                 let n = rotated(n, self.turn);
-                let gap = gaps[self.contact.len()].map(exact);
+                let gap = gaps[self.contact.len()].map(Exact::from);
                 self.contact.push(Side { triangle, local, length, n, gap });
             } else if !(self.top.contains(&a) && self.top.contains(&b)) {
                 self.free.push((triangle, local));
@@ -388,7 +384,7 @@ mod tests {
             Exact::scope(|| {
                 let body = draw.body();
                 let zero = Exact::from(0);
-                let (lambda, mu) = (draw.lambda(), exact(draw.mu));
+                let (lambda, mu) = (draw.lambda(), Exact::from(draw.mu));
                 assert!(mu > zero && Exact::from(3) * lambda + Exact::from(2) * mu > zero);
                 for t in 0..body.triangles.len() {
                     assert!(body.triangle(t).double_area() > zero);

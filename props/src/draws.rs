@@ -284,7 +284,7 @@ pub const DRAWS_OF_DOUBLES: u32 = 5_000;
 
 fn at_ratios(statement: &Statement, values: &[(i64, i64)]) -> Verdict {
     Exact::scope(|| {
-        let mut values: Vec<Exact> = values.iter().map(|&(n, d)| Exact::ratio(n, d)).collect();
+        let mut values: Vec<Exact> = values.iter().copied().map(Exact::from).collect();
         (statement.prepare)(&mut values);
         (statement.exact)(&values)
     })

@@ -118,7 +118,7 @@ mod row {
 
     /// Sets the gaps of a body so that an affine field is an exact solution. `kind`: 0 contact, 1 gap, 2 touching.
     fn solution(body: &mut Body, (values, distances, kind): &Patch) -> Solution {
-        let [sxx, syy, w, dx, dy] = values.map(|(n, d)| Exact::ratio(n, d));
+        let [sxx, syy, w, dx, dy] = values.map(Exact::from);
         let zero = Exact::from(0);
         let left_too = body.contact.iter().any(|side| rotated_back(side.n, body.turn)[0] < zero);
         let pressed = |s: Exact| if *kind == 0 { -s.abs() } else { zero };
@@ -132,7 +132,7 @@ mod row {
             rotated([exx * x + (exy - w) * y + dx, (exy + w) * x + eyy * y + dy], turn)
         };
         let field = body.interpolated(at);
-        let open = distances.map(|(n, d)| Exact::ratio(n, d));
+        let open = distances.map(Exact::from);
         let gap = |side: &Side| {
             let [start, end] =
                 body.ends(side.triangle, side.local).map(|v| along_n(side, field[v]));

@@ -11,7 +11,7 @@ fn point<S>([u_n, gap, sigma_n, gamma]: [S; 4]) -> ContactPoint<S> {
     ContactPoint { u_n, gap, sigma_n, gamma }
 }
 
-fn class<S: Ordered>(point: &ContactPoint<S>) -> &'static str {
+pub(super) fn class<S: Ordered>(point: &ContactPoint<S>) -> &'static str {
     if point.p() > S::from(0) { "pressed" } else { "open" }
 }
 
@@ -177,8 +177,8 @@ mod row {
     fn mixed_by_points<const N: usize>(body: &Body) -> Verdict {
         let (u, v) = (body.drawn(0), body.drawn(1));
         let definition = Definition::<N>(body);
-        let rule = [[(1, 4), (1, 3)], [(3, 5), (1, 2)], [(1, 1), (1, 6)]]
-            .map(|p| p.map(|(n, d)| Exact::ratio(n, d)));
+        let rule =
+            [[(1, 4), (1, 3)], [(3, 5), (1, 2)], [(1, 1), (1, 6)]].map(|p| p.map(Exact::from));
         let contact = sum(&body.contact, |side| {
             let (here, test) = (definition.traces(side, &u), definition.traces(side, &v));
             let gamma = body.gamma(side);
