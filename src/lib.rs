@@ -92,7 +92,7 @@
 //!
 //! # Features
 //!
-//! `cli` (default) is the command; it needs `files`: case files ([`io::case`]), result.json and pictures. Without both
+//! `cli` (default) is the command; it needs `files`: case files ([`io::Case`]), result.json and pictures. Without both
 //! (`default-features = false`), the library depends on no parser and writes no files but VTU and CSV.
 //!
 //! # Speed

@@ -26,15 +26,13 @@ pub fn audit(id: Option<&str>, name: Option<&str>) -> io::Result<bool> {
         claims::all().into_iter().filter(|c| id.is_none_or(|id| c.id == id)).collect();
     if claims.is_empty() {
         let known: Vec<&str> = claims::all().iter().map(|c| c.id).collect();
-        let message = format!("no such row; the rows are {}", known.join(", "));
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+        return Err(io::Error::other(format!("no such row; the rows are {}", known.join(", "))));
     }
     for claim in &mut claims {
         claim.checks.retain(|check| name.is_none_or(|name| check.name == name));
     }
     if claims.iter().all(|claim| claim.checks.is_empty()) {
-        let message = format!("row {} has no such check", id.unwrap_or("?"));
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+        return Err(io::Error::other(format!("row {} has no such check", id.unwrap_or("?"))));
     }
     let lines: Vec<Line> = claims.iter().flat_map(run).collect();
     println!("\n{}{}", table(&claims, &lines), failures(&lines));

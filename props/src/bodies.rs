@@ -122,10 +122,6 @@ pub struct Body<S = Exact> {
     pub values: Vec<[S; 2]>,
 }
 
-fn exact((n, d): (i64, i64)) -> Exact {
-    Exact::ratio(n, d)
-}
-
 impl Draw {
     /// The body with these data; its material is one: A is elliptic, or mu > 0 and 3 lambda + 2 mu > 0.
     pub fn body(&self) -> Body {
@@ -147,14 +143,8 @@ impl Draw {
                 }
             }
         }
-        let (lambda, mu) = (self.lambda(), exact(self.mu));
-        let two = Exact::from(2);
-        let plane = if self.stress { Plane::Stress } else { Plane::Strain };
-        let star = if self.stress { two * lambda * mu / (lambda + two * mu) } else { lambda };
-        let (material, hooke) = match self.tensor.map(|rows| square(rows.map(exact))) {
-            Some(c) => (Material::tensor(c, None), Hooke::Tensor(c)),
-            None => (Material::lame(lambda, mu, plane), Hooke::Isotropic { lambda: star, mu }),
-        };
+        let tensor = self.tensor.map(|rows| square(rows.map(Exact::from)));
+        let (material, hooke) = law([self.lambda(), Exact::from(self.mu)], self.stress, tensor);
         let count = triangles.len();
         let mut body = Body {
             top: (0..=nx).map(|i| ny * (nx + 1) + i).collect(),
@@ -163,13 +153,13 @@ impl Draw {
             triangles,
             contact: Vec::new(),
             free: Vec::new(),
-            diameters: self.diameters[..count].iter().map(|&h| exact(h)).collect(),
+            diameters: self.diameters[..count].iter().copied().map(Exact::from).collect(),
             material,
             hooke,
-            gamma0: exact(self.gamma0),
+            gamma0: Exact::from(self.gamma0),
             turn,
             middles: BTreeMap::new(),
-            values: self.values.iter().map(|v| v.map(exact)).collect(),
+            values: self.values.iter().map(|v| v.map(Exact::from)).collect(),
         };
         body.sort_edges(self.left_too, &self.gaps);
         body
@@ -195,7 +185,7 @@ impl Draw {
 
     /// lambda, lifted where 3 lambda + 2 mu would not be positive.
     fn lambda(&self) -> Exact {
-        let (lambda, mu) = (exact(self.lambda), exact(self.mu));
+        let (lambda, mu) = (Exact::from(self.lambda), Exact::from(self.mu));
         let floor = -(mu / Exact::from(2));
         if lambda > floor { lambda } else { floor }
     }
@@ -205,6 +195,25 @@ impl Draw {
         let (x, y) = (Exact::from(i as i32), Exact::from(j as i32));
         // Contact sides stay straight.
         [if i == 0 && self.left_too { x } else { x + dx }, if j == 0 { y } else { y + dy }]
+    }
+}
+
+/// A law for the kernel and for the transcription: this tensor, or lambda and mu in plane stress or strain.
+pub fn law<S: Scalar>(
+    [lambda, mu]: [S; 2],
+    stress: bool,
+    tensor: Option<[S; 6]>,
+) -> (Material<S>, Hooke<S>) {
+    let two = S::from(2);
+    match (tensor, stress) {
+        (Some(c), _) => (Material::tensor(c, None), Hooke::Tensor(c)),
+        (None, false) => {
+            (Material::lame(lambda, mu, Plane::Strain), Hooke::Isotropic { lambda, mu })
+        }
+        (None, true) => {
+            let star = two * lambda * mu / (lambda + two * mu);
+            (Material::lame(lambda, mu, Plane::Stress), Hooke::Isotropic { lambda: star, mu })
+        }
     }
 }
 
@@ -223,9 +232,9 @@ impl Body {
     /// Finds contact edges and free edges, and numbers the middles.
     fn sort_edges(&mut self, left_too: bool, gaps: &[[(i64, i64); 3]]) {
         let mut owners: BTreeMap<[usize; 2], Vec<(usize, usize)>> = BTreeMap::new();
-        for (t, corners) in self.triangles.iter().enumerate() {
+        for t in 0..self.triangles.len() {
             for i in 0..3 {
-                let (a, b) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
+                let [a, b] = self.ends(t, i);
                 owners.entry([a.min(b), a.max(b)]).or_default().push((t, i));
             }
         }
@@ -234,17 +243,14 @@ impl Body {
             self.middles.insert([a, b], next);
             let [(triangle, local)] = owners[..] else { continue };
             let (p, q) = (self.unturned[a], self.unturned[b]);
-            let zero = Exact::from(0);
-            let normal = if p[1] == zero && q[1] == zero {
-                Some((([zero, Exact::from(-1)]), (q[0] - p[0]).abs()))
-            } else if left_too && p[0] == zero && q[0] == zero {
-                Some((([Exact::from(-1), zero]), (q[1] - p[1]).abs()))
-            } else {
-                None
-            };
-            if let Some((n, length)) = normal {
+            let (zero, outwards) = (Exact::from(0), Exact::from(-1));
+            let bottom = p[1] == zero && q[1] == zero;
+            if bottom || left_too && p[0] == zero && q[0] == zero {
+                let along = if bottom { 0 } else { 1 };
+                let length = (q[along] - p[along]).abs();
+                let n = if bottom { [zero, outwards] } else { [outwards, zero] };
                 let n = rotated(n, self.turn);
-                let gap = gaps[self.contact.len()].map(exact);
+                let gap = gaps[self.contact.len()].map(Exact::from);
                 self.contact.push(Side { triangle, local, length, n, gap });
             } else if !(self.top.contains(&a) && self.top.contains(&b)) {
                 self.free.push((triangle, local));
@@ -294,14 +300,18 @@ impl Body {
 impl<S: Scalar> Body<S> {
     /// The nodes of a triangle for degree 1 (N = 3) or 2 (N = 6).
     pub fn nodes<const N: usize>(&self, t: usize) -> [usize; N] {
-        let corners = self.triangles[t];
         let mut nodes = [0; N];
-        nodes[..3].copy_from_slice(&corners);
+        nodes[..3].copy_from_slice(&self.triangles[t]);
         for i in 3..N {
-            let (a, b) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
+            let [a, b] = self.ends(t, i % 3);
             nodes[i] = self.middles[&[a.min(b), a.max(b)]];
         }
         nodes
+    }
+
+    /// The vertices of edge i of a triangle, from start to end.
+    pub fn ends(&self, t: usize, i: usize) -> [usize; 2] {
+        [1, 2].map(|k| self.triangles[t][(i + k) % 3])
     }
 
     /// How many nodes there are.
@@ -374,7 +384,7 @@ mod tests {
             Exact::scope(|| {
                 let body = draw.body();
                 let zero = Exact::from(0);
-                let (lambda, mu) = (draw.lambda(), exact(draw.mu));
+                let (lambda, mu) = (draw.lambda(), Exact::from(draw.mu));
                 assert!(mu > zero && Exact::from(3) * lambda + Exact::from(2) * mu > zero);
                 for t in 0..body.triangles.len() {
                     assert!(body.triangle(t).double_area() > zero);

@@ -171,38 +171,31 @@ pub fn by(engine: Engine, name: &'static str, stated: Stated, run: fn() -> Outco
     Check { name, engine, control, items: &[], subject: Subject::Function(run, stated) }
 }
 
-/// `stated!(in FUNCTION)`, `stated!(at FUNCTION)`: a [`Stated`].
-macro_rules! stated {
-    (in $function:path) => {
-        $crate::claim::Stated::In(stringify!($function))
+/// A check by this engine, as [`exact!`] has it.
+macro_rules! by {
+    ($engine:ident, $name:literal, in $function:path => $run:expr) => {
+        by!(@ $engine, $name, $crate::claim::Stated::In(stringify!($function)), $run)
     };
-    (at $function:path) => {
-        $crate::claim::Stated::At(stringify!($function))
+    ($engine:ident, $name:literal, at $function:path => $run:expr) => {
+        by!(@ $engine, $name, $crate::claim::Stated::At(stringify!($function)), $run)
+    };
+    (@ $engine:ident, $name:literal, $stated:expr, $run:expr) => {
+        $crate::claim::by($crate::claim::Engine::$engine, $name, $stated, || $run)
     };
 }
 
 /// `exact!("name", in FUNCTION => outcome)`: a check in exact numbers, on one line of a row's list. FUNCTION says what is
 /// compared; `at` for `in` says that the mistake of a control stands in the line itself.
 macro_rules! exact {
-    ($name:literal, $place:tt $function:path => $run:expr) => {
-        $crate::claim::by(
-            $crate::claim::Engine::Exact,
-            $name,
-            stated!($place $function),
-            || $run,
-        )
+    ($($check:tt)+) => {
+        by!(Exact, $($check)+)
     };
 }
 
 /// `doubles!("name", in FUNCTION => outcome)`: a check in doubles.
 macro_rules! doubles {
-    ($name:literal, $place:tt $function:path => $run:expr) => {
-        $crate::claim::by(
-            $crate::claim::Engine::Doubles,
-            $name,
-            stated!($place $function),
-            || $run,
-        )
+    ($($check:tt)+) => {
+        by!(Doubles, $($check)+)
     };
 }
 

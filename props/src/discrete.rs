@@ -1,14 +1,13 @@
 //! Method (8) as the solver has it on a mesh, over rationals: places of the vertices, Lamé coefficients, gamma, |E|, n, g,
 //! the loads and the points of a rule are the solver's doubles, taken for the rational numbers that they are. The solver's own
-//! loops ([`residual`]) compute with them: forces, stresses and P are its code, and exact. The tangent is the kernel's.
+//! loops ([`residual`]) compute with them: forces, stresses and P are its code, and exact.
 
 use signorini::contact::{Discretization, EdgeRule, Piece, residual};
 use signorini::kernel::edge_integral::{self, ExactEdge};
 use signorini::kernel::{EdgeIntegrals, P1, P2};
 use signorini::model::Degree;
-use signorini::nalgebra::Matrix2;
 
-use crate::elimination::{Matrix, combined, dot};
+use crate::elimination::{Matrix, dot};
 use crate::numbers::Exact;
 
 /// The class of fields for which P has both signs on an edge.
@@ -98,31 +97,9 @@ impl<'a> Discrete<'a> {
         self.numbers.iter().zip(field).map(node).collect()
     }
 
-    /// Adds the blocks of triangle t into a matrix over the free components.
-    fn add(&self, matrix: &mut Matrix, t: usize, block: impl Fn(usize, usize) -> Matrix2<Exact>) {
-        let nodes = self.d.space.nodes_of(t);
-        for i in 0..nodes.len() {
-            for j in 0..nodes.len() {
-                let block = block(i, j);
-                for c in 0..2 {
-                    for d in 0..2 {
-                        let [row, column] = [self.numbers[nodes[i]][c], self.numbers[nodes[j]][d]];
-                        if let (Some(row), Some(column)) = (row, column) {
-                            matrix[row][column] += block[(c, d)];
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    fn zero(&self) -> Matrix {
-        vec![vec![Exact::from(0); self.count]; self.count]
-    }
-
     /// The matrix over the free components with these images of the basis functions.
     fn columns(&self, image: impl Fn(&[[Exact; 2]]) -> Nodal) -> Matrix {
-        let mut matrix = self.zero();
+        let mut matrix = vec![vec![Exact::from(0); self.count]; self.count];
         let mut bump = vec![[Exact::from(0); 2]; self.numbers.len()];
         for (node, numbers) in self.numbers.iter().enumerate() {
             for c in 0..2 {
@@ -167,11 +144,6 @@ impl<'a> Discrete<'a> {
         self.edges[e].p(u)
     }
 
-    /// |E| / gamma
-    fn weight(&self, e: usize) -> Exact {
-        self.edges[e].weight()
-    }
-
     /// int \[P\]+ N_a and int_{P > 0} N_a N_b. Where there is no rule and P is quadratic they are no rational numbers.
     pub fn integrals(&self, p: &[Exact]) -> (Vec<Exact>, Matrix) {
         let points = self.rule.iter().flatten().map(|&[s, weight]| (s, weight));
@@ -197,7 +169,7 @@ impl<'a> Discrete<'a> {
         let mut residual = residual::linear_residual(self.d, &self.edges, u);
         for (e, edge) in self.edges.iter().enumerate() {
             let gradient = self.integrals(&self.p(e, u)).0.into_iter();
-            let forces: Vec<Exact> = gradient.map(|g| self.weight(e) * g).collect();
+            let forces: Vec<Exact> = gradient.map(|g| edge.weight() * g).collect();
             edge.add_contact(&forces, &mut residual);
         }
         residual
@@ -205,22 +177,19 @@ impl<'a> Discrete<'a> {
 
     /// The derivative of the residual at u that Newton's method uses.
     pub fn tangent(&self, u: &[[Exact; 2]]) -> Matrix {
-        let stresses = self.stresses();
-        let one = Exact::from(1);
-        let mut matrix = combined(one, &self.stiffness(), -one, &stresses);
-        for (e, edge) in self.edges.iter().enumerate() {
-            let hessian = self.integrals(&self.p(e, u)).1;
-            let p0 = &edge.p0;
-            self.add(&mut matrix, edge.edge().triangle, |i, j| {
-                Matrix2::from_fn(|c, d| {
-                    let left: Vec<Exact> = p0.iter().map(|row| row[i][c]).collect();
-                    let right: Vec<Exact> = p0.iter().map(|row| row[j][d]).collect();
-                    let times: Vec<Exact> = hessian.iter().map(|row| dot(row, &right)).collect();
-                    self.weight(e) * dot(&left, &times)
-                })
-            });
-        }
-        matrix
+        let edges = self.edges.iter().enumerate();
+        let hessians: Vec<_> =
+            edges.map(|(e, edge)| (edge, self.integrals(&self.p(e, u)).1)).collect();
+        self.columns(|v| {
+            let mut forces = self.internal_forces(v);
+            for (edge, hessian) in &hessians {
+                edge.add_stresses(v, &mut forces);
+                let p0 = edge.p0(v);
+                let slopes = hessian.iter().map(|row| edge.weight() * dot(row, &p0));
+                edge.add_contact(&slopes.collect::<Vec<_>>(), &mut forces);
+            }
+            forces
+        })
     }
 
     /// How the contact looks at u.

@@ -213,25 +213,28 @@ pub fn positive() -> impl Strategy<Value = (i64, i64)> {
     prop_oneof![3 => (1_i64..=12, 1_i64..=6), 1 => (1_i64..=1000, 1_i64..=97)]
 }
 
+/// A list of numbers each of which, one time in so many, is made of one before it in the first of these ways, and likewise for the
+/// others.
+fn related<T: Copy + Debug>(
+    length: usize,
+    number: impl Strategy<Value = T>,
+    one_in: u8,
+    ways: &'static [fn(T) -> T],
+) -> impl Strategy<Value = Vec<T>> {
+    let drawn = (number, 0..one_in, any::<prop::sample::Index>());
+    prop::collection::vec(drawn, length).prop_map(|drawn| {
+        let mut values: Vec<T> = Vec::new();
+        for (value, way, other) in drawn {
+            let way = ways.get(usize::from(way)).filter(|_| !values.is_empty());
+            values.push(way.map_or(value, |way| way(values[other.index(values.len())])));
+        }
+        values
+    })
+}
+
 /// A list of rational numbers in which some repeat another, or its negative.
 pub fn ratios(length: usize) -> impl Strategy<Value = Vec<(i64, i64)>> {
-    prop::collection::vec((ratio(), 0_u8..8, any::<prop::sample::Index>()), length).prop_map(
-        |drawn| {
-            let mut values: Vec<(i64, i64)> = Vec::new();
-            for (value, relation, other) in drawn {
-                let value = match (values.is_empty(), relation) {
-                    (false, 0) => values[other.index(values.len())],
-                    (false, 1) => {
-                        let (n, d) = values[other.index(values.len())];
-                        (-n, d)
-                    }
-                    _ => value,
-                };
-                values.push(value);
-            }
-            values
-        },
-    )
+    related(length, ratio(), 8, &[|value| value, |(n, d)| (-n, d)])
 }
 
 /// Any finite double: edge values, random bits, small integers, and neighbours and opposites of the others in the list.
@@ -242,21 +245,13 @@ pub fn doubles(length: usize) -> impl Strategy<Value = Vec<f64>> {
         2 => (-9_i8..=9).prop_map(f64::from),
         2 => -1.0_f64..1.0,
     ];
-    prop::collection::vec((one, 0_u8..10, any::<prop::sample::Index>()), length).prop_map(|drawn| {
-        let mut values: Vec<f64> = Vec::new();
-        for (value, relation, other) in drawn {
-            let near = |values: &[f64]| values[other.index(values.len())];
-            let value = match (values.is_empty(), relation) {
-                (false, 0) => near(&values),
-                (false, 1) => -near(&values),
-                (false, 2) => near(&values).next_up(),
-                (false, 3) => near(&values).next_down(),
-                _ => value,
-            };
-            values.push(if value.is_finite() { value } else { 0.0 });
-        }
-        values
-    })
+    let ways: &[fn(f64) -> f64] =
+        &[|x| x, |x| -x, |x| finite(x.next_up()), |x| finite(x.next_down())];
+    related(length, one.prop_map(finite), 10, ways)
+}
+
+fn finite(x: f64) -> f64 {
+    if x.is_finite() { x } else { 0.0 }
 }
 
 const EDGES: &[f64] = &[
@@ -289,7 +284,7 @@ pub const DRAWS_OF_DOUBLES: u32 = 5_000;
 
 fn at_ratios(statement: &Statement, values: &[(i64, i64)]) -> Verdict {
     Exact::scope(|| {
-        let mut values: Vec<Exact> = values.iter().map(|&(n, d)| Exact::ratio(n, d)).collect();
+        let mut values: Vec<Exact> = values.iter().copied().map(Exact::from).collect();
         (statement.prepare)(&mut values);
         (statement.exact)(&values)
     })

@@ -4,10 +4,9 @@
 //! One problem per failing path. The head of a file says what to expect: `unsat` of a statement that must hold; of a control
 //! `unknown`: one of its problems is `sat`.
 
-use std::collections::BTreeSet;
 use std::io;
 
-use crate::claim::{Engine, Subject};
+use crate::claim::Engine;
 use crate::claims;
 use crate::proof::float::in_doubles;
 use crate::proof::transcript;
@@ -32,15 +31,9 @@ pub fn certificates(directory: &std::path::Path) -> io::Result<usize> {
 /// Whatever keeps them from being written.
 pub fn export(directory: &std::path::Path) -> io::Result<usize> {
     std::fs::create_dir_all(directory)?;
-    let (mut seen, mut count) = (BTreeSet::new(), 0);
-    for check in claims::all().iter().flat_map(|claim| &claim.checks) {
-        let (Subject::Statement(statement), Engine::Doubles) = (check.subject, check.engine) else {
-            continue;
-        };
-        if !seen.insert(statement.name) {
-            continue;
-        }
-        for (name, problem) in in_doubles(&statement, check.control) {
+    let mut count = 0;
+    for (statement, control) in claims::asked(Engine::Doubles).into_values() {
+        for (name, problem) in in_doubles(&statement, control) {
             std::fs::write(directory.join(name), problem)?;
             count += 1;
         }

@@ -224,10 +224,8 @@ fn parts(function: &str) -> (Option<String>, String) {
 
 /// Adds the sources below a folder, in the order of their names.
 fn add(folder: &Path, files: &mut Vec<(String, String)>) -> std::io::Result<()> {
-    let mut paths = Vec::new();
-    for entry in std::fs::read_dir(folder)? {
-        paths.push(entry?.path());
-    }
+    let entries = std::fs::read_dir(folder)?.map(|entry| Ok(entry?.path()));
+    let mut paths: Vec<_> = entries.collect::<std::io::Result<_>>()?;
     paths.sort();
     for path in paths {
         if path.is_dir() {
@@ -262,6 +260,10 @@ fn theorem(name: &str) -> Option<&'static str> {
     proved.get(name).copied()
 }
 
+fn are_by(engine: Engine, checks: &[&Check]) -> bool {
+    checks.iter().any(|check| check.engine == engine)
+}
+
 fn is_a_statement(check: &Check) -> bool {
     matches!(check.subject, Subject::Statement(_))
 }
@@ -269,7 +271,7 @@ fn is_a_statement(check: &Check) -> bool {
 /// What stands in front of checks of one name, and its rank: the strongest of what was said of them, for Rocq includes a proof,
 /// and the list of the proofs says which were drawn; and doubles beside it.
 fn label(checks: &[&Check]) -> (usize, String) {
-    let of = |engine| checks.iter().any(|check| check.engine == engine);
+    let of = |engine| are_by(engine, checks);
     let is_theorem = is_a_statement(checks[0]) && theorem(checks[0].name).is_some();
     let (rank, strongest) = match () {
         () if is_theorem && of(Engine::Proof) => (0, "Rocq"),
@@ -391,11 +393,13 @@ fn state(claims: &[Claim]) -> String {
     let evidence: Vec<Vec<&Check>> = by_name(checks().filter(|check| !check.control));
     let of = |engine: Engine, statement: bool| {
         let asked = |checks: &&Vec<&Check>| {
-            is_a_statement(checks[0]) == statement && checks.iter().any(|c| c.engine == engine)
+            is_a_statement(checks[0]) == statement && are_by(engine, checks)
         };
         evidence.iter().filter(asked).count()
     };
-    let drawn = drawn_too(&evidence);
+    let both =
+        |checks: &&Vec<&Check>| [Engine::Proof, Engine::Exact].iter().all(|&e| are_by(e, checks));
+    let drawn = evidence.iter().filter(both).count();
     let harnesses = claims::harnesses();
     let theorems = paper::theorems();
     let proved = theorems.iter().filter(|theorem| theorem.is_proved()).count();
@@ -463,14 +467,6 @@ fn joined(words: &[&str]) -> String {
     }
 }
 
-/// How many statements are both proved and drawn.
-fn drawn_too(evidence: &[Vec<&Check>]) -> usize {
-    let both = |checks: &&Vec<&Check>| {
-        [Engine::Proof, Engine::Exact].iter().all(|e| checks.iter().any(|c| c.engine == *e))
-    };
-    evidence.iter().filter(both).count()
-}
-
 /// The proofs of all rows, one a line, as `reference/check_certificates.py` reads them.
 fn proofs(claims: &[Claim], places: &Places) -> Result<String, String> {
     let mut text = String::new();
@@ -523,21 +519,17 @@ fn row(claim: &Claim, places: &Places) -> Result<String, String> {
     let mut at: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for control in controls.iter().map(|checks| checks[0]) {
         let name = control.name.trim_start_matches("control_");
-        match control.subject {
-            Subject::Function(_, Stated::At(function)) => {
-                let asked = format!("[`{}`]({})", parts(function).1, places.of(control)?);
-                let place = places.registered(control)?;
-                at.entry(asked).or_default().push(format!("[{name}]({place})"));
-            }
-            // Evidence by another engine has the same name.
-            _ if name == control.name => {
-                shown.push(format!(
-                    "[{name}]({}) in doubles, where rounding breaks it",
-                    places.of(control)?
-                ));
-            }
-            _ => shown.push(format!("[{name}]({})", places.of(control)?)),
+        let place = places.of(control)?;
+        if let Subject::Function(_, Stated::At(function)) = control.subject {
+            let asked = format!("[`{}`]({place})", parts(function).1);
+            let line = places.registered(control)?;
+            at.entry(asked).or_default().push(format!("[{name}]({line})"));
+            continue;
         }
+        // Evidence by another engine has the same name.
+        let is_evidence = name == control.name;
+        let why = if is_evidence { " in doubles, where rounding breaks it" } else { "" };
+        shown.push(format!("[{name}]({place}){why}"));
     }
     let of_function =
         |(asked, controls): (String, Vec<String>)| format!("in {asked}: {}", controls.join(", "));
@@ -547,510 +539,5 @@ fn row(claim: &Claim, places: &Places) -> Result<String, String> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn evidence(claim: &Claim) -> impl Iterator<Item = &Check> {
-        claim.checks.iter().filter(|check| !check.control)
-    }
-
-    fn words(text: &str) -> usize {
-        text.split_whitespace().filter(|word| word.contains(char::is_alphanumeric)).count()
-    }
-
-    /// The links of a text, each with what it shows and where it leads.
-    fn links(text: &str) -> impl Iterator<Item = (&str, &str)> {
-        text.match_indices("](").filter_map(|(middle, _)| {
-            let start = text[..middle].rfind('[')?;
-            let end = middle + text[middle..].find(')')?;
-            Some((&text[start + 1..middle], &text[middle + 2..end]))
-        })
-    }
-
-    /// What is read aloud: all before the lists, without the lines of links and without names, which are looked up.
-    fn read_aloud(page: &str) -> String {
-        let (prose, _) = page.split_once(LISTS).expect("the lists");
-        let (front, items) = prose.split_once("## The items of the paper").expect("the items");
-        let items = items.lines().filter(|line| !line.starts_with(LINKS)).collect::<Vec<_>>();
-        let mut read = format!("{front}{}", items.join("\n"));
-        for (shown, place) in links(prose) {
-            let is_name = shown.contains(['_', '`', '§']);
-            let link = format!("[{shown}]({place})");
-            read = read.replace(&link, if is_name { "" } else { shown });
-        }
-        read
-    }
-
-    #[test]
-    fn verify_md_is_what_the_claims_print() {
-        let stored = std::fs::read_to_string(root().join("VERIFY.md")).unwrap_or_default();
-        let printed = ledger().expect("each name stands in the sources");
-        assert!(stored == printed, "stale: cargo run -p props -- ledger > VERIFY.md");
-    }
-
-    #[test]
-    fn verify_md_is_read_aloud_in_a_quarter_of_an_hour() {
-        let page = ledger().expect("each name stands in the sources");
-        assert!(words(&page) <= 4500, "{} words", words(&page));
-        // At 150 words a minute.
-        let read = words(&read_aloud(&page));
-        assert!((1500..=2300).contains(&read), "{read} words of prose");
-        // A sentence counts, and so do the words of a link that are no name; a line of links does not.
-        let text = format!(
-            "One [two three](a.rs) [`four`](a.rs#L1).\n## The items of the paper\nFive.\n{LINKS}[six_seven](a.rs#L6) eight.\n{LISTS}ten"
-        );
-        assert_eq!(words(&read_aloud(&text)), words("One two three Five"));
-    }
-
-    /// What is wrong with the links to lines of a page: each must lead to a line that has the name which the link shows, or the
-    /// header of the function that a check of this name is stated by.
-    fn astray(page: &str, checks: &[Check], places: &Places) -> Vec<String> {
-        let mut found = Vec::new();
-        for (shown, place) in links(page) {
-            let Some((file, line)) = place.split_once("#L") else { continue };
-            let text = places.files.iter().find(|(name, _)| name == file).map(|(_, text)| text);
-            let line = line.parse().ok().and_then(|line: usize| text?.lines().nth(line - 1));
-            let is_shown = |name: &str| name.trim_start_matches("control_") == shown;
-            let stated = checks.iter().find_map(|check| match check.subject {
-                Subject::Function(_, stated) if is_shown(check.name) => Some(stated),
-                _ => None,
-            });
-            let has = |line: &str| match stated {
-                // A control whose mistake stands in the line leads there.
-                Some(Stated::At(_)) => line.contains(shown),
-                Some(Stated::In(function)) => {
-                    let name = parts(function).1;
-                    ['<', '('].iter().any(|end| line.contains(&format!("fn {name}{end}")))
-                }
-                None => line.contains(shown.trim_matches('`')),
-            };
-            if !line.is_some_and(has) {
-                found.push(format!("{shown}: {place}"));
-            }
-        }
-        found
-    }
-
-    #[test]
-    fn each_link_leads_to_a_line_with_the_name_that_it_shows_or_with_the_function_that_states_it() {
-        let (page, places) = (ledger().expect("a page"), Places::read().expect("the sources"));
-        let checks: Vec<Check> = claims::all().into_iter().flat_map(|claim| claim.checks).collect();
-        assert_eq!(astray(&page, &checks, &places), Vec::<String>::new());
-        assert!(links(&page).filter(|(_, place)| place.contains("#L")).count() > 400);
-        // A link that is a line off, one to a function that states another check, one to a file that is not there.
-        let right =
-            places.of(checks.iter().find(|c| c.name == "positive_part_satisfies_4").unwrap());
-        let (file, line) = right.as_deref().unwrap().split_once("#L").unwrap();
-        let off = format!("{file}#L{}", line.parse::<usize>().unwrap() + 1);
-        for (name, place) in [
-            ("positive_part_satisfies_4", off.as_str()),
-            ("12_and_the_bound_of_phi_hold_on_random_bodies_for_p1", right.as_deref().unwrap()),
-            ("`pressure`", "src/kernel/no_such_file.rs#L1"),
-        ] {
-            assert_eq!(astray(&format!("[{name}]({place})"), &checks, &places).len(), 1, "{name}");
-        }
-    }
-
-    #[test]
-    fn the_controls_that_are_counted_are_those_that_are_listed() {
-        let page = ledger().expect("a page");
-        let lines = page.lines().filter(|line| line.starts_with("- *Controls:*"));
-        let listed = lines.flat_map(links).filter(|(shown, _)| !shown.starts_with('`')).count();
-        let checks = claims::all().into_iter().flat_map(|claim| claim.checks);
-        assert!(page.contains(&format!("; {listed} controls.")), "{listed}");
-        // What is asked can fail: one of them is a control of two engines.
-        assert!(listed < checks.filter(|check| check.control).count());
-    }
-
-    /// A name that is called, behind that of a module or a type, or `.` for a method.
-    type Call<'a> = (&'a str, &'a str);
-
-    /// A function: its name, its file, the header of the `impl` around it, whether it is a method, and what it calls.
-    struct Function<'a> {
-        name: &'a str,
-        file: &'a str,
-        header: &'a str,
-        is_method: bool,
-        calls: Vec<Call<'a>>,
-    }
-
-    /// A name that is called, with the file of the function that it means, if that is known.
-    type Reached<'a> = (&'a str, Option<&'a str>);
-
-    /// The functions of the sources, which of them have a name, and what each one calls.
-    struct Functions<'a> {
-        all: Vec<Function<'a>>,
-        named: BTreeMap<&'a str, Vec<usize>>,
-        called: Vec<Vec<(&'a str, Option<usize>)>>,
-        imported: BTreeMap<&'a str, BTreeSet<&'a str>>,
-    }
-
-    /// The names in the imports of a text.
-    fn imports(text: &str) -> BTreeSet<&str> {
-        let statements = text.split("use ").skip(1).filter_map(|rest| rest.split(';').next());
-        statements.flat_map(|names| names.split(|c| !is_name(c))).collect()
-    }
-
-    fn is_name(c: char) -> bool {
-        c.is_alphanumeric() || c == '_'
-    }
-
-    /// The functions of a text.
-    fn functions<'a>(file: &'a str, text: &'a str) -> Vec<Function<'a>> {
-        let mut found = Vec::new();
-        let mut header = "";
-        let mut at = 0;
-        for line in text.split_inclusive('\n') {
-            let start = at;
-            at += line.len();
-            match () {
-                () if line.starts_with("impl") => header = line,
-                () if line.starts_with('}') => header = "",
-                () => {}
-            }
-            let word =
-                ["fn ", "holds ", "fails "].iter().find_map(|s| line.find(s).map(|i| i + s.len()));
-            let Some(word) = word.filter(|_| !line.trim_start().starts_with("//")) else {
-                continue;
-            };
-            let part = &text[start + word..];
-            let end = part.find(|c| !is_name(c)).unwrap_or(0);
-            let Some(open) = part.find('{').filter(|_| end > 0) else { continue };
-            let mut depth = 0;
-            let close = part[open..].find(|c| {
-                depth += i32::from(c == '{') - i32::from(c == '}');
-                depth == 0
-            });
-            let body = &part[open..close.map_or(part.len(), |close| open + close)];
-            let (name, is_method) = (&part[..end], part[..open].contains("self"));
-            found.push(Function { name, file, header, is_method, calls: calls(body) });
-        }
-        found
-    }
-
-    impl<'a> Functions<'a> {
-        fn of(places: &'a Places) -> Self {
-            // What runs the checks knows all of them.
-            let runs = |file: &str| {
-                let name = file.strip_prefix("props/src/").unwrap_or_default();
-                let is_definition = ["bodies", "naive", "discrete", "elimination", "numbers/"];
-                let of_claims = ["claims/", "sharpness", "problems"];
-                let mut known = is_definition.iter().chain(&of_claims);
-                file.starts_with("props/") && !known.any(|start| name.starts_with(start))
-            };
-            let files = places.files.iter().filter(|(file, _)| !runs(file));
-            let all = files.flat_map(|(file, text)| functions(file, text));
-            let all: Vec<Function> = all
-                .filter(|function| !["claim", "checks", "all"].contains(&function.name))
-                .collect();
-            let mut named: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
-            for (i, function) in all.iter().enumerate() {
-                named.entry(function.name).or_default().push(i);
-            }
-            let files = places.files.iter();
-            let imported = files.map(|(file, text)| (file.as_str(), imports(text))).collect();
-            let mut functions = Functions { all, named, called: Vec::new(), imported };
-            let called = functions.all.iter().map(|f| functions.meant_by(f.file, &f.calls));
-            functions.called = called.collect();
-            functions
-        }
-
-        /// Whether a file, or the one above it where it has all of that, imports this name.
-        fn imports(&self, file: &str, name: &str) -> bool {
-            let above = file.rsplit_once('/').map(|(folder, _)| format!("{folder}.rs"));
-            let names = |file: &str| self.imported.get(file).is_some_and(|n| n.contains(name));
-            names(file) || above.is_some_and(|above| names(&above) || self.has(&above, name))
-        }
-
-        fn has(&self, file: &str, name: &str) -> bool {
-            let of = self.named.get(name).into_iter().flatten();
-            of.copied().any(|i| self.all[i].file == file)
-        }
-
-        /// Which functions a name in a file means: those of the module or the type before the name; else those of this file, or the only one
-        /// of props/src or of all.
-        fn meant(&self, file: &str, (before, name): Call) -> Vec<usize> {
-            let Some(all) = self.named.get(name) else { return Vec::new() };
-            let of = |is_meant: &dyn Fn(&Function) -> bool| -> Vec<usize> {
-                all.iter().copied().filter(|&i| is_meant(&self.all[i])).collect()
-            };
-            let is_in = |f: &Function| {
-                let mut modules = f.file.trim_end_matches(".rs").split('/');
-                modules.any(|module| module == before)
-                    || f.header.split(|c| !is_name(c)).any(|name| name == before)
-            };
-            let is_path = before.starts_with(char::is_alphabetic);
-            let mut meant = if is_path { of(&is_in) } else { Vec::new() };
-            // Another module than those with the functions.
-            let beside = ["self", "super", "crate"];
-            if is_path && before.starts_with(char::is_lowercase) && !beside.contains(&before) {
-                return meant;
-            }
-            // A method, one of the crates below; or a function that the file has, or imports.
-            let is_such = |f: &Function| {
-                let is_below = |folder| file.starts_with(folder) && !f.file.starts_with(folder);
-                let is_near = !["src/kernel/", "src/"].iter().any(is_below);
-                match before {
-                    "." => f.is_method && is_near,
-                    _ => is_path || !f.is_method && (f.file == file || self.imports(file, name)),
-                }
-            };
-            if meant.is_empty() {
-                meant = of(&|f| f.file == file && is_such(f));
-            }
-            if meant.is_empty() {
-                let all: Vec<usize> = of(&is_such);
-                let near = of(&|f| f.file.starts_with("props/src/") && is_such(f));
-                let is_near = file.starts_with("props/src/") && !near.is_empty();
-                let found = if is_near { near } else { all };
-                meant = if found.len() == 1 { found } else { Vec::new() };
-            }
-            meant
-        }
-
-        /// What is called by these calls in a file, by the functions that they mean, and so on: each name with the file of the function
-        /// that it means, or without one where it means none or any of several.
-        fn reached(&self, file: &str, calls: &[Call<'a>]) -> BTreeSet<Reached<'a>> {
-            let mut found = BTreeSet::new();
-            let mut seen = vec![false; self.all.len()];
-            let mut left = self.meant_by(file, calls);
-            while let Some((name, meant)) = left.pop() {
-                found.insert((name, meant.map(|i| self.all[i].file)));
-                if let Some(i) = meant.filter(|&i| !std::mem::replace(&mut seen[i], true)) {
-                    left.extend(&self.called[i]);
-                }
-            }
-            found
-        }
-
-        /// The names of calls in a file, each with a function that it means or without one.
-        fn meant_by(&self, file: &str, calls: &[Call<'a>]) -> Vec<(&'a str, Option<usize>)> {
-            let of = |&(before, name): &Call<'a>| {
-                let meant = self.meant(file, (before, name));
-                let is_one = self.named.get(name).is_some_and(|all| all.len() == 1);
-                let is_unsure = meant.is_empty() || before == "." && !is_one;
-                let none = is_unsure.then_some((name, None));
-                meant.into_iter().map(move |i| (name, Some(i))).chain(none)
-            };
-            calls.iter().flat_map(of).collect()
-        }
-    }
-
-    /// The names that are called in a text, or given to a function by themselves, and constants; each with the name of the module or
-    /// of the type before it.
-    fn calls(text: &str) -> Vec<Call<'_>> {
-        let mut found = Vec::new();
-        let mut end = 0;
-        while let Some(start) = text[end..].find(is_name).map(|start| end + start) {
-            end = text[start..].find(|c| !is_name(c)).map_or(text.len(), |length| start + length);
-            let (before, name, after) = (&text[..start], &text[start..end], &text[end..]);
-            let path = before.strip_suffix("::");
-            let path = path.map(|path| &path[path.rfind(|c| !is_name(c)).map_or(0, |at| at + 1)..]);
-            let start = before.strip_suffix("::").map_or(before, |b| b.trim_end_matches(is_name));
-            let is_argument = start.trim_end().ends_with(['(', ','])
-                && after.trim_start().starts_with([')', ',']);
-            let is_constant =
-                !name.contains(char::is_lowercase) && name.starts_with(char::is_alphabetic);
-            let is_called = after.starts_with('(') || after.starts_with("::<");
-            if is_called || is_argument || is_constant {
-                let beside = if before.ends_with('.') { "." } else { "" };
-                found.push((path.unwrap_or(beside), name));
-            }
-        }
-        found
-    }
-
-    /// All that a check calls.
-    fn called_by<'a>(
-        check: &'a Check,
-        places: &'a Places,
-        functions: &Functions<'a>,
-    ) -> Option<BTreeSet<Reached<'a>>> {
-        let place = match check.subject {
-            Subject::Function(..) => places.registered(check),
-            _ => places.of(check),
-        };
-        let file = place.ok()?.split('#').next()?.to_owned();
-        let (file, text) = places.files.iter().find(|(name, _)| *name == file)?;
-        let Subject::Function(..) = check.subject else {
-            return Some(functions.reached(file, &[("", check.name)]));
-        };
-        let (_, text) = text.split_once(&format!("!(\"{}\",", check.name))?;
-        let (_, run) = text.split_once("=>")?;
-        let mut depth = 1;
-        let end = run.find(|c| {
-            depth += i32::from(c == '(') - i32::from(c == ')');
-            depth == 0
-        });
-        Some(functions.reached(file, &calls(&run[..end?])))
-    }
-
-    #[test]
-    fn a_check_runs_the_function_that_its_link_leads_to() {
-        let places = Places::read().expect("the sources");
-        let functions = Functions::of(&places);
-        let checks: Vec<Check> = claims::all().into_iter().flat_map(|claim| claim.checks).collect();
-        let (mut count, mut strangers) = (0, 0);
-        for check in &checks {
-            let Subject::Function(_, stated) = check.subject else { continue };
-            let names = called_by(check, &places, &functions).expect("a line of a row");
-            let name = parts(stated.by()).1;
-            let calls = |asked: &str| names.iter().any(|(name, _)| *name == asked);
-            assert!(calls(&name), "{} does not call {name}", check.name);
-            strangers += usize::from(calls("monotone_on_bodies"));
-            count += 1;
-        }
-        assert!(count > 50, "{count}");
-        // What is asked can fail: two checks call this one.
-        assert_eq!(strangers, 2);
-        let text = "fn a() { b(); }\nfn b() { c(); }\nfn d() { e(); }\n";
-        let places = Places { files: vec![("src/a.rs".to_owned(), text.to_owned())] };
-        let names = Functions::of(&places).reached("src/a.rs", &[("", "a")]);
-        let here = Some("src/a.rs");
-        assert_eq!(names.into_iter().collect::<Vec<_>>(), [("a", here), ("b", here), ("c", None)]);
-    }
-
-    /// The lines of code that no check of an item calls.
-    fn not_called<'i>(
-        item: &'i Item,
-        code: &'i [Place],
-        claims: &'i [Claim],
-        (places, functions): (&'i Places, &Functions<'i>),
-    ) -> Vec<&'i str> {
-        let mut called = BTreeSet::new();
-        for (_, check) in item.found(claims) {
-            called.extend(called_by(check, places, functions).expect("a check stands in a file"));
-        }
-        let is_called = |&&(file, start): &&Place| {
-            // A constant, or a function; of another line, the one around it.
-            let (_, text) = places.files.iter().find(|(name, _)| name == file).expect("a file");
-            let line = places.line((file, start)).expect("a line");
-            let lines: Vec<&str> = text.lines().take(line).collect();
-            let start = if start.starts_with("const ") { "const " } else { "fn " };
-            let header = lines.iter().rev().find_map(|line| line.split_once(start));
-            let name = header.and_then(|(_, rest)| rest.split(|c| !is_name(c)).next());
-            name.is_some_and(|name| {
-                [None, Some(file)].iter().any(|&of| called.contains(&(name, of)))
-            })
-        };
-        code.iter().filter(|place| !is_called(place)).map(|(_, start)| *start).collect()
-    }
-
-    #[test]
-    fn the_code_of_an_item_is_called_by_its_checks() {
-        let (claims, places) = (claims::all(), Places::read().expect("the sources"));
-        let functions = Functions::of(&places);
-        let mut uncalled = 0;
-        for item in ITEMS {
-            let not_called = |code| not_called(item, code, &claims, (&places, &functions));
-            assert_eq!(not_called(item.code), Vec::<&str>::new(), "{}", item.name);
-            assert_eq!(not_called(item.uncalled).len(), item.uncalled.len(), "{}", item.name);
-            uncalled += item.uncalled.len();
-        }
-        assert!(uncalled >= 8, "{uncalled}");
-        // What is asked can fail for lines that checks of other items call.
-        let of_k = ITEMS.iter().find(|item| item.name == "K").expect("an item");
-        for place in [
-            ("props/src/bodies/definition.rs", "pub fn big_a("),
-            ("src/kernel/contact.rs", "pub fn pressure(&self)"),
-        ] {
-            assert_eq!(not_called(of_k, &[place], &claims, (&places, &functions)), [place.1]);
-        }
-    }
-
-    #[test]
-    fn a_name_that_does_not_stand_in_the_sources_once_has_no_link() {
-        let places = Places::read().expect("the sources");
-        assert!(places.of_claims(&["fn no_such_predicate<".to_owned()]).is_err());
-        assert!(places.line(("src/kernel/contact.rs", "pub fn no_such_function")).is_err());
-        assert!(places.line(("src/kernel/no_such_file.rs", "")).is_err());
-    }
-
-    /// What a predicate must not look at: then it could answer each engine as that likes.
-    const BESIDE_THE_NUMBERS: [&str; 14] = [
-        "type_name",
-        "TypeId",
-        "Any",
-        "is::<",
-        "downcast",
-        "size_of",
-        "format!",
-        "{:?}",
-        "static ",
-        "Cell",
-        "Atomic",
-        "env::",
-        "thread",
-        "catch_unwind",
-    ];
-
-    /// The functions of a source that are generic over the number type and look at something else, with what they look at.
-    fn curious(source: &str) -> Vec<String> {
-        let mut found = Vec::new();
-        for part in source.split("fn ").skip(1) {
-            let Some((header, rest)) = part.split_once('{') else { continue };
-            if !header.contains(": Ordered") {
-                continue;
-            }
-            let mut depth = 1;
-            let end = rest.find(|c| {
-                depth += i32::from(c == '{') - i32::from(c == '}');
-                depth == 0
-            });
-            let body = &rest[..end.unwrap_or(rest.len())];
-            let looks = BESIDE_THE_NUMBERS.iter().filter(|word| body.contains(**word));
-            let name = header.split(['<', '(']).next().unwrap_or(header);
-            found.extend(looks.map(|word| format!("{name}: {word}")));
-        }
-        found
-    }
-
-    #[test]
-    fn predicates_look_at_their_numbers_only() {
-        let cheat =
-            "fn zero<S: Ordered>([a]: [S; 1]) -> Verdict { if type_name::<S>() == \"f64\" {} }";
-        assert_eq!(curious(cheat), ["zero: type_name"]);
-        let cheat =
-            "fn one<S: Ordered>([a]: [S; 1]) -> Verdict { if (&a as &dyn Any).is::<Sym>() {} }";
-        assert_eq!(curious(cheat), ["one: Any", "one: is::<"]);
-        let cheat =
-            "fn two<S: Ordered>([a]: [S; 1]) -> Verdict { if std::env::args().count() == 0 {} }";
-        assert_eq!(curious(cheat), ["two: env::"]);
-        assert!(curious("fn name<S: Ordered>() {} fn other() { type_name::<f64>() }").is_empty());
-        let (mut folders, mut files) = (vec![root().join("props/src/claims")], 0);
-        while let Some(folder) = folders.pop() {
-            for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
-                if path.is_dir() {
-                    folders.push(path);
-                } else {
-                    files += 1;
-                    let found = curious(&std::fs::read_to_string(&path).unwrap());
-                    assert!(found.is_empty(), "{}: {found:?}", path.display());
-                }
-            }
-        }
-        assert!(files > 20, "{files}");
-    }
-
-    #[test]
-    fn every_row_has_two_engines_or_a_reason_and_a_control() {
-        for claim in &claims::all() {
-            // A harness is not counted: a receipt may stop standing behind it at any time.
-            let mut kinds: Vec<Engine> = evidence(claim).map(|check| check.engine).collect();
-            kinds.retain(|&engine| engine != Engine::Harness);
-            kinds.sort_unstable();
-            kinds.dedup();
-            let is_excused = claim.limits.contains("One engine: ");
-            assert!((kinds.len() > 1) != is_excused, "row {}: {kinds:?}", claim.id);
-            assert!(claim.checks.iter().any(|check| check.control), "row {}", claim.id);
-        }
-    }
-
-    #[test]
-    fn every_harness_has_a_false_twin_and_there_are_at_least_25() {
-        let harnesses = claims::harnesses();
-        let twins = harnesses.iter().filter(|harness| harness.counterexample.is_some()).count();
-        assert!(twins >= 25, "{twins}");
-        assert_eq!(2 * twins, harnesses.len());
-    }
-}
+#[path = "../tests/ledger.rs"]
+mod tests;

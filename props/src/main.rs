@@ -4,8 +4,21 @@
 fn main() {}
 
 #[cfg(not(kani))]
+const USAGE: &str = "\
+props ledger       print VERIFY.md
+props audit [ROW [CHECK]]  run every check, or those of a row, or one
+props smt DIR      write the statements in doubles as SMT-LIB 2 problems
+props export DIR   write the proofs with their certificates as text
+props export --rocq DIR    write the headline statements with proofs for Rocq
+props receipt LOG  keep the output of cargo kani as a receipt in props/receipts
+";
+
+#[cfg(not(kani))]
 fn main() -> std::process::ExitCode {
     use std::process::ExitCode;
+
+    use props::audit::audit;
+    use props::{export, ledger, paper, receipt};
 
     if cfg!(panic = "abort") {
         eprintln!(
@@ -15,42 +28,31 @@ fn main() -> std::process::ExitCode {
     }
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let said = |text: String| {
+        print!("{text}");
+        true
+    };
     let outcome = match arguments[..] {
-        ["ledger"] => props::ledger::ledger().map_err(std::io::Error::other).map(|text| {
-            print!("{text}");
-            true
-        }),
-        ["audit"] => props::audit::audit(None, None),
-        ["audit", id] => props::audit::audit(Some(id), None),
-        ["audit", id, name] => props::audit::audit(Some(id), Some(name)),
-        ["smt", directory] => props::export::export(directory.as_ref()).map(|count| {
-            println!("{count} problems in {directory}");
-            true
-        }),
-        ["export", "--rocq", directory] => props::paper::export(directory.as_ref()).map(|count| {
-            println!("{count} theorems in {directory}/paper.v");
-            true
-        }),
-        ["export", directory] => props::export::certificates(directory.as_ref()).map(|count| {
-            println!("{count} proofs in {directory}");
-            true
-        }),
-        ["receipt", log] => props::receipt::make(log.as_ref()).map(|path| {
-            println!("written: {}", path.display());
-            println!("VERIFY.md follows it: cargo run -p props -- ledger > VERIFY.md");
-            true
+        ["ledger"] => ledger::ledger().map_err(std::io::Error::other).map(said),
+        ["audit"] => audit(None, None),
+        ["audit", id] => audit(Some(id), None),
+        ["audit", id, name] => audit(Some(id), Some(name)),
+        ["smt", to] => {
+            export::export(to.as_ref()).map(|count| said(format!("{count} problems in {to}\n")))
+        }
+        ["export", "--rocq", to] => paper::export(to.as_ref())
+            .map(|count| said(format!("{count} theorems in {to}/paper.v\n"))),
+        ["export", to] => {
+            export::certificates(to.as_ref()).map(|count| said(format!("{count} proofs in {to}\n")))
+        }
+        ["receipt", log] => receipt::make(log.as_ref()).map(|path| {
+            said(format!(
+                "written: {}\nVERIFY.md follows it: cargo run -p props -- ledger > VERIFY.md\n",
+                path.display()
+            ))
         }),
         _ => {
-            eprintln!("props ledger       print VERIFY.md");
-            eprintln!("props audit [ROW [CHECK]]  run every check, or those of a row, or one");
-            eprintln!("props smt DIR      write the statements in doubles as SMT-LIB 2 problems");
-            eprintln!("props export DIR   write the proofs with their certificates as text");
-            eprintln!(
-                "props export --rocq DIR    write the headline statements with proofs for Rocq"
-            );
-            eprintln!(
-                "props receipt LOG  keep the output of cargo kani as a receipt in props/receipts"
-            );
+            eprint!("{USAGE}");
             return ExitCode::from(2);
         }
     };

@@ -98,17 +98,13 @@ impl Table {
         let mut dates = BTreeSet::new();
         for entry in std::fs::read_dir(&folder).map_err(failed)? {
             let name = entry.map_err(failed)?.file_name().to_string_lossy().into_owned();
-            dates.extend(dated(&name, prefix).map(str::to_owned));
+            let date = name.strip_prefix(prefix).and_then(|rest| rest.strip_suffix(".tsv"));
+            dates.extend(date.map(str::to_owned));
         }
         let date = dates.last().ok_or(format!("{}: no {prefix}DATE.tsv", folder.display()))?;
         let text = std::fs::read_to_string(folder.join(format!("{prefix}{date}.tsv")));
         Table::parse(date, &text.map_err(failed)?)
     }
-}
-
-/// The date in the name of a receipt.
-fn dated<'a>(name: &'a str, prefix: &str) -> Option<&'a str> {
-    name.strip_prefix(prefix)?.strip_suffix(".tsv")
 }
 
 /// As it must be: a harness holds, a false twin fails.

@@ -3,7 +3,7 @@
 //! grows as the mesh is refined.
 
 use crate::contact::discretization::Discretization;
-use crate::model::constraints::from_frame;
+use crate::model::constraints::{from_frame, in_frame};
 use crate::model::data::DataError;
 use crate::model::mesh::NO_ANGLE;
 use crate::model::tree::Bounds;
@@ -44,10 +44,8 @@ pub(crate) fn check(d: &Discretization) -> Result<(), DataError> {
 fn held_along(d: &Discretization, node: usize, direction: [f64; 2]) -> Option<[f64; 2]> {
     let axis = d.constraints.frames().get(&node).copied().unwrap_or([1.0, 0.0]);
     let values = d.constraints.supported(node);
-    let across = axis[0] * direction[1] - axis[1] * direction[0];
-    let along = axis[0] * direction[0] + axis[1] * direction[1];
     // A component that is free must not show along the direction.
-    let free =
-        [along, across].into_iter().zip(values).any(|(c, v)| v.is_none() && c.abs() > NO_ANGLE);
+    let mut components = in_frame(axis, direction).into_iter().zip(values);
+    let free = components.any(|(c, v)| v.is_none() && c.abs() > NO_ANGLE);
     (!free).then(|| from_frame(axis, values.map(Option::unwrap_or_default)))
 }

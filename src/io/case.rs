@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-pub use self::body::MaterialEcho;
+pub(crate) use self::body::MaterialEcho;
 use self::body::{PLANES, only_isotropic, read_loads, read_materials};
 use self::boundary::{Depth, read_boundaries, read_points};
 use self::exact::read_exact;
@@ -54,16 +54,16 @@ pub struct Case {
     /// Its load steps, a case for each \[\[step\]\]; each begins where the one before ends.
     pub steps: Vec<Case>,
     /// The number of the load step that it is, from 1, if it is one.
-    pub step: Option<usize>,
+    pub(crate) step: Option<usize>,
     /// The variant of method (8).
     pub method: Method,
     /// The accuracy.
     pub settings: Settings,
     /// The target of the error, if the mesh is to be adapted until it is proved; and the boundary whose contact force it is
     /// about, if it is not about the energy norm.
-    pub adapt: Option<(Target, Option<String>)>,
+    pub(crate) adapt: Option<(Target, Option<String>)>,
     /// Quantities to be proved beside the bound.
-    pub asked: Asked,
+    pub(crate) asked: Asked,
     /// The places where the displacement is wanted.
     pub probes: Vec<[f64; 2]>,
     /// The materials as the case has them.
@@ -74,13 +74,13 @@ pub struct Case {
     /// whole of it.
     pub thickness: Option<f64>,
     /// The number of vertices of a body of revolution that were next to its axis and have been moved onto it.
-    pub snapped: usize,
+    pub(crate) snapped: usize,
     /// The amount by which the picture magnifies displacement and gap, if the case says so.
     pub stretch: Option<f64>,
     /// The exact solution, if there is one.
     pub exact: Option<ExactCase>,
     /// The text that it was read from, with a comment for each setting laid over it.
-    pub text: String,
+    pub(crate) text: String,
     /// Decisions made when the mesh was read, in sentences for people.
     pub remarks: Vec<String>,
     /// The files that all this was read from.
@@ -141,7 +141,7 @@ pub struct ExactCase {
 
 impl Case {
     /// Returns whether the case itself asks for a certificate: it has quantities in \[certify\], which nothing else proves.
-    pub fn asks_for_certificate(&self) -> bool {
+    pub(crate) fn asks_for_certificate(&self) -> bool {
         !self.asked.forces.is_empty()
     }
 
@@ -166,7 +166,7 @@ impl Case {
     ///
     /// # Errors
     /// As [`Case::text`].
-    pub fn text_from(stream: impl Read, name: &Path) -> Result<String, FileError> {
+    pub(crate) fn text_from(stream: impl Read, name: &Path) -> Result<String, FileError> {
         let bytes = input::read_from(stream, MOST_OF_A_CASE);
         text(bytes.map_err(|error| error.at(name, Position::File))?, name)
     }

@@ -25,7 +25,8 @@ mod algebra;
 mod condition;
 mod parser;
 
-pub use condition::PlaceCondition;
+#[cfg(feature = "files")]
+pub(crate) use condition::PlaceCondition;
 use thiserror::Error;
 
 use crate::kernel::{Ball, Enclosing};
@@ -68,8 +69,7 @@ enum Instruction {
 
 /// A function of one argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(missing_docs, reason = "named after what each computes")]
-pub enum Unary {
+pub(crate) enum Unary {
     Negate,
     /// A power by repeated multiplication.
     WholePower(i32),
@@ -82,8 +82,7 @@ pub enum Unary {
 
 /// An operator, or a function of two arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(missing_docs, reason = "named after what each computes")]
-pub enum Binary {
+pub(crate) enum Binary {
     Add,
     Subtract,
     Multiply,
@@ -94,7 +93,7 @@ pub enum Binary {
 }
 
 /// A number type over which expressions can be evaluated: doubles, doubles with derivatives, enclosures, degrees.
-pub trait Number: Clone {
+pub(crate) trait Number: Clone {
     /// The number that is this double.
     fn from_double(value: f64) -> Self;
 
@@ -146,7 +145,7 @@ fn constant(instructions: &[Instruction]) -> Option<f64> {
 
 impl Expression {
     /// The value at (x, y), over any number type.
-    pub fn evaluate<T: Number>(&self, at: [T; 2]) -> T {
+    pub(crate) fn evaluate<T: Number>(&self, at: [T; 2]) -> T {
         evaluate(&self.instructions, at)
     }
 

@@ -157,7 +157,7 @@ impl Output {
     ///
     /// # Errors
     /// A failure where a file cannot be written.
-    pub fn wait(&mut self) -> Result<(), Failure> {
+    pub(crate) fn wait(&mut self) -> Result<(), Failure> {
         let written = self.writing.drain(..).map(|(name, thread)| (name, thread.join()));
         for (name, written) in written.collect::<Vec<_>>() {
             let lost = |_| Err(io::Error::other("writing stopped"));

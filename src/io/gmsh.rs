@@ -53,7 +53,7 @@ pub fn from_bytes(bytes: &[u8], file: &Path, share: Option<f64>, pairs: &[Pair])
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_with_pairs(file: &Path) -> Result<(Made, Vec<Pair>)> {
+pub(crate) fn read_with_pairs(file: &Path) -> Result<(Made, Vec<Pair>)> {
     let bytes = input::read(file, MOST_OF_A_MESH)?;
     let mut cursor = Cursor { bytes: &bytes, file, at: 0, version: Version::Four, binary: false };
     let names = read_sections(&mut cursor)?.curve_names();

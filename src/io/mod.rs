@@ -1,7 +1,7 @@
 //! Input and output: case files, Gmsh meshes, VTU, SVG, JSON.
 
 #[cfg(feature = "files")]
-pub mod case;
+pub(crate) mod case;
 #[cfg(feature = "files")]
 pub mod certificate;
 #[cfg(feature = "cli")]
@@ -9,7 +9,7 @@ pub(crate) mod checked;
 mod csv;
 #[cfg(feature = "cli")]
 pub(crate) mod draft;
-pub mod expression;
+pub(crate) mod expression;
 #[cfg(feature = "cli")]
 pub(crate) mod field;
 mod fields;

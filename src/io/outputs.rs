@@ -62,7 +62,7 @@ pub struct Written {
     /// The paths of the files.
     pub files: Vec<PathBuf>,
     /// The content of result.json.
-    pub results: Results,
+    pub(crate) results: Results,
     /// The content of the picture.
     pub(crate) scene: Scene,
 }

@@ -34,7 +34,7 @@ pub struct Results {
     pub(crate) version: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     /// The case file as it was read, with the settings over it; none in an older result.
-    pub case: Option<String>,
+    pub(crate) case: Option<String>,
     #[serde(default = "first")]
     pub(crate) schema: u32,
     pub(crate) title: String,
@@ -231,7 +231,7 @@ impl Results {
     }
 
     /// Returns whether the solution is not proved, or something else that was asked for could not be had.
-    pub fn falls_short(&self) -> bool {
+    pub(crate) fn falls_short(&self) -> bool {
         self.reason.is_some() || !self.missing.is_empty()
     }
 

@@ -104,11 +104,11 @@ impl<P: Fn(&dyn Function) -> usize> Rules<P> {
 }
 
 /// L at every node and component.
-pub struct LoadVector {
+pub(crate) struct LoadVector {
     /// In doubles.
-    pub in_doubles: Vec<[f64; 2]>,
+    pub(crate) in_doubles: Vec<[f64; 2]>,
     /// The loads with bounds of their rounding.
-    pub in_balls: Vec<[PreciseBall; 2]>,
+    pub(crate) in_balls: Vec<[PreciseBall; 2]>,
 }
 
 /// [`assemble`] in doubles and in balls: the forces at the points of the rules, weight times value, are doubles and evaluated
@@ -192,11 +192,11 @@ impl Force<'_> {
 
 /// The resultants of the loads.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Resultants {
+pub(crate) struct Resultants {
     /// The resultant of the forces on the body and on parts of it.
-    pub body: [f64; 2],
+    pub(crate) body: [f64; 2],
     /// The resultants of the boundaries on which a traction or a pressure is given, by name.
-    pub boundaries: BTreeMap<String, [f64; 2]>,
+    pub(crate) boundaries: BTreeMap<String, [f64; 2]>,
 }
 
 impl Resultants {
@@ -210,7 +210,7 @@ impl Resultants {
 
     /// The resultants on a body of this thickness.
     #[must_use]
-    pub fn times(mut self, thickness: f64) -> Self {
+    pub(crate) fn times(mut self, thickness: f64) -> Self {
         let forces = self.boundaries.values_mut().chain([&mut self.body]);
         forces.flatten().for_each(|f| *f *= thickness);
         self
@@ -221,7 +221,7 @@ impl Resultants {
 ///
 /// # Errors
 /// As [`assemble`].
-pub fn resultants(problem: &Problem, space: &Space) -> Result<Resultants, DataError> {
+pub(crate) fn resultants(problem: &Problem, space: &Space) -> Result<Resultants, DataError> {
     let mut all = Resultants::default();
     let rules = enough(space.degree().number());
     each_force_on_body(problem, space, rules, |force| all.body[force.c] += force.value)?;

@@ -59,7 +59,7 @@ enum Shape {
 
 /// A line as seen from a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Beside {
+pub(crate) struct Beside {
     /// The distance, positive on the left of the line.
     pub(crate) left: f64,
     /// The unit vector in which it grows.
@@ -209,7 +209,7 @@ impl Path {
     }
 
     /// Distance and direction at `x`. Of several points that are equally near, one counts.
-    pub fn beside(&self, x: Vector2<f64>) -> Beside {
+    pub(crate) fn beside(&self, x: Vector2<f64>) -> Beside {
         let mut best = (0, self.sides[0].closest(x));
         for (k, side) in self.sides.iter().enumerate().skip(1) {
             let near = side.closest(x);

@@ -38,7 +38,7 @@ impl<const N: usize, S: Ordered> Definition<'_, N, S> {
     }
 
     /// The contact edges where v is not zero.
-    fn sides<'b>(&'b self, v: &'b [[S; 2]]) -> impl Iterator<Item = &'b Side<S>> {
+    pub(crate) fn sides<'b>(&'b self, v: &'b [[S; 2]]) -> impl Iterator<Item = &'b Side<S>> {
         self.0.contact.iter().filter(|side| self.acts(side.triangle, v))
     }
 
@@ -100,20 +100,11 @@ impl<const N: usize, S: Ordered> Definition<'_, N, S> {
         sum(&self.0.contact, |side| {
             let p = self.traces(side, u).p;
             let product = self.traces(side, v).p0.by(&self.traces(side, w).p0);
-            let zero = S::from(0);
             let integral = match rule {
-                Rule::Exact => {
-                    sum(p.pieces().into_iter().filter(|(_, positive)| *positive), |(piece, _)| {
-                        product.integral(piece)
-                    })
-                }
+                Rule::Exact => p.where_positive(&product),
                 Rule::Points(points) => {
-                    sum(
-                        points,
-                        |&[s, weight]| {
-                            if p.at(s) > zero { weight * product.at(s) } else { zero }
-                        },
-                    )
+                    let pressed = points.iter().filter(|[s, _]| p.at(*s) > S::from(0));
+                    sum(pressed, |&[s, weight]| weight * product.at(s))
                 }
             };
             side.length / self.0.gamma(side) * integral

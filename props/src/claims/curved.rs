@@ -42,32 +42,30 @@ fn factorial(n: Exponent) -> BigRational {
     (1..=i64::from(n)).fold(integer(1), |product, k| product * integer(k))
 }
 
-/// a + s (b - a), in the variable with this number.
-fn between(a: &BigRational, b: &BigRational, variable: usize) -> Polynomial {
-    Polynomial::variable(variable).scaled(&(b - a))
+/// Coordinate i of a + s (b - a) + t (c - a), with a variable for each of the points b, c.
+fn coordinate(a: &Point, others: &[&Point], i: usize) -> Polynomial {
+    others.iter().enumerate().fold(Polynomial::constant(a[i].clone()), |sum, (variable, b)| {
+        &sum + &Polynomial::variable(variable).scaled(&(&b[i] - &a[i]))
+    })
 }
 
 /// The integral over a triangle.
 fn over_triangle(p: &Polynomial, [a, b, c]: [&Point; 3]) -> BigRational {
-    let coordinate = |i: usize| {
-        let start = Polynomial::constant(a[i].clone());
-        &(&start + &between(&a[i], &b[i], 0)) + &between(&a[i], &c[i], 1)
-    };
+    let [x, y] = [0, 1].map(|i| coordinate(a, &[b, c], i));
     let area = (&b[0] - &a[0]) * (&c[1] - &a[1]) - (&b[1] - &a[1]) * (&c[0] - &a[0]);
-    let reference = composed(p, &coordinate(0), &coordinate(1));
-    let integral = reference.terms().fold(BigRational::zero(), |sum, (monomial, coefficient)| {
-        let exponent = |i: usize| monomial.get(i).copied().unwrap_or(0);
-        let (i, j) = (exponent(0), exponent(1));
-        sum + coefficient * factorial(i) * factorial(j) / factorial(i + j + 2)
-    });
+    let integral =
+        composed(p, &x, &y).terms().fold(BigRational::zero(), |sum, (monomial, coefficient)| {
+            let exponent = |i: usize| monomial.get(i).copied().unwrap_or(0);
+            let (i, j) = (exponent(0), exponent(1));
+            sum + coefficient * factorial(i) * factorial(j) / factorial(i + j + 2)
+        });
     integral * area.abs()
 }
 
 /// p along the segment from a to b, as a polynomial in s.
 fn along(p: &Polynomial, a: &Point, b: &Point) -> Line<Exact> {
-    let coordinate = |i: usize| &Polynomial::constant(a[i].clone()) + &between(&a[i], &b[i], 0);
-    let of_s = composed(p, &coordinate(0), &coordinate(1));
-    of_s.terms().fold(Line(vec![Exact::from(0)]), |sum, (monomial, coefficient)| {
+    let [x, y] = [0, 1].map(|i| coordinate(a, &[b], i));
+    composed(p, &x, &y).terms().fold(Line(vec![Exact::from(0)]), |sum, (monomial, coefficient)| {
         let mut power = vec![Exact::from(0); monomial.first().map_or(0, |&n| usize::from(n))];
         power.push(Exact::new(coefficient.clone()));
         sum.plus(&Line(power))
@@ -84,7 +82,7 @@ struct Smooth {
 
 impl Smooth {
     /// The solution right of c (a gap) or left of it (contact).
-    fn new(c: &BigRational, right: bool, [lambda, mu]: [&BigRational; 2]) -> Smooth {
+    fn new(c: &BigRational, right: bool, [lambda, mu]: &[BigRational; 2]) -> Smooth {
         let (x, y) = (Polynomial::variable(0), Polynomial::variable(1));
         let scaled = |p: Polynomial, k: i64| p.scaled(&integer(k));
         let (y3, y4) = (power(&y, 3), power(&y, 4));
@@ -165,23 +163,23 @@ fn test_function<const N: usize>(body: &Body, t: usize, v: &[[Exact; 2]]) -> [Po
 }
 
 /// lambda and mu of a body that is drawn isotropic.
-fn moduli(body: &Body) -> [Exact; 2] {
-    [body.material.lambda(), body.material.mu()]
+fn moduli(body: &Body) -> [BigRational; 2] {
+    [body.material.lambda(), body.material.mu()].map(Exact::value)
 }
 
 /// The exact solution left and right of c.
 fn sides(body: &Body, c: &BigRational) -> [(bool, Smooth); 2] {
-    let [lambda, mu] = moduli(body).map(|x| x.value());
-    [false, true].map(|right| (right, Smooth::new(c, right, [&lambda, &mu])))
+    let moduli = moduli(body);
+    [false, true].map(|right| (right, Smooth::new(c, right, &moduli)))
 }
 
 fn corner(body: &Body, vertex: usize) -> Point {
-    body.vertices[vertex].map(|x| x.value())
+    body.vertices[vertex].map(Exact::value)
 }
 
 /// The ends of an edge.
 fn ends(body: &Body, t: usize, i: usize) -> [Point; 2] {
-    [1, 2].map(|k| corner(body, body.triangles[t][(i + k) % 3]))
+    body.ends(t, i).map(|vertex| corner(body, vertex))
 }
 
 /// The integral over the body of sigma(u):eps(v), or of f . v.
@@ -277,7 +275,7 @@ fn residual<const N: usize>(
 }
 
 /// The field is a solution: (2) holds on y = 0 on either side of c, as polynomials or at the ends.
-fn satisfies_2(c: &BigRational, moduli: [&BigRational; 2]) -> bool {
+fn satisfies_2(c: &BigRational, moduli: &[BigRational; 2]) -> bool {
     [false, true].into_iter().all(|right| {
         let exact = Smooth::new(c, right, moduli);
         let floor = |p: &Polynomial| p.substituted(1, &BigRational::zero());
@@ -292,8 +290,7 @@ fn satisfies_2(c: &BigRational, moduli: [&BigRational; 2]) -> bool {
 fn consistent<const N: usize>(draw: &Draw, (n, d): (i64, i64), weight: i32) -> Verdict {
     let body = draw.upright().body();
     let c = integer(n) / integer(n + d);
-    let [lambda, mu] = moduli(&body).map(|x| x.value());
-    ensure!(satisfies_2(&c, [&lambda, &mu]));
+    ensure!(satisfies_2(&c, &moduli(&body)));
     let cut_edge = body.contact.iter().any(|side| {
         let [a, b] = ends(&body, side.triangle, side.local);
         (a[0] < c) != (b[0] < c)

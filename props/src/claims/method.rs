@@ -133,8 +133,7 @@ mod row {
 
     /// A rule with positive weights; it need not be a good one, for both sides use it.
     fn points() -> [[Exact; 2]; 3] {
-        [[(1, 8), (1, 4)], [(1, 2), (5, 12)], [(5, 6), (1, 3)]]
-            .map(|point| point.map(|(n, d)| Exact::ratio(n, d)))
+        [[(1, 8), (1, 4)], [(1, 2), (5, 12)], [(5, 6), (1, 3)]].map(|point| point.map(Exact::from))
     }
 
     /// The residual is the gradient of J_h: J_h lies above its tangent by 1/2 A(d, d) at least and 1/2 A(d, d) + 1/2 int P0(d)^2/gamma

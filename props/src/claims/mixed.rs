@@ -11,7 +11,7 @@ fn point<S>([u_n, gap, sigma_n, gamma]: [S; 4]) -> ContactPoint<S> {
     ContactPoint { u_n, gap, sigma_n, gamma }
 }
 
-fn class<S: Ordered>(point: &ContactPoint<S>) -> &'static str {
+pub(super) fn class<S: Ordered>(point: &ContactPoint<S>) -> &'static str {
     if point.p() > S::from(0) { "pressed" } else { "open" }
 }
 
@@ -120,9 +120,14 @@ mod row {
     /// An integrand on a side, from its number and lambda^h there.
     type Integrand<'a> = &'a dyn Fn(&Side, usize, &Line<Exact>) -> Line<Exact>;
 
+    /// -P/gamma
+    fn scaled(body: &Body, side: &Side, p: &Line<Exact>) -> Line<Exact> {
+        p.times(-(Exact::from(1) / body.gamma(side)))
+    }
+
     /// The pieces of a side on which lambda^h is a polynomial, with that polynomial.
     fn multiplier(body: &Body, side: &Side, p: &Line<Exact>) -> Vec<([Exact; 2], Line<Exact>)> {
-        let pressed = p.times(-(Exact::from(1) / body.gamma(side)));
+        let pressed = scaled(body, side, p);
         let none = Line(vec![Exact::from(0)]);
         p.pieces()
             .into_iter()
@@ -141,27 +146,19 @@ mod row {
         let (u, v) = (body.drawn(0), body.drawn(1));
         let definition = Definition::<3>(body);
         let over = |f: Integrand<'_>| {
-            let (mut total, mut e) = (Exact::from(0), 0);
-            for side in &body.contact {
-                let p = definition.traces(side, &u).p;
-                for (piece, l) in multiplier(body, side, &p) {
-                    total += side.length * f(side, e, &l).integral(piece);
-                }
-                e += 1;
-            }
-            total
+            sum(body.contact.iter().enumerate(), |(e, side)| {
+                let pieces = multiplier(body, side, &definition.traces(side, &u).p);
+                sum(pieces, |(piece, l)| side.length * f(side, e, &l).integral(piece))
+            })
         };
+        let projected = |side: &Side| scaled(body, side, &definition.traces(side, &u).p);
         let contact = over(&|side, _, l| {
             let (here, test) = (definition.traces(side, &u), definition.traces(side, &v));
             let stabilised = l.minus(&here.sigma_n).by(&test.sigma_n).times(body.gamma(side));
             stabilised.plus(&l.by(&test.v_n).times(-sign))
         });
         ensure!(definition.b(Rule::Exact, &u, &v) == definition.a(&u, &v) + contact);
-        let nine = over(&|side, e, l| {
-            let projected =
-                definition.traces(side, &u).p.times(-(Exact::from(1) / body.gamma(side)));
-            cone(body, e).minus(l).by(&projected.minus(l))
-        });
+        let nine = over(&|side, e, l| cone(body, e).minus(l).by(&projected(side).minus(l)));
         ensure!(nine <= Exact::from(0));
         let ten = over(&|side, e, l| {
             let here = definition.traces(side, &u);
@@ -171,11 +168,7 @@ mod row {
             cone(body, e).minus(l).by(&inner)
         });
         ensure!(ten >= Exact::from(0));
-        let equality = over(&|side, _, l| {
-            let projected =
-                definition.traces(side, &u).p.times(-(Exact::from(1) / body.gamma(side)));
-            l.by(&projected.minus(l))
-        });
+        let equality = over(&|side, _, l| l.by(&projected(side).minus(l)));
         ensure!(equality == Exact::from(0));
         Verdict::Holds(contact_class::<3>(body, &u))
     }
@@ -184,8 +177,8 @@ mod row {
     fn mixed_by_points<const N: usize>(body: &Body) -> Verdict {
         let (u, v) = (body.drawn(0), body.drawn(1));
         let definition = Definition::<N>(body);
-        let rule = [[(1, 4), (1, 3)], [(3, 5), (1, 2)], [(1, 1), (1, 6)]]
-            .map(|p| p.map(|(n, d)| Exact::ratio(n, d)));
+        let rule =
+            [[(1, 4), (1, 3)], [(3, 5), (1, 2)], [(1, 1), (1, 6)]].map(|p| p.map(Exact::from));
         let contact = sum(&body.contact, |side| {
             let (here, test) = (definition.traces(side, &u), definition.traces(side, &v));
             let gamma = body.gamma(side);

@@ -37,7 +37,7 @@ pub mod variational_inequality;
 use std::collections::BTreeMap;
 
 #[cfg(not(kani))]
-use crate::claim::{Claim, Engine, Subject};
+use crate::claim::{Check, Claim, Engine, Subject};
 #[cfg(not(kani))]
 use crate::harness::Harness;
 #[cfg(not(kani))]
@@ -69,29 +69,31 @@ pub fn all() -> Vec<Claim> {
     claims
 }
 
-/// The statements that must hold by this engine, each once, by their names.
+/// The statements of which this engine is asked, each once, by their names, and whether it is a control.
+#[cfg(not(kani))]
+pub fn asked(engine: Engine) -> BTreeMap<&'static str, (Statement, bool)> {
+    let statement = |check: Check| match check.subject {
+        Subject::Statement(of) if check.engine == engine => Some((of.name, (of, check.control))),
+        _ => None,
+    };
+    all().into_iter().flat_map(|claim| claim.checks).filter_map(statement).collect()
+}
+
+/// Those that must hold.
 #[cfg(not(kani))]
 pub fn statements(engine: Engine) -> BTreeMap<&'static str, Statement> {
-    let checks = all().into_iter().flat_map(|claim| claim.checks);
-    let asked = checks.filter(|check| check.engine == engine && !check.control);
-    asked
-        .filter_map(|check| match check.subject {
-            Subject::Statement(statement) => Some((statement.name, statement)),
-            _ => None,
-        })
-        .collect()
+    let asked = asked(engine).into_iter().filter(|(_, (_, control))| !control);
+    asked.map(|(name, (statement, _))| (name, statement)).collect()
 }
 
 /// The harnesses of all claims.
 #[cfg(not(kani))]
 pub fn harnesses() -> Vec<Harness> {
-    let checks = all().into_iter().flat_map(|claim| claim.checks);
-    checks
-        .filter_map(|check| match check.subject {
-            Subject::Harness(harness) => Some(harness),
-            _ => None,
-        })
-        .collect()
+    let harness = |check: Check| match check.subject {
+        Subject::Harness(harness) => Some(harness),
+        _ => None,
+    };
+    all().into_iter().flat_map(|claim| claim.checks).filter_map(harness).collect()
 }
 
 #[cfg(test)]

@@ -217,7 +217,7 @@ impl Draw {
     }
 
     fn field(&self, nodes: usize) -> Vec<[Exact; 2]> {
-        let value = |k: usize| self.values[k % self.values.len()].map(|(n, d)| Exact::ratio(n, d));
+        let value = |k: usize| self.values[k % self.values.len()].map(Exact::from);
         // Nodes beyond the list have other multiples of its values.
         (0..nodes)
             .map(|k| value(k).map(|v| v * Exact::from(1 + (k / self.values.len()) as i32)))

@@ -197,8 +197,7 @@ mod row {
 
     fn monotone_p2() -> Outcome {
         draws::hold(5, (bodies(2), draws::positive()), &["an edge is cut"], |(draw, kappa)| {
-            let points =
-                [[(1, 4), (1, 2)], [(3, 4), (1, 2)]].map(|p| p.map(|(n, d)| Exact::ratio(n, d)));
+            let points = [[(1, 4), (1, 2)], [(3, 4), (1, 2)]].map(|p| p.map(Exact::from));
             monotone_on_bodies::<6>(draw, *kappa, Rule::Points(&points))
         })
     }

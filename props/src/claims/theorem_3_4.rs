@@ -20,6 +20,7 @@
 
 use signorini::kernel::{ContactPoint, positive_part};
 
+use super::mixed::class;
 use crate::verdict::{Ordered, Verdict};
 use crate::{ensure, given};
 
@@ -54,10 +55,6 @@ fn difference<S: Ordered>(a: &ContactPoint<S>, b: &ContactPoint<S>) -> ContactPo
     ContactPoint { u_n, gap: S::from(0), sigma_n, gamma: a.gamma }
 }
 
-fn class<S: Ordered>(point: &Point<S>) -> &'static str {
-    if point.discrete.p() > S::from(0) { "pressed" } else { "open" }
-}
-
 /// (i): what Green and (8) leave at a point, z w_n - \[P(u^h)\]+ sigma_n(w) - gamma sigma_n(u^h) sigma_n(w), is
 /// z P0(w) + gamma sigma_n(w) sigma_n(e), and P0(w) = P(u) - P(u^h) - P0(eta). No hypothesis but gamma > 0.
 ///
@@ -75,7 +72,7 @@ pub fn error_identity_holds_at_a_point<S: Ordered>(v: [S; 8]) -> Verdict {
     ensure!(green - method == z * w.p0() + point.gamma * w.sigma_n * sigma_e);
     let eta = difference(&point.exact, &point.test);
     ensure!(w.p0() == point.exact.p() - point.discrete.p() - eta.p0());
-    Verdict::Holds(class(&point))
+    Verdict::Holds(class(&point.discrete))
 }
 
 /// (ii), from (5) at the exact solution.
@@ -92,7 +89,7 @@ pub fn z_times_the_difference_of_p_is_at_most_minus_gamma_z_squared<S: Ordered>(
     ensure!(scaled * (p - ph) <= -scaled * scaled);
     ensure!(gamma * (z * (p - ph)) <= gamma * (-gamma * z * z));
     ensure!(z * (p - ph) <= -gamma * z * z);
-    Verdict::Holds(class(&point))
+    Verdict::Holds(class(&point.discrete))
 }
 
 /// The hypothesis of the combination from the raw facts. With c = a(e, eta), W = |w|_a, r = |s_w|_g,
@@ -211,7 +208,7 @@ pub fn step_14_holds<S: Ordered>([gamma, uh, sh, v, sv]: [S; 5]) -> Verdict {
     let before = over_gamma * point.w().p0();
     let after = over_gamma * point.test.p0() - gamma * over_gamma * over_gamma;
     ensure!(before == after);
-    Verdict::Holds(class(&point))
+    Verdict::Holds(class(&point.discrete))
 }
 
 /// (14) whole, as printed: from ellipticity and continuity of a(., .), Green's formula for u and (8) for u^h, with the
@@ -242,7 +239,7 @@ fn step_15<S: Ordered>([gamma, u, su, uh, sh, v]: [S; 6], most: S) -> Verdict {
     let kept = (su + over_gamma) * (v - u) + su * (u - uh);
     ensure!(before == kept + over_gamma * u);
     ensure!(before <= kept);
-    Verdict::Holds(class(&point))
+    Verdict::Holds(class(&point.discrete))
 }
 
 /// (15), because u_n <= 0.
@@ -268,7 +265,7 @@ fn step_17<S: Ordered>([gamma, u, su, uh, sh, sv]: [S; 6], factor: S) -> Verdict
     let (part, z) = (positive_part(point.discrete.p()), point.z());
     let t = su * (u - uh) - gamma * sh * (sv - sh) - part * sv - part * part / gamma;
     ensure!(t + gamma * z * z <= factor * z * (su - sv) + gamma * (su - sh) * (sv - sh));
-    Verdict::Holds(class(&point))
+    Verdict::Holds(class(&point.discrete))
 }
 
 /// (17) with the factor gamma that is missing in print.
@@ -377,7 +374,7 @@ pub fn control_z_inequality_without_5<S: Ordered>([gamma, gap, u, su, uh, sh]: [
     given!(gamma > zero);
     let z = point.z();
     ensure!(z * (point.exact.p() - point.discrete.p()) <= -gamma * z * z);
-    Verdict::Holds(class(&point))
+    Verdict::Holds(class(&point.discrete))
 }
 
 /// Half of the constant of Theorem 3.4.

@@ -98,6 +98,13 @@ impl From<f64> for Exact {
     }
 }
 
+/// numerator / denominator
+impl From<(i64, i64)> for Exact {
+    fn from((numerator, denominator): (i64, i64)) -> Exact {
+        Exact::ratio(numerator, denominator)
+    }
+}
+
 impl From<i32> for Exact {
     fn from(value: i32) -> Exact {
         Exact::new(BigRational::from_integer(BigInt::from(value)))

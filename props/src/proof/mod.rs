@@ -114,9 +114,7 @@ fn refutation(
     random: &mut Random,
     draws: usize,
 ) -> Option<Vec<BigRational>> {
-    let mut point = sample(path, random, draws)?;
-    point.truncate(statement.variables.len());
-    verdict_at(statement.symbolic, &point).fails().then_some(point)
+    sample(path, random, draws).filter(|point| verdict_at(statement.symbolic, point).fails())
 }
 
 /// Proves a statement: every failing path is impossible, and each of its classes is reached at some point.
@@ -199,12 +197,9 @@ fn reach_classes(statement: &Statement, paths: &[Path]) -> Result<(), String> {
         let of_class: Vec<&Path> =
             paths.iter().filter(|p| p.verdict == Verdict::Holds(class)).collect();
         let mut reached = |tries| {
-            of_class.iter().any(|path| {
-                sample(path, &mut random, tries).is_some_and(|mut point| {
-                    point.truncate(statement.variables.len());
-                    verdict_at(statement.symbolic, &point) == Verdict::Holds(class)
-                })
-            })
+            let points = of_class.iter().filter_map(|path| sample(path, &mut random, tries));
+            let mut verdicts = points.map(|point| verdict_at(statement.symbolic, &point));
+            verdicts.any(|verdict| verdict == Verdict::Holds(class))
         };
         if !(reached(20) || reached(SLOW_DRAWS)) {
             return Err(format!("no point of the class '{class}' was found"));
@@ -216,24 +211,14 @@ fn reach_classes(statement: &Statement, paths: &[Path]) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::claim::{Engine, Subject};
+    use crate::claim::Engine;
     use crate::numbers::Exact;
     use crate::verdict::Ordered;
     use crate::{claims, ensure, given, statement};
 
     /// All statements of which this engine is asked, controls included.
-    fn statements() -> Vec<Statement> {
-        let claims = claims::all();
-        let checks = claims.iter().flat_map(|c| &c.checks);
-        let mut all: Vec<Statement> = checks
-            .filter_map(|check| match (check.subject, check.engine) {
-                (Subject::Statement(statement), Engine::Proof) => Some(statement),
-                _ => None,
-            })
-            .collect();
-        all.sort_by_key(|s| s.name);
-        all.dedup_by_key(|s| s.name);
-        all
+    fn statements() -> impl Iterator<Item = Statement> {
+        claims::asked(Engine::Proof).into_values().map(|(statement, _)| statement)
     }
 
     /// The point with the values of the inverse variables, or nothing where a divisor is zero.
@@ -266,18 +251,18 @@ mod tests {
     #[test]
     fn every_random_point_lies_on_exactly_one_path_and_has_its_verdict() {
         let mut random = Random::new(7);
-        for statement in &statements() {
-            let paths = paths(statement);
+        for statement in statements() {
+            let paths = paths(&statement);
             let unknowns = statement.variables.len();
             // Each point is compared with all paths, of which some statements have hundreds.
             for _ in 0..(400 / paths.len()).clamp(5, 40) {
                 let point: Vec<BigRational> = (0..unknowns).map(|_| random.rational()).collect();
                 let on: Vec<&Path> = paths.iter().filter(|path| lies_on(path, &point)).collect();
-                assert_eq!(on.len(), 1, "{} at {}", statement.name, place(statement, &point));
+                assert_eq!(on.len(), 1, "{} at {}", statement.name, place(&statement, &point));
                 let verdict = verdict_at(statement.symbolic, &point);
                 assert_eq!(on[0].verdict, verdict, "{}", statement.name);
                 if verdict != Verdict::Fails("division by zero") {
-                    assert_eq!(verdict, over_rationals(statement, &point), "{}", statement.name);
+                    assert_eq!(verdict, over_rationals(&statement, &point), "{}", statement.name);
                 }
             }
         }
@@ -286,11 +271,10 @@ mod tests {
     #[test]
     fn points_drawn_on_a_path_have_its_verdict() {
         let mut random = Random::new(8);
-        for statement in &statements() {
-            let paths = paths(statement);
+        for statement in statements() {
+            let paths = paths(&statement);
             for path in paths.iter().step_by(paths.len() / 12 + 1) {
-                if let Some(mut point) = sample(path, &mut random, 20) {
-                    point.truncate(statement.variables.len());
+                if let Some(point) = sample(path, &mut random, 20) {
                     assert_eq!(path.verdict, verdict_at(statement.symbolic, &point));
                 }
             }

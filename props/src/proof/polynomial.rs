@@ -3,6 +3,7 @@
 //! Trusted: the checker of certificates rests on this arithmetic.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::fmt::Write;
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -43,12 +44,11 @@ impl Polynomial {
         if coefficient.is_zero() {
             return;
         }
-        let entry = self.0.entry(monomial);
-        match entry {
-            std::collections::btree_map::Entry::Vacant(entry) => {
+        match self.0.entry(monomial) {
+            Entry::Vacant(entry) => {
                 entry.insert(coefficient);
             }
-            std::collections::btree_map::Entry::Occupied(mut entry) => {
+            Entry::Occupied(mut entry) => {
                 *entry.get_mut() = rational::sum(entry.get(), &coefficient);
                 if entry.get().is_zero() {
                     entry.remove();

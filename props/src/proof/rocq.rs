@@ -30,25 +30,21 @@ pub fn tactics(statement: &Statement) -> Result<String, String> {
         branches[*number].1 = Some(certificate);
     }
     let mut text = "unfold Rdiv in *.\n".to_owned();
-    tree(&branches, 0, &Names(statement), &mut text);
+    let paths = analysis.paths.iter();
+    let most = paths.max_by_key(|path| path.variables).map(|path| path.names(statement.variables));
+    tree(&branches, 0, &Names(most.unwrap_or_default()), &mut text);
     Ok(text)
 }
 
-struct Names<'a>(&'a Statement);
+/// The names of the variables.
+struct Names(Vec<String>);
 
-impl Names<'_> {
-    fn variable(&self, number: usize) -> String {
-        match self.0.variables.get(number) {
-            Some(name) => (*name).to_owned(),
-            None => format!("inverse_{}", number - self.0.variables.len()),
-        }
-    }
-
+impl Names {
     /// A sum of products, each power written out.
     fn polynomial(&self, p: &Polynomial) -> String {
         let term = |(monomial, coefficient): (&Vec<u16>, &num_rational::BigRational)| {
             let powers = monomial.iter().enumerate();
-            let factors = powers.flat_map(|(i, &e)| vec![self.variable(i); usize::from(e)]);
+            let factors = powers.flat_map(|(i, &e)| vec![self.0[i].clone(); usize::from(e)]);
             let constant = format!("({coefficient})");
             let constant = (coefficient != &super::polynomial::integer(1) || monomial.is_empty())
                 .then_some(constant);
@@ -83,7 +79,7 @@ impl Names<'_> {
 }
 
 /// The paths that have their first `depth` steps in common.
-fn tree(branches: &[Branch<'_>], depth: usize, names: &Names<'_>, text: &mut String) {
+fn tree(branches: &[Branch<'_>], depth: usize, names: &Names, text: &mut String) {
     let (first, certificate) = branches[0];
     let indent = "  ".repeat(depth);
     match first.steps.get(depth) {
@@ -95,7 +91,7 @@ fn tree(branches: &[Branch<'_>], depth: usize, names: &Names<'_>, text: &mut Str
             }
         },
         Some(Step::Inverted(p, variable)) => {
-            let (p, v) = (names.polynomial(p), names.variable(*variable));
+            let (p, v) = (names.polynomial(p), &names.0[*variable]);
             let _ = writeln!(
                 text,
                 "{indent}assert (I{depth} : ({p}) * / ({p}) = 1) by (apply Rinv_r; lra).\n\
@@ -139,7 +135,7 @@ fn tree(branches: &[Branch<'_>], depth: usize, names: &Names<'_>, text: &mut Str
 fn contradiction(
     path: &Path,
     certificate: &Certificate,
-    names: &Names<'_>,
+    names: &Names,
     indent: &str,
     text: &mut String,
 ) {

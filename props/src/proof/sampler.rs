@@ -51,9 +51,12 @@ impl Random {
 }
 
 /// A point that satisfies all facts of a path, if one of `tries` draws finds it. Equations are solved in turn for a
-/// variable in which they are linear; one that is linear in none is tried with points of the unit circle.
+/// variable in which they are linear; one that is linear in none is tried with points of the unit circle. The values are those of
+/// the unknowns, without the inverses.
 pub fn sample(path: &Path, random: &mut Random, tries: usize) -> Option<Vec<BigRational>> {
-    (0..tries).find_map(|_| draw(path, random))
+    let mut point = (0..tries).find_map(|_| draw(path, random))?;
+    point.truncate(path.variables - path.inverses.len());
+    Some(point)
 }
 
 fn draw(path: &Path, random: &mut Random) -> Option<Vec<BigRational>> {

@@ -306,10 +306,7 @@ number! { Sym:
         };
         run.keep_or_fail(quotient)
     });
-    neg |a| RUN.with_borrow_mut(|run| {
-        let value = -run.value(a);
-        run.keep(value)
-    });
+    neg |a| Sym::from(0) - a;
     nonpositive |a| a <= Sym::from(0);
 }
 

@@ -223,11 +223,11 @@ fn values() -> impl Strategy<Value = [(i64, i64); 3]> {
 
 /// `gauss` over rationals is the sum over the rule's points of \[P\]+ and its companions.
 fn sums_over_points(values: &[(i64, i64); 3], off: Exact) -> Verdict {
-    let p = values.map(|(n, d)| Exact::ratio(n, d));
+    let p = values.map(Exact::from);
     let (line, shapes) = (Line::quadratic(p[0], p[2], p[1]), shapes());
     // A rule with positive weights; it need not be a good one, for both sides use it.
-    let points = [[(1, 8), (1, 4)], [(1, 2), (5, 12)], [(5, 6), (1, 3)]]
-        .map(|point| point.map(|(n, d)| Exact::ratio(n, d)));
+    let points =
+        [[(1, 8), (1, 4)], [(1, 2), (5, 12)], [(5, 6), (1, 3)]].map(|point| point.map(Exact::from));
     let e = gauss::<P2, Exact, 6, 3>(p, None, points.map(|[s, w]| (s, off * w)));
     let positive = |s| positive_part(line.at(s));
     let slope = |s| Exact::from(i32::from(line.at(s) > Exact::from(0)));

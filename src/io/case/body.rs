@@ -32,18 +32,18 @@ pub(super) const PLANES: [(&str, Plane); 3] =
 #[non_exhaustive]
 pub struct MaterialEcho {
     /// The physical surfaces made of it; none if the mesh has no named surface.
-    pub surfaces: Vec<String>,
+    pub(crate) surfaces: Vec<String>,
     /// Young's modulus of a material that is isotropic.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub young: Option<f64>,
+    pub(crate) young: Option<f64>,
     /// Its Poisson's ratio.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub poisson: Option<f64>,
+    pub(crate) poisson: Option<f64>,
     /// `[C11, C12, C16, C22, C26, C66]` of one that is not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<[f64; 6]>,
     /// "strain", "stress" or "axisymmetric".
-    pub plane: String,
+    pub(crate) plane: String,
 }
 
 impl MaterialEcho {

@@ -16,7 +16,7 @@ use super::{Expression, ExpressionError};
 
 /// A condition on a place; made by [`str::parse`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct PlaceCondition {
+pub(crate) struct PlaceCondition {
     /// One of these lists must hold, and of that list each comparison.
     alternatives: Vec<Vec<Comparison>>,
 }

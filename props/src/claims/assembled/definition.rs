@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 
 use signorini::contact::{Discretization, EdgeRule};
-use signorini::kernel::{Material, Plane};
 use signorini::model::BoundaryEdge;
 
 use super::draw::{Draw, Polynomial, Traction, owner};
 use super::given::Given;
-use crate::bodies::{Body, Definition, Rule, Side, sum, whole};
+use crate::bodies::{Body, Definition, Rule, Side, law, sum, whole};
 use crate::naive::{Field, Hooke, Line};
 use crate::verdict::Ordered;
 
@@ -50,15 +49,9 @@ impl<S: Given> Setting<S> {
         let (vertices, triangles, sides) = draw.parts();
         let mesh = &d.problem.mesh;
         let middles = if N == 3 { BTreeMap::new() } else { middles(draw, d.space.nodes())? };
-        let (lambda, mu, two) = (S::given(draw.lambda), S::given(draw.mu), S::from(2));
-        let star = if draw.stress { two * lambda * mu / (lambda + two * mu) } else { lambda };
-        let (material, hooke) = match draw.tensor.map(|c| c.map(S::given)) {
-            Some(c) => (Material::tensor(c, None), Hooke::Tensor(c)),
-            None => {
-                let material = Material::lame(lambda, mu, Plane::Strain);
-                (material, Hooke::Isotropic { lambda: star, mu })
-            }
-        };
+        let [lambda, mu] = [draw.lambda, draw.mu].map(S::given);
+        let tensor = draw.tensor.map(|c| c.map(S::given));
+        let (material, hooke) = law([lambda, mu], draw.stress, tensor);
         let mut body = Body {
             vertices: vertices.iter().map(|x| x.map(S::coordinate)).collect(),
             unturned: Vec::new(),
@@ -197,11 +190,7 @@ impl<S: Given> Setting<S> {
     /// int (1/gamma) \[P(u)\]+ P0(v), with theta in P0(v)
     pub(crate) fn contact<const N: usize>(&self, u: &[[S; 2]], v: &[[S; 2]]) -> S {
         let definition = Definition::<N, S>(&self.body);
-        let own = |side: &&Side<S>| {
-            let zero = S::from(0);
-            self.body.local::<N>(side.triangle, v).iter().flatten().any(|&v| v != zero)
-        };
-        sum(self.body.contact.iter().filter(own), |side| {
+        sum(definition.sides(v), |side| {
             let traces = definition.traces(side, v);
             let p0 = traces.v_n.minus(&traces.sigma_n.times(self.theta * self.body.gamma(side)));
             definition.contact_on(self.rule(), side, u, &p0)

@@ -71,15 +71,9 @@ fn coercive_for_all<const N: usize>(body: &Body, factor: Exact) -> Verdict {
     Verdict::Holds(attained)
 }
 
-fn coercive_for_all_p1() -> Outcome {
-    draws::hold(30, bodies(1), &["attained"], |draw| {
-        coercive_for_all::<3>(&draw.body(), Exact::from(1))
-    })
-}
-
-fn coercive_for_all_p2() -> Outcome {
-    draws::hold(8, bodies(1), &["attained"], |draw| {
-        coercive_for_all::<6>(&draw.body(), Exact::from(1))
+fn coercive<const N: usize>(cases: u32) -> Outcome {
+    draws::hold(cases, bodies(1), &["attained"], |draw| {
+        coercive_for_all::<N>(&draw.body(), Exact::from(1))
     })
 }
 
@@ -119,8 +113,8 @@ pub fn claim() -> Claim {
                 refuted control_smaller_trace_constant[a, b, c] fails "edge <= constant * triangle";
             },
             vec![
-                exact!("11_and_coercivity_hold_for_all_fields_for_p1", in coercive_for_all => coercive_for_all_p1()).about(&["Lemma 3.2", "(11)"]),
-                exact!("11_and_coercivity_hold_for_all_fields_for_p2", in coercive_for_all => coercive_for_all_p2()).about(&["Lemma 3.2", "(11)", "Remark 3.7"]),
+                exact!("11_and_coercivity_hold_for_all_fields_for_p1", in coercive_for_all => coercive::<3>(30)).about(&["Lemma 3.2", "(11)"]),
+                exact!("11_and_coercivity_hold_for_all_fields_for_p2", in coercive_for_all => coercive::<6>(8)).about(&["Lemma 3.2", "(11)", "Remark 3.7"]),
                 exact!("control_constant_one_percent_smaller", in smaller_constant => smaller_constant()),
                 exact!("control_the_nearest_isotropic_law_for_a_nnnn", in nearest_law => nearest_law()),
                 exact!("a_gamma_is_positive_on_a_triangle_below_its_limit", in positive_on_the_triangle => positive_on_the_triangle((1, 15))),
