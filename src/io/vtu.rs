@@ -74,7 +74,7 @@ impl<'a> DataArray<'a> {
 
     /// The bytes of all values.
     fn bytes(&self) -> usize {
-        size_of::<f64>() * self.numbers.len() / self.given * self.components.len().max(1)
+        size_of_val(self.numbers) / self.given * self.components.len().max(1)
     }
 
     fn append_to(&self, data: &mut Vec<u8>) {
