@@ -719,7 +719,10 @@ fn a_certificate_without_its_last_triangle_or_with_another_claim_is_rejected() {
     certificate.pieces.pop();
     claim.shares.pop();
     assert!(certificate.audit(&claim).is_err());
-    let (certificate, mut claim) = certificate::decode(&header, &bytes).unwrap();
+    let (certificate, claim) = certificate::decode(&header, &bytes).unwrap();
+    let fewer = Claim { shares: claim.shares[1..].to_vec(), ..claim.clone() };
+    assert!(matches!(certificate.audit(&fewer), Err(Rejection::Length { .. })));
+    let mut claim = claim;
     claim.bound *= 0.99;
     assert!(matches!(certificate.audit(&claim), Err(Rejection::Bound { .. })));
 }
