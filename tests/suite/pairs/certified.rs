@@ -3,6 +3,7 @@
 
 use approx::abs_diff_eq;
 use signorini::certificates::binding::compare;
+use signorini::certificates::forces::Evidence;
 use signorini::certificates::proof::{Edge, Law as EdgeLaw, Piece, Role};
 use signorini::certificates::quantities::Name;
 use signorini::certificates::{
@@ -500,6 +501,30 @@ fn a_certificate_of_a_pair_that_is_tampered_with_is_refused() {
             compare(problem, &swapped, &c.quantities.evidence).unwrap_err().to_string();
         assert!(difference.contains("does not face what it faces in the case"), "{difference}");
     }
+}
+
+#[test]
+fn a_certificate_of_one_of_two_bodies_that_do_not_meet_is_not_one_of_the_case() {
+    let [near, far] = [0.0, 2.0].map(|x| rectangle([x, 0.0], [x + 1.0, 1.0]));
+    let material = Material::lame(1.0, 1.0, Plane::Strain);
+    let block = |name, map| Block { name, cells: [2, 2], material, map };
+    let problem = bodies(&[block("near", &near), block("far", &far)], &[])
+        .with("near.bottom", Condition::contact(|_| 0.0))
+        .with("near.top", Condition::displacement(|_| 0.0, |_| -0.01))
+        .with("far.bottom", Condition::clamped())
+        .with("far.top", Condition::pressure(|_| 0.1));
+    let mut certificate = certified(&problem, Degree::One).certificate;
+    let of_case = |certificate: &_| compare(problem.clone(), certificate, &Evidence::default());
+    assert!(of_case(&certificate).is_ok());
+    // The first body has the first 9 vertices, 8 triangles and 16 edges.
+    assert!(certificate.cuts.is_empty() && certificate.vertices[9] == [2.0, 0.0]);
+    certificate.vertices.truncate(9);
+    certificate.displacement.truncate(9);
+    certificate.prescribed.truncate(9);
+    certificate.pieces.truncate(8);
+    certificate.edges.truncate(16);
+    let found = of_case(&certificate).unwrap_err().to_string();
+    assert!(found.contains("is not covered once"), "{found}");
 }
 
 #[test]
