@@ -488,6 +488,27 @@ fn in_another_unit_of_stress_steps_with_coulombs_friction_have_the_same_residual
     assert!(residuals[0] == 1.0 && condition > 1.2, "{residuals:?} {condition}");
 }
 
+#[test]
+fn in_another_unit_of_stress_and_moved_by_more_both_routes_have_the_same_steps_and_condition() {
+    for name in [RouteName::Condensed, RouteName::Assembled] {
+        let of = |unit: f64| {
+            let top = Condition::displacement(
+                move |[x, _]| unit * (0.02 + 0.01 * x),
+                move |[x, _]| unit * (-0.05 - 0.02 * x),
+            );
+            let mut problem = block_on_floor(6, Diagonal::Crossed).with("top", top);
+            problem.material = Material::lame(unit, unit, Plane::Strain).into();
+            let d = discretize(&problem, &method(Degree::One, EXACT)).unwrap();
+            let (system, settings) = (System::new(&d).unwrap(), Settings::default());
+            let found = route::by(name, &system, &settings, &mut Times::default()).unwrap();
+            (found.residuals, found.condition)
+        };
+        let (residuals, condition) = of(1.0);
+        assert_eq!(of(1024.0), (residuals, condition), "{name:?}");
+        assert!(condition > 1.2, "{name:?}: {condition}");
+    }
+}
+
 /// Which of two boundaries has it does not matter.
 #[test]
 fn the_larger_of_two_coefficients_decides_whether_all_loads_have_one_solution() {
