@@ -16,7 +16,7 @@ use crate::model::constraints::Constraints;
 use crate::model::{
     BoundaryEdge, Condition, Degree, Mesh, Obstacle, Problem, SharedFunction, Space,
 };
-use crate::quote::quoted;
+use crate::quote::{self, quoted};
 
 /// The condition on a boundary edge.
 #[derive(Clone, Copy)]
@@ -72,7 +72,7 @@ impl<'a> ProblemParts<'a> {
         let constraints = Constraints::new(problem, &space)?;
         let contact = contacts(problem, pieces, displacement, halved);
         if let Some(point) = problem.points.first() {
-            let name = &point.name;
+            let name = quote::key(&point.name);
             let why = format!("[point.{name}] holds a point, which a true solution does not feel");
             return Err(CertifyError::Unsupported(why));
         }

@@ -336,7 +336,7 @@ fn demands<'a>(problem: &'a Problem, space: &Space) -> Result<Demands<'a>, DataE
     for point in &problem.points {
         for (c, function) in point.displacement.iter().enumerate() {
             let Some(function) = function else { continue };
-            let key = || format!("[point.{}] displacement[{c}]", point.name);
+            let key = || format!("[point.{}] displacement[{c}]", quote::key(&point.name));
             ask(point.vertex, &point.name, AXES[c], function, &key)?;
         }
     }

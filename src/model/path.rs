@@ -369,14 +369,19 @@ mod tests {
 
     #[test]
     fn a_rounded_corner_is_the_circle_that_touches_both_sides() {
-        // To the right and then up: a corner to the left, around (2, 1).
-        let path = Path::new(&[[0.0, 0.0], [3.0, 0.0], [3.0, 5.0]], &[1.0]).unwrap();
-        for angle in [-PI / 2.0, -1.2, -0.4, 0.0] {
+        // To the right and then up: a corner to the left, around (2, 1). And its mirror image, to the right around (2, -1).
+        let rounded =
+            |up: f64| Path::new(&[[0.0, 0.0], [3.0, 0.0], [3.0, 5.0 * up]], &[1.0]).unwrap();
+        let path = rounded(1.0);
+        for (up, angle) in [1.0, -1.0]
+            .into_iter()
+            .flat_map(|up| [-PI / 2.0, -1.2, -0.4, 0.0].map(|angle: f64| (up, angle)))
+        {
             for r in [0.2, 1.0, 1.7] {
-                let x = [2.0 + r * angle.cos(), 1.0 + r * angle.sin()];
-                let (left, growth) = seen(&path, x);
-                assert_abs_diff_eq!(left, 1.0 - r, epsilon = ROUNDING);
-                let inwards = [-angle.cos(), -angle.sin()];
+                let x = [2.0 + r * angle.cos(), up * (1.0 + r * angle.sin())];
+                let (left, growth) = seen(&rounded(up), x);
+                assert_abs_diff_eq!(left, up * (1.0 - r), epsilon = ROUNDING);
+                let inwards = [-angle.cos(), -up * angle.sin()].map(|c| up * c);
                 assert_abs_diff_eq!(&growth[..], &inwards[..], epsilon = ROUNDING);
             }
         }

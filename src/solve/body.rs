@@ -275,4 +275,12 @@ mod tests {
             !does_again(&old, &near, [f64::NAN; 2]) && !does_again(&old, &springs(f64::NAN), falls)
         );
     }
+
+    #[test]
+    fn magnitudes_of_products_do_not_cancel() {
+        let spring = DMatrix::from_row_slice(2, 2, &[2.0, -2.0, -2.0, 2.0]);
+        let at = Derivatives { stiffness: 1.0, gradient: vec![0.0; 2], hessian: vec![spring] };
+        assert_eq!(at.hessian_times(&[3.0, 3.0]), [0.0, 0.0]);
+        assert_eq!(at.magnitudes_times(&[3.0, 3.0]), [12.0, 12.0]);
+    }
 }

@@ -4,12 +4,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use approx::abs_diff_eq;
+use approx::{abs_diff_eq, assert_relative_eq};
 use signorini::certificates::binding::compare;
 use signorini::certificates::forces::Evidence;
-use signorini::certificates::{Continuous, certify};
+use signorini::certificates::{Continuous, certify, certify_field};
 use signorini::io::certificate::{self, Header};
 use signorini::io::run;
+use signorini::kernel::Ball;
 
 use crate::common::{case, case_of, encoded};
 
@@ -84,6 +85,49 @@ fn reservations_and_the_whole_bound_come_from_the_arrays() {
     let rigorous = json(&header).replacen('{', "{\"rigorous\":true,", 1);
     let error = certificate::audit(&written("rigorous", &rigorous, &arrays)).unwrap_err();
     assert!(error.to_string().contains("unknown field `rigorous`"), "{error}");
+}
+
+/// Of a v that is outside the obstacle, so that nothing is pushed out.
+#[test]
+fn the_squares_of_the_indicators_are_those_of_the_bound_with_what_lifts_cost() {
+    let bent = CURVED_DATA.replace("0.01*sin(x)", "0.02*sin(9*x)");
+    let (case, solved) = run::solve(case_of(&bent, &[]), None, &|_| {}).unwrap();
+    let v = certify(&case.problem, &solved.solution).unwrap().displacement;
+    let certified = certify_field(&case.problem, &solved.solution, &v).unwrap();
+    let squares: f64 = certified.indicators.iter().map(|x| x * x).sum();
+    assert_relative_eq!(squares.sqrt(), certified.bound, max_relative = 1e-9);
+    assert!(certified.bound > 1.0001 * certified.proof.bound, "control");
+}
+
+#[test]
+fn the_corner_that_a_triangle_is_numbered_from_does_not_matter() {
+    for (text, settings) in [(LOADED, &[][..]), (LOADED, QUADRATIC), (CURVED_DATA, QUADRATIC)] {
+        let Continuous { mut certificate, proof, .. } = certified(text, settings);
+        for _ in 0..2 {
+            for piece in &mut certificate.pieces {
+                piece.vertices.rotate_left(1);
+                piece.edges.rotate_left(1);
+                piece.body.rotate_left(1);
+            }
+            let turned = certificate.evaluate::<Ball>().unwrap();
+            assert_relative_eq!(turned.bound, proof.bound, max_relative = 1e-9);
+        }
+        // Control: another body force at the same corners.
+        certificate.pieces.iter_mut().for_each(|piece| piece.body.rotate_left(1));
+        let other = certificate.evaluate::<Ball>().unwrap();
+        assert!((other.bound / proof.bound - 1.0).abs() > 1e-6);
+    }
+}
+
+#[test]
+fn what_a_support_prescribes_along_itself_is_looked_at() {
+    let prescribed = "boundary.top.displacement = [\"0.02\", \"-0.1 + 0.01*x\"]";
+    for (tangential, is_affine) in [("0.02", true), ("0.02*sin(x)", false)] {
+        let support = format!("boundary.top = {{ normal = -0.1, tangential = \"{tangential}\" }}");
+        let found = certified(&LOADED.replace(prescribed, &support), &[]).reason;
+        let said = "the displacement of 'top' is not known to be affine";
+        assert_eq!(found.is_none_or(|reason| !reason.contains(said)), is_affine);
+    }
 }
 
 #[test]

@@ -10,6 +10,8 @@ use crate::common::exact::{
     corner, moved, on_square, on_trapezoid, singular, smooth, smooth_with_gap,
 };
 use crate::common::*;
+use std::sync::Arc;
+
 use approx::assert_relative_eq;
 use signorini::certificates::forces::Evidence;
 use signorini::certificates::proof::{Claim, Edge, Role};
@@ -19,7 +21,7 @@ use signorini::io::certificate::{self, Header};
 use signorini::io::result::ContinuousCertificate;
 use signorini::kernel::{Ball, Material, Plane};
 use signorini::model::Degree;
-use signorini::model::{Condition, Obstacle, Problem, Side};
+use signorini::model::{Condition, Obstacle, PointSupport, Problem, SharedFunction, Side};
 use signorini::results::Solution;
 use signorini::solve::{Gamma0, Method, Settings, discretize, solve};
 use study::Ladder;
@@ -719,7 +721,10 @@ fn a_certificate_without_its_last_triangle_or_with_another_claim_is_rejected() {
     certificate.pieces.pop();
     claim.shares.pop();
     assert!(certificate.audit(&claim).is_err());
-    let (certificate, mut claim) = certificate::decode(&header, &bytes).unwrap();
+    let (certificate, claim) = certificate::decode(&header, &bytes).unwrap();
+    let fewer = Claim { shares: claim.shares[1..].to_vec(), ..claim.clone() };
+    assert!(matches!(certificate.audit(&fewer), Err(Rejection::Length { .. })));
+    let mut claim = claim;
     claim.bound *= 0.99;
     assert!(matches!(certificate.audit(&claim), Err(Rejection::Bound { .. })));
 }
@@ -743,4 +748,22 @@ fn control_the_signs_are_what_rejects_a_tension_with_a_consistent_claim() {
         }
     }
     assert!(certificate.evaluate::<Ball>().is_ok());
+}
+
+#[test]
+fn a_point_is_named_as_in_the_case_file() {
+    let (mut problem, solution) = block(4);
+    let mut said = |value: f64| {
+        let u_x: SharedFunction = Arc::new(move |_: [f64; 2]| value);
+        let displacement = [Some(u_x), None];
+        problem.points = vec![PointSupport { name: "a b".to_owned(), vertex: 0, displacement }];
+        match discretize(&problem, &Method::default()) {
+            Err(error) => error.to_string(),
+            Ok(_) => certify(&problem, &solution).unwrap_err().to_string(),
+        }
+    };
+    let holds = said(0.0);
+    assert!(holds.contains("[point.\"a b\"] holds a point"), "{holds}");
+    let value = said(f64::NAN);
+    assert!(value.contains("[point.\"a b\"] displacement[0]"), "{value}");
 }

@@ -475,6 +475,54 @@ fn a_solution_with_coulombs_friction_satisfies_the_law_and_is_isolated() {
 }
 
 #[test]
+fn in_another_unit_of_stress_steps_with_coulombs_friction_have_the_same_residuals_and_condition() {
+    let of = |unit: f64| {
+        let mut problem = with_coefficient(block_on_floor(6, Diagonal::Crossed), 0.3);
+        problem.material = Material::lame(unit, unit, Plane::Strain).into();
+        let solution = solved(&problem, Degree::One);
+        (solution.newton.residuals, solution.method.condition)
+    };
+    // A power of two, by which nothing is rounded otherwise.
+    let (residuals, condition) = of(1.0);
+    assert_eq!(of(1024.0), (residuals.clone(), condition));
+    assert!(residuals[0] == 1.0 && condition > 1.2, "{residuals:?} {condition}");
+}
+
+#[test]
+fn in_another_unit_of_stress_and_moved_by_more_both_routes_have_the_same_steps_and_condition() {
+    for name in [RouteName::Condensed, RouteName::Assembled] {
+        let of = |unit: f64| {
+            let top = Condition::displacement(
+                move |[x, _]| unit * (0.02 + 0.01 * x),
+                move |[x, _]| unit * (-0.05 - 0.02 * x),
+            );
+            let mut problem = block_on_floor(6, Diagonal::Crossed).with("top", top);
+            problem.material = Material::lame(unit, unit, Plane::Strain).into();
+            let d = discretize(&problem, &method(Degree::One, EXACT)).unwrap();
+            let (system, settings) = (System::new(&d).unwrap(), Settings::default());
+            let found = route::by(name, &system, &settings, &mut Times::default()).unwrap();
+            (found.residuals, found.condition)
+        };
+        let (residuals, condition) = of(1.0);
+        assert_eq!(of(1024.0), (residuals, condition), "{name:?}");
+        assert!(condition > 1.2, "{name:?}: {condition}");
+    }
+}
+
+/// Which of two boundaries has it does not matter.
+#[test]
+fn the_larger_of_two_coefficients_decides_whether_all_loads_have_one_solution() {
+    let everywhere = |floor: f64, wall: f64| {
+        let problem = with_coefficient(block_on_floor(6, Diagonal::Crossed), floor)
+            .with("right", Condition::contact(|_| 0.05))
+            .with_friction("right", Friction::Coulomb(wall));
+        solved(&problem, Degree::One).enclosure.unwrap().isolation.unwrap().everywhere
+    };
+    assert!(everywhere(0.01, 0.01));
+    assert!(!everywhere(0.3, 0.01) && !everywhere(0.01, 0.3));
+}
+
+#[test]
 fn a_block_with_coulombs_friction_is_held_up_to_its_coefficient_or_until_it_tips() {
     let is_held = |push: f64, height: f64, mu: f64| {
         let mesh = unit_square(4).mesh().unwrap();

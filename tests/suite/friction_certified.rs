@@ -297,6 +297,25 @@ fn a_certificate_with_friction_that_is_tampered_with_is_refused() {
         assert!(matches!(over.evaluate::<Ball>(), Err(Rejection::Friction { .. })));
         let nan = with(|_, bound| bound[1] = f64::NAN);
         assert!(matches!(nan.evaluate::<Ball>(), Err(Rejection::Wrong { .. })));
+        // Where the direction turns the shear is the same at both ends, as the pressure is.
+        let turning = |given: [f64; 2]| {
+            let mut certificate = c.certificate.clone();
+            let Role::Contact { pressure: [p, _], law: Law::Friction { bound, .. }, .. } =
+                certificate.edges[e].role
+            else {
+                panic!("friction")
+            };
+            certificate.edges[e].role = Role::Contact {
+                pressure: [p; 2],
+                gap: [0.01; 2],
+                along: Some([[0.0, -1.0], [1e-6, -1.0]]),
+                law: Law::Friction { shear: given, bound },
+            };
+            certificate.evaluate::<Ball>()
+        };
+        assert!(matches!(turning([0.0, 1e-9]), Err(Rejection::Wrong { what: "edge", .. })));
+        let control = turning([1e-9; 2]);
+        assert!(control.is_ok(), "{control:?}");
         // With the wrong sign it is not in balance; made so, it costs what it does to slide.
         let sign = with(|shear, _| *shear = shear.map(|q| -q));
         assert!(matches!(sign.audit(&claim), Err(Rejection::OutOfBalance { .. })));

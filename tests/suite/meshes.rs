@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use approx::abs_diff_eq;
 use signorini::io::{Case, gmsh};
+use signorini::model::{Diagonal, Rectangle};
 use signorini::solve::solve;
 
 /// How the boundaries of a mesh are named.
@@ -309,4 +310,13 @@ fn a_boundary_by_place_holds_what_the_same_boundary_holds_by_name() {
         .replace("boundary.top", "boundary.upper")
         .replace("boundary.bottom", "boundary.lower");
     assert_eq!(solved(&case_on("msh41", Names)), solved(&by_place));
+}
+
+#[test]
+fn a_side_of_a_rectangle_without_cells_is_named() {
+    for (nx, ny, said) in [(0, 3, "nx = 0;"), (3, 0, "ny = 0;")] {
+        let rectangle = Rectangle { width: 8.0, height: 1.0, nx, ny, diagonal: Diagonal::Right };
+        let error = rectangle.mesh().unwrap_err().to_string();
+        assert!(error.starts_with(said), "{error}");
+    }
 }

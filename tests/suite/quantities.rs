@@ -259,6 +259,20 @@ fn a_dual_stress_that_is_not_one_is_refused() {
     let mut evidence = c.quantities.evidence.clone();
     evidence.pairs[0].1.roles.pop();
     assert!(matches!(c.certificate.forces::<Ball>(&evidence), Err(WrongPair::Differs { .. })));
+    // Contact holds w along an axis alone, not where its direction turns away from one.
+    let roles = &c.certificate.edges;
+    let holds = |e: &usize| {
+        matches!(roles[*e].role, Role::Contact { .. })
+            && matches!(c.quantities.evidence.pairs[0].1.roles[*e], Role::Held(..))
+    };
+    let held = (0..roles.len()).find(holds).unwrap();
+    let mut turned = c.certificate.clone();
+    if let Role::Contact { along, pressure, gap, .. } = &mut turned.edges[held].role {
+        (*along, *pressure) = (Some([[0.0, -1.0], [1e-9, -1.0]]), [pressure[0]; 2]);
+        *gap = gap.map(|gap| gap + 1e-6);
+    }
+    let found = turned.forces::<Ball>(&c.quantities.evidence);
+    assert!(matches!(found, Err(WrongPair::Differs { what: "edge", .. })), "{found:?}");
     // A w that is not 0 where the body is held.
     let mut evidence = c.quantities.evidence.clone();
     let held = c.certificate.edges.iter().find(|edge| matches!(edge.role, Role::Held(..))).unwrap();

@@ -386,3 +386,21 @@ fn bodies_of_a_pair_that_overlap_by_more_than_a_hundredth_of_their_size_are_rema
         expect(given, &of(&case), &words, clearance);
     }
 }
+
+/// A block that is pressed down widens by a third of what it is pressed by, towards a wall that stands there to rounding.
+#[test]
+fn a_wall_that_bears_no_more_than_rounding_is_not_touched() {
+    for (nearer, touches) in [(1e-13, false), (1e-6, true)] {
+        let text = format!(
+            r#"
+mesh.rectangle = {{ width = 1, height = 1, nx = 3, ny = 3 }}
+material = {{ lambda = 1, mu = 1 }}
+boundary.left.displacement = ["0", "free"]
+boundary.top.displacement = ["free", "-0.1"]
+boundary.bottom.contact = {{ gap = "0" }}
+boundary.right.contact = {{ gap = "0.1/3 - {nearer}" }}
+"#
+        );
+        expect(!touches, &of(&case_of(&text, &[])), &["'right' touches nothing"], &text);
+    }
+}

@@ -34,6 +34,27 @@ fn solved(problem: &Problem, degree: Degree) -> Solution {
     solution
 }
 
+/// The difference of the two laws is orthogonal to what no turn changes: of a tensor, C_iijj and C_ijij.
+#[test]
+fn the_isotropic_law_next_to_a_tensor_has_its_traces_and_those_of_the_turned_tensor() {
+    let traces = |m: Material<f64>| {
+        let [xx, xy, _, yy, _, shear] = m.stiffness();
+        [xx + yy + 2.0 * xy, xx + yy + 2.0 * shear]
+    };
+    let nearest = |m: Material<f64>| Material::lame(m.lambda(), m.mu(), Plane::Strain);
+    for m in [spruce(0.0), spruce(30.0), Material::tensor(FULL, None)] {
+        let (nearest, traces_of) = (traces(nearest(m)), traces(m));
+        assert_abs_diff_eq!(nearest[0], traces_of[0], epsilon = 1e-14);
+        assert_abs_diff_eq!(nearest[1], traces_of[1], epsilon = 1e-14);
+    }
+    // A dozen operations on numbers of size 1 to 10.
+    let [straight, turned] = [spruce(0.0), spruce(30.0)].map(nearest);
+    assert_relative_eq!(straight.lambda(), turned.lambda(), max_relative = 1e-13);
+    assert_relative_eq!(straight.mu(), turned.mu(), max_relative = 1e-13);
+    // Control: the law itself is turned.
+    assert!((spruce(0.0).stiffness()[0] - spruce(30.0).stiffness()[0]).abs() > 1.0);
+}
+
 /// Solution (a) solves (2) for every tensor with C26 = 0.
 #[test]
 fn the_rates_of_theorem_3_5_hold_for_a_tensor() {

@@ -3,14 +3,15 @@
 
 use approx::abs_diff_eq;
 use signorini::certificates::binding::compare;
-use signorini::certificates::proof::{Edge, Law as EdgeLaw, Role};
+use signorini::certificates::forces::Evidence;
+use signorini::certificates::proof::{Edge, Law as EdgeLaw, Piece, Role};
 use signorini::certificates::quantities::Name;
 use signorini::certificates::{
     Asked, Certificate, Continuous, Rejection, Target, adapt, adapt_to, certify,
 };
 use signorini::contact::Friction;
 use signorini::io::certificate;
-use signorini::kernel::Ball;
+use signorini::kernel::{Ball, Triangle};
 use signorini::model::Space;
 
 use super::*;
@@ -500,6 +501,30 @@ fn a_certificate_of_a_pair_that_is_tampered_with_is_refused() {
             compare(problem, &swapped, &c.quantities.evidence).unwrap_err().to_string();
         assert!(difference.contains("does not face what it faces in the case"), "{difference}");
     }
+}
+
+#[test]
+fn a_certificate_of_one_of_two_bodies_that_do_not_meet_is_not_one_of_the_case() {
+    let [near, far] = [0.0, 2.0].map(|x| rectangle([x, 0.0], [x + 1.0, 1.0]));
+    let material = Material::lame(1.0, 1.0, Plane::Strain);
+    let block = |name, map| Block { name, cells: [2, 2], material, map };
+    let problem = bodies(&[block("near", &near), block("far", &far)], &[])
+        .with("near.bottom", Condition::contact(|_| 0.0))
+        .with("near.top", Condition::displacement(|_| 0.0, |_| -0.01))
+        .with("far.bottom", Condition::clamped())
+        .with("far.top", Condition::pressure(|_| 0.1));
+    let mut certificate = certified(&problem, Degree::One).certificate;
+    let of_case = |certificate: &_| compare(problem.clone(), certificate, &Evidence::default());
+    assert!(of_case(&certificate).is_ok());
+    // The first body has the first 9 vertices, 8 triangles and 16 edges.
+    assert!(certificate.cuts.is_empty() && certificate.vertices[9] == [2.0, 0.0]);
+    certificate.vertices.truncate(9);
+    certificate.displacement.truncate(9);
+    certificate.prescribed.truncate(9);
+    certificate.pieces.truncate(8);
+    certificate.edges.truncate(16);
+    let found = of_case(&certificate).unwrap_err().to_string();
+    assert!(found.contains("is not covered once"), "{found}");
 }
 
 #[test]
@@ -1064,6 +1089,37 @@ fn a_certificate_of_bodies_that_slide_along_a_curve_is_refused_when_it_is_tamper
         };
         assert!(matches!(force.audit(&claim), Err(Rejection::OutOfBalance { .. })));
     }
+}
+
+/// Of a second body that nothing else holds any more, and that is far out of balance.
+#[test]
+fn what_equilibrium_adds_between_bodies_that_slide_is_along_their_directions() {
+    let mut certificate = certified(&humped([6, 4]), Degree::One).certificate;
+    let y: Vec<f64> = certificate.places::<f64>().iter().map(|x| x[1]).collect();
+    for edge in certificate.edges.iter_mut().filter(|edge| edge.ends.iter().all(|&p| y[p] <= 0.0)) {
+        if matches!(edge.role, Role::Held(..)) {
+            edge.role = Role::Loaded([[0.0; 2]; 2]);
+        }
+    }
+    let points = certificate.places::<Ball>();
+    let triangle = |piece: &Piece| Triangle { vertices: piece.vertices.map(|p| points[p]) };
+    let triangles: Vec<_> = certificate.pieces.iter().map(triangle).collect();
+    let given = certificate.tractions(&points);
+    let topology = certificate.topology().unwrap();
+    let closed = certificate.equilibrium((&points, &triangles), &topology, &given).unwrap().forces;
+    let (mut turned, mut largest) = (0.0_f64, 0.0_f64);
+    for (&e, &other) in &certificate.facing {
+        let Role::Contact { along: Some(d), .. } = certificate.edges[e].role else { continue };
+        for k in [0, 1] {
+            let [x, y] = d[k].map(Ball::from);
+            for force in [closed[e][k], closed[other][1 - k]] {
+                turned = turned.max((force[0] * y - force[1] * x).magnitude());
+            }
+            largest = largest.max((closed[e][k] - given[e][k]).map(Ball::magnitude).max());
+        }
+    }
+    assert!(largest > 0.01, "{largest:e}");
+    assert!(turned <= 1e-9 * largest, "{turned:e} {largest:e}");
 }
 
 #[test]

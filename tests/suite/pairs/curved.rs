@@ -8,7 +8,7 @@ use signorini::contact::piece::Stretch;
 use signorini::model::Space;
 
 use super::*;
-use crate::common::{case, expression};
+use crate::common::{DEGREES, case, expression};
 
 /// A quarter of a ring of modulus 1 from radius 1 to 2.002 in one of modulus 2 from 1.998 to 3, with these numbers of edges on the
 /// quarter.
@@ -509,5 +509,28 @@ fn a_pin_in_a_hole_presses_over_the_angle_that_is_known() {
                 "{degree:?} {ratio}: {found}"
             );
         }
+    }
+}
+
+#[test]
+fn a_round_support_lets_each_node_move_along_the_circle() {
+    let quarter = ring([0.0; 2], [1.0, 2.0], [FRAC_PI_2, 0.0]);
+    let blocks = [Block { name: "ring", cells: [9, 3], material: young(1.0, 0.3), map: &quarter }];
+    let problem = bodies(&blocks, &[])
+        .with("ring.bottom", Condition::roller())
+        .with("ring.left", Condition::roller())
+        .with("ring.right", Condition::pressure(|_| -0.1))
+        .with("ring.top", Condition::contact(|_| 1.0));
+    for degree in DEGREES {
+        let s = proved(&problem, &method(degree));
+        let mut count = 0;
+        for (&[x, y], [u, v]) in s.nodes.iter().zip(&s.displacement) {
+            // Between the side that is held, on x = 0, and the other end.
+            if abs_diff_eq!(x.hypot(y), 1.0, epsilon = 1e-12) && x > 0.1 && y > 0.1 {
+                assert!((u * x + v * y).abs() <= 1e-12 && u * y - v * x > 0.01, "{x} {y} {u} {v}");
+                count += 1;
+            }
+        }
+        assert_eq!(count, 8);
     }
 }

@@ -135,3 +135,30 @@ fn control_equal_shares_of_the_stress_lose_the_rigid_limit() {
     assert!(off(force(&problem, false).unwrap()) <= 1e-8);
     assert!(force(&problem, true).map_or(true, |force| off(force) > 1e-6));
 }
+
+/// Of a material whose stress along the interface is more than that across it: glue bears both.
+#[test]
+fn glue_is_proved_up_to_its_limit_and_not_beyond_straight_and_round() {
+    let material = Material::tensor([20.0, 1.0, 0.0, 2.0, 0.0, 3.0], Some([0.0; 3]));
+    for bend in [0.0, 0.3] {
+        let curve = move |x: f64| bend * x * (1.0 - x);
+        let lower = move |[x, t]: [f64; 2]| [x, -1.0 + (1.0 + curve(x)) * t];
+        let upper = move |[x, t]: [f64; 2]| [x, curve(x) + (1.0 - curve(x)) * t];
+        let block = |name, n, map| Block { name, cells: [n, 2], material, map };
+        let problem = bodies(
+            &[block("lower", 4, &lower), block("upper", 3, &upper)],
+            &[Pair::new("lower.top", "upper.bottom").with_law(Law::Bonded)],
+        )
+        .with("lower.bottom", Condition::clamped())
+        .with("upper.top", Condition::displacement(|_| 0.01, |_| 0.02));
+        for degree in DEGREES {
+            let verdict = |kappa| {
+                let method = Method { allow_noncoercive: true, ..with_kappa(degree, kappa) };
+                solve(&problem, &method, &Settings::default()).unwrap().0.verdict
+            };
+            let [below, beyond] = [1.0 - 1e-6, 1.0 + 1e-6].map(verdict);
+            assert_eq!(below.name(), "proved", "{bend} {degree:?}: {below:?}");
+            assert_ne!(beyond.name(), "proved", "{bend} {degree:?}");
+        }
+    }
+}

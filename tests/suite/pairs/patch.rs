@@ -135,6 +135,10 @@ fn bodies_that_slide_without_lifting_off_and_glued_ones_are_exact_in_tension() {
             let s = proved(&problem, &method(degree));
             let error = off(&problem, &s.displacement, degree, &stretched);
             assert!(error <= ROUNDING, "{law:?} {degree:?}: {error:e}");
+            // They pull each other by a stress of 1 over a length of 1, and are proved to.
+            let [low, high] = s.enclosure.unwrap().intervals.contact[0].force;
+            let is_known = low <= -1.0 + ROUNDING && -1.0 - ROUNDING <= high && high - low <= 1e-7;
+            assert!(is_known, "{law:?} {degree:?}: {low} {high}");
         }
         // The control: bodies in contact let go.
         let (loose, _) = compressed(moduli, turn, Law::Contact);

@@ -436,3 +436,21 @@ fn a_cylinder_on_a_mesh_of_gmsh_is_exact() {
         assert!(s.enclosure.unwrap().relative.unwrap() <= ENCLOSED);
     }
 }
+
+/// In triangles far longer than they are wide, next to the axis, where hoops are strained most.
+#[test]
+fn forces_of_hoops_are_within_the_sums_of_their_magnitudes() {
+    for degree in DEGREES {
+        let problem = Problem::of(meridian([0.0, 1.0], 50.0, [6, 2], false), elastic(1.0, 0.3))
+            .with("bottom", Condition::contact(|_| 0.0))
+            .with("top", Condition::roller());
+        let d = discretize(&problem, &method(degree, EXACT)).unwrap();
+        for power in 0..3 {
+            let u = d.space.nodes().iter().map(|[r, _]| [r.powi(power), 0.0]).collect::<Vec<_>>();
+            let forces = d.internal_forces(&u);
+            for (force, most) in forces.values.iter().zip(&forces.magnitudes) {
+                assert!(force[0].abs() <= most[0], "{degree:?} {power}: {force:?} {most:?}");
+            }
+        }
+    }
+}

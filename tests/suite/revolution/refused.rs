@@ -41,6 +41,12 @@ fn conditions_on_the_axis_and_oblique_supports_are_refused() {
         .with("bottom", Condition::contact(|_| 0.0));
     let said = message(&problem);
     assert!(said.contains("oblique support") && said.contains("'left'"), "{said}");
+    // Control: an upright one.
+    let upright = Problem::of(mesh, elastic(1.0, 0.3))
+        .with("left", Condition::roller())
+        .with("top", Condition::pressure(|_| 0.01))
+        .with("bottom", Condition::contact(|_| 0.0));
+    check(&upright, &method(Degree::One, EXACT)).unwrap();
 }
 
 #[test]
