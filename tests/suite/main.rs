@@ -34,6 +34,7 @@ mod patch;
 mod peaks;
 mod properties;
 mod quantities;
+mod recorded;
 mod recovered;
 mod reference;
 mod remarks;
