@@ -41,9 +41,12 @@ const PRESSURE: Place = ("src/kernel/contact.rs", "pub fn pressure(&self)");
 const P: Place = ("src/kernel/contact.rs", "pub fn p(&self)");
 const P0: Place = ("src/kernel/contact.rs", "pub fn p0(&self)");
 const STRESS: Place = ("src/kernel/material.rs", "pub fn stress<");
-const COERCIVITY: Place = ("src/kernel/contact_edge.rs", "pub fn coercivity_constant<");
-const STIFFNESS: Place = ("src/kernel/material.rs", "pub fn normal_stiffness<");
 const INTEGRALS: Place = ("src/kernel/edge_integral.rs", "fn exact_with(p: [S; 2]");
+const GAUSS: Place = ("src/kernel/edge_integral.rs", "pub fn gauss<");
+const PIECE_P: Place = ("src/contact/piece.rs", "pub fn p(");
+const PIECE_P0: Place = ("src/contact/piece.rs", "pub fn p0(");
+const FORCES: Place = ("src/contact/residual.rs", "pub fn add_internal_forces<");
+const PRODUCT: Place = ("src/contact/piece.rs", "pub fn add_stresses(");
 const RESIDUAL: Place = ("src/contact/discretization.rs", "pub fn residual(");
 const LINEAR: Place = ("src/contact/residual.rs", "pub fn linear_residual<");
 const REACTIONS: Place = ("props/src/discrete.rs", "pub fn reactions(");
@@ -75,7 +78,8 @@ pub const ON: &[Place] = &[BODIES, PROBLEMS, SOLVED, AFFINE, CURVED, SAMPLES, TR
 
 /// Lines of which an item has those that its checks call, and no other.
 #[cfg(test)]
-pub const KERNEL: &[Place] = &[POSITIVE_PART, PRESSURE, P, P0, LINEAR, INTEGRALS];
+pub const KERNEL: &[Place] =
+    &[POSITIVE_PART, PRESSURE, P, P0, LINEAR, FORCES, PRODUCT, PIECE_P0, INTEGRALS, GAUSS];
 
 /// All of them.
 #[rustfmt::skip]
@@ -104,29 +108,29 @@ pub const ITEMS: &[Item] = &[
     item("(7)", "gamma(x) = gamma0 h_T for x in T", &[("src/contact/contact_line.rs", "let gamma = gamma0(t) * mesh.diameter(t);"), PROBLEMS],
         "meshes of more than eight triangles"),
     item("Remark 2.3", "(8) holds formally for u", &[PRESSURE, P, P0, POSITIVE_PART], "H2, H5, H6"),
-    item("(8)", "the method: A_gamma(u^h, v^h) + int (1/gamma)[P(u^h)]+ P0(v^h) = L(v^h) for all v^h in V^h", &[LINEAR, INTEGRALS, POSITIVE_PART, ("src/kernel/edge_integral.rs", "pub fn gauss<"), REACTIONS, BIG_A, CONTACT, TRACES, DEFINED_PART, BODIES, PROBLEMS],
+    item("(8)", "the method: A_gamma(u^h, v^h) + int (1/gamma)[P(u^h)]+ P0(v^h) = L(v^h) for all v^h in V^h", &[LINEAR, FORCES, PRODUCT, PIECE_P, PIECE_P0, INTEGRALS, GAUSS, POSITIVE_PART, REACTIONS, BIG_A, CONTACT, TRACES, DEFINED_PART, BODIES, PROBLEMS],
         "loads and gaps of degree above 2; P2 without quadrature error, but in doubles (`assembled.rs`, `edges.rs` in `props/tests/program`); meshes of more than eight triangles, but beside other programs. The first exact check has n = (5/13, -12/13), the solver's doubles for |E|, h_T, the gap (within 1e-9) and lambda of plane stress, the sum of contact terms of `reactions`, none for P2 without a rule")
         .beside(&[RESIDUAL]),
-    item("P_gamma, A_gamma", "v_n - gamma sigma_n(v); a(u, v) - int gamma sigma_n(u) sigma_n(v)", &[P, P0, PRESSURE, POSITIVE_PART, ("src/kernel/contact_edge.rs", "pub fn new<"), ("src/kernel/contact_edge.rs", "pub fn stress_product("), LINEAR, INTEGRALS, BIG_A, TRACES, POINT, PROBLEMS],
+    item("P_gamma, A_gamma", "v_n - gamma sigma_n(v); a(u, v) - int gamma sigma_n(u) sigma_n(v)", &[P, P0, PRESSURE, POSITIVE_PART, ("src/kernel/contact_edge.rs", "pub fn new<"), ("src/kernel/contact_edge.rs", "pub fn stress_product("), LINEAR, FORCES, PRODUCT, PIECE_P, PIECE_P0, INTEGRALS, GAUSS, BIG_A, TRACES, POINT, PROBLEMS],
         "as (7)"),
     item("(9)", "lambda^h is the L^2-projection of -(1/gamma)P(u^h) on the nonpositive mu", &[PRESSURE, P, P0, POSITIVE_PART, B, TRACES, BODIES, POINT_AND_MU],
         "H5, but for affine mu and P1"),
     item("(10)", "(9) with the weight gamma", &[PRESSURE, P, P0, POSITIVE_PART, B, TRACES, BODIES, POINT_AND_MU], "H5, but for affine mu and P1"),
     item("the mixed problem", "(8) is a mixed method with stabilisation; sigma_n(u^h) is not lambda^h", &[PRESSURE, P, P0, POSITIVE_PART, INTEGRALS, B, TRACES, BODIES, POINT_AND_MU, ONE_TRIANGLE],
         "H5, but for P1, and for P2 by the points of a rule"),
-    item("Lemma 3.1", "consistency: the solution u of (1)-(2), in H^(3/2 + nu) with nu > 0, is one of (8)", &[LINEAR, INTEGRALS, P, P0, POSITIVE_PART, B, BIG_A, CONTACT, TRACES, BODIES, PROBLEMS, AFFINE, CURVED, SAMPLES],
+    item("Lemma 3.1", "consistency: the solution u of (1)-(2), in H^(3/2 + nu) with nu > 0, is one of (8)", &[LINEAR, FORCES, PRODUCT, PIECE_P, PIECE_P0, INTEGRALS, GAUSS, P, P0, POSITIVE_PART, B, BIG_A, CONTACT, TRACES, BODIES, PROBLEMS, AFFINE, CURVED, SAMPLES],
         "H2, H5, H6; solutions other than affine ones and, for isotropic A, a curved one and, by quadrature up to 1e-4, drawn smooth ones, ends of contact and corners: for others it is (6), or `tests/suite/tensor.rs`")
         .beside(&[RESIDUAL]),
-    item("Lemma 3.2", "A_gamma is elliptic on V^h for small gamma0, C independent of gamma0 and h", &[COERCIVITY, STIFFNESS, MATRICES, BODIES],
+    item("Lemma 3.2", "A_gamma is elliptic on V^h for small gamma0, C independent of gamma0 and h", &[("src/kernel/contact_edge.rs", "pub fn coercivity_constant<"), ("src/kernel/material.rs", "pub fn normal_stiffness<"), MATRICES, BODIES],
         "H1, H5; an A that varies inside a triangle"),
-    item("(11)", "|gamma^1/2 sigma_n(v^h)|^2 <= C gamma0 |v^h|_1^2", &[COERCIVITY, STIFFNESS, MATRICES, ("props/src/bodies/definition.rs", "pub fn a_on("), ("props/src/bodies/definition.rs", "fn stresses_on("), BODIES],
+    item("(11)", "|gamma^1/2 sigma_n(v^h)|^2 <= C gamma0 |v^h|_1^2", &[("src/kernel/contact_edge.rs", "pub fn coercivity_constant<"), ("src/kernel/material.rs", "pub fn normal_stiffness<"), MATRICES, ("props/src/bodies/definition.rs", "pub fn a_on("), ("props/src/bodies/definition.rs", "fn stresses_on("), BODIES],
         "H3, H5; an elliptic A is assumed; `lemma_3_2_holds_with_constants_without_h` starts from (11) in |.|_a; an A that varies inside a triangle"),
     item("a(., .)", "it is continuous in |.|_1", &[STRESS, POSITIVE_PART],
         "H4; an A that is not isotropic")
         .beside(&[("src/kernel/element.rs", "pub fn stiffness<")]),
-    item("Theorem 3.3", "(8) has one solution for small gamma0", &[POSITIVE_PART, LINEAR, INTEGRALS, REACTIONS, B, BODIES, SOLVED],
+    item("Theorem 3.3", "(8) has one solution for small gamma0", &[POSITIVE_PART, LINEAR, FORCES, PRODUCT, PIECE_P, PIECE_P0, INTEGRALS, GAUSS, REACTIONS, B, BODIES, SOLVED],
         "(11), H5; P1 with a cut edge (6 draws), whose solution is irrational: a point of Newton's method stands for it (the solver's u~ is within 2^-40 |u~|_a of either); that a(., .) is positive definite on V^h, but on the meshes of row 10; that a strongly convex function on R^N has one minimiser: in place of Brezis (`docs/theory.md`, 3.2)"),
-    item("(12)", "B^h is strongly monotone", &[LINEAR, INTEGRALS, POSITIVE_PART, B, A, BIG_A, CONTACT, DEFINED_PART, REACTIONS, BODIES, PROBLEMS, TRAPEZOID],
+    item("(12)", "B^h is strongly monotone", &[LINEAR, FORCES, PRODUCT, PIECE_P, PIECE_P0, INTEGRALS, GAUSS, POSITIVE_PART, B, A, BIG_A, CONTACT, DEFINED_PART, REACTIONS, BODIES, PROBLEMS, TRAPEZOID],
         "H1, (11); H5: bodies (P2 by a rule of two points) have the definitions written out, which its first exact check compares with the solver's loops"),
     item("Theorem 3.4", "for small gamma0, |u - u^h|_1 + |gamma^1/2 (sigma_n(u) + [P(u^h)]+/gamma)| <= C inf over v^h of (|u - v^h|_1 + |gamma^-1/2 (u_n - v_n^h)| + |gamma^1/2 sigma_n(u - v^h)|)", &[PRESSURE, P, P0, POSITIVE_PART, THREE_POINTS],
         "(8), (11), H2, H4, H5, H6; the printed form, but by (13): proof and Rocq have [9.1] of `docs/theory.md`, squared, in |.|_a, with P0(u - v^h) for u_n - v_n^h, from [9.4]")
