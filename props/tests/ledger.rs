@@ -40,16 +40,16 @@ fn read_aloud(page: &str) -> String {
 #[test]
 fn verify_md_is_what_the_claims_print() {
     let stored = std::fs::read_to_string(root().join("VERIFY.md")).unwrap_or_default();
-    let printed = ledger().expect("each name stands in the sources");
+    let printed = page();
     assert!(stored == printed, "stale: cargo run -p props -- ledger > VERIFY.md");
 }
 
 #[test]
 fn verify_md_is_read_aloud_in_a_quarter_of_an_hour() {
-    let page = ledger().expect("each name stands in the sources");
-    assert!(words(&page) <= 4500, "{} words", words(&page));
+    let page = page();
+    assert!(words(page) <= 4500, "{} words", words(page));
     // At 150 words a minute.
-    let read = words(&read_aloud(&page));
+    let read = words(&read_aloud(page));
     assert!((1500..=2300).contains(&read), "{read} words of prose");
     // A sentence counts, and so do the words of a link that are no name; a line of links does not.
     let text = format!(
@@ -94,10 +94,10 @@ fn astray(page: &str, checks: &[Check], places: &Places) -> Vec<String> {
 
 #[test]
 fn each_link_leads_to_a_line_with_the_name_that_it_shows_or_with_the_function_that_states_it() {
-    let (page, places) = (ledger().expect("a page"), Places::read().expect("the sources"));
+    let (page, places) = (page(), Places::read().expect("the sources"));
     let checks: Vec<Check> = claims::all().into_iter().flat_map(|claim| claim.checks).collect();
-    assert_eq!(astray(&page, &checks, &places), Vec::<String>::new());
-    assert!(links(&page).filter(|(_, place)| place.contains("#L")).count() > 400);
+    assert_eq!(astray(page, &checks, &places), Vec::<String>::new());
+    assert!(links(page).filter(|(_, place)| place.contains("#L")).count() > 400);
     // A link that is a line off, one to a function that states another check, one to a file that is not there.
     let right = places.of(checks.iter().find(|c| c.name == "positive_part_satisfies_4").unwrap());
     let (file, line) = right.as_deref().unwrap().split_once("#L").unwrap();
@@ -113,7 +113,7 @@ fn each_link_leads_to_a_line_with_the_name_that_it_shows_or_with_the_function_th
 
 #[test]
 fn the_controls_that_are_counted_are_those_that_are_listed() {
-    let page = ledger().expect("a page");
+    let page = page();
     let lines = page.lines().filter(|line| line.starts_with("- *Controls:*"));
     let listed = lines.flat_map(links).filter(|(shown, _)| !shown.starts_with('`')).count();
     let checks = claims::all().into_iter().flat_map(|claim| claim.checks);
@@ -125,12 +125,14 @@ fn the_controls_that_are_counted_are_those_that_are_listed() {
 /// A name that is called, behind that of a module or a type, or `.` for a method.
 type Call<'a> = (&'a str, &'a str);
 
-/// A function: its name, its file, the header of the `impl` around it, whether it is a method, and what it calls.
+/// A function: its name, its file, the header of the `impl` around it, whether it is a method, to what it belongs, and what it calls.
 struct Function<'a> {
     name: &'a str,
     file: &'a str,
     header: &'a str,
     is_method: bool,
+    /// Its type or its trait, or else its module.
+    owner: &'a str,
     calls: Vec<Call<'a>>,
 }
 
@@ -143,6 +145,22 @@ struct Functions<'a> {
     named: BTreeMap<&'a str, Vec<usize>>,
     called: Vec<Vec<(&'a str, Option<usize>)>>,
     imported: BTreeMap<&'a str, BTreeSet<&'a str>>,
+}
+
+/// The page, printed once for all tests.
+fn page() -> &'static str {
+    static PAGE: OnceLock<String> = OnceLock::new();
+    PAGE.get_or_init(|| ledger().expect("each name stands in the sources"))
+}
+
+/// The sources with their functions, read once for all tests.
+fn sources() -> (&'static Places, &'static Functions<'static>) {
+    static SOURCES: OnceLock<(&Places, Functions)> = OnceLock::new();
+    let (places, functions) = SOURCES.get_or_init(|| {
+        let places: &Places = Box::leak(Box::new(Places::read().expect("the sources")));
+        (places, Functions::of(places))
+    });
+    (places, functions)
 }
 
 /// The names in the imports of a text.
@@ -203,7 +221,9 @@ fn functions<'a>(file: &'a str, text: &'a str) -> Vec<Function<'a>> {
         let rest = &part[open + 1..];
         let body = inside(rest, ['{', '}']).unwrap_or(rest);
         let (name, is_method) = (&part[..end], part[..open].contains("self"));
-        found.push(Function { name, file, header, is_method, calls: calls(body) });
+        let module = file.trim_end_matches(".rs").rsplit('/').next().unwrap_or_default();
+        let owner = if header.is_empty() { module } else { own_type(header) };
+        found.push(Function { name, file, header, is_method, owner, calls: calls(body) });
     }
     found
 }
@@ -243,14 +263,6 @@ impl<'a> Functions<'a> {
         names(file) || above.is_some_and(|above| names(&above) || self.has(&above, name))
     }
 
-    /// Whether a file imports the type of a method, or the module of a function.
-    fn is_imported(&self, file: &str, function: &Function) -> bool {
-        let of = |text: &str| self.imported.get(file).is_some_and(|names| names.contains(text));
-        let (_, module) =
-            function.file.trim_end_matches(".rs").rsplit_once('/').unwrap_or_default();
-        of(if function.is_method { own_type(function.header) } else { module })
-    }
-
     fn has(&self, file: &str, name: &str) -> bool {
         let of = self.named.get(name).into_iter().flatten();
         of.copied().any(|i| self.all[i].file == file)
@@ -283,7 +295,7 @@ impl<'a> Functions<'a> {
                 "." => f.is_method && is_near,
                 _ if beside.contains(&before) => true,
                 // Of a trait: that of the type is found above.
-                _ if is_path => self.imports(file, own_type(f.header)),
+                _ if is_path => !f.header.is_empty() && self.imports(file, f.owner),
                 _ => f.header.is_empty() && (f.file == file || self.imports(file, name)),
             }
         };
@@ -295,14 +307,16 @@ impl<'a> Functions<'a> {
             let near = of(&|f| f.file.starts_with("props/src/") && is_such(f));
             let is_near = file.starts_with("props/src/") && !near.is_empty();
             // Those of a type, or of a module, that the file imports.
+            let imported = self.imported.get(file);
             let known = |all: &[usize]| -> Vec<usize> {
-                let of = |i: &usize| self.is_imported(file, &self.all[*i]);
-                all.iter().copied().filter(of).collect()
+                let is_known = |f: &Function| imported.is_some_and(|names| names.contains(f.owner));
+                all.iter().copied().filter(|&i| is_known(&self.all[i])).collect()
             };
-            let found = match (known(&all), if is_near { near } else { all }) {
-                (known, _) if before == "." && known.len() == 1 => known,
-                (_, found) if found.len() > 1 => known(&found),
-                (_, found) => found,
+            let of_types = if before == "." { known(&all) } else { Vec::new() };
+            let found = match if is_near { near } else { all } {
+                _ if of_types.len() == 1 => of_types,
+                found if found.len() > 1 => known(&found),
+                found => found,
             };
             meant = if found.len() == 1 { found } else { Vec::new() };
         }
@@ -383,13 +397,12 @@ fn called_by<'a>(
 
 #[test]
 fn a_check_runs_the_function_that_its_link_leads_to() {
-    let places = Places::read().expect("the sources");
-    let functions = Functions::of(&places);
+    let (places, functions) = sources();
     let checks: Vec<Check> = claims::all().into_iter().flat_map(|claim| claim.checks).collect();
     let (mut count, mut strangers) = (0, 0);
     for check in &checks {
         let Subject::Function(_, stated) = check.subject else { continue };
-        let names = called_by(check, &places, &functions).expect("a line of a row");
+        let names = called_by(check, places, functions).expect("a line of a row");
         let name = parts(stated.by()).1;
         let calls = |asked: &str| names.iter().any(|(name, _)| *name == asked);
         assert!(calls(&name), "{} does not call {name}", check.name);
@@ -408,8 +421,7 @@ fn a_check_runs_the_function_that_its_link_leads_to() {
 
 #[test]
 fn a_statement_leads_to_the_function_that_compares_and_that_it_calls() {
-    let places = Places::read().expect("the sources");
-    let functions = Functions::of(&places);
+    let (places, functions) = sources();
     let checks: Vec<Check> = claims::all().into_iter().flat_map(|claim| claim.checks).collect();
     let mut forwarded = 0;
     for check in checks.iter().filter(|check| is_a_statement(check) && !check.control) {
@@ -420,7 +432,7 @@ fn a_statement_leads_to_the_function_that_compares_and_that_it_calls() {
         let name = line.split_once("fn ").and_then(|(_, rest)| rest.split('<').next()).unwrap();
         let (_, body) = text.split_once(&format!("fn {name}<")).expect("a function");
         assert!(body.split("\n}").next().unwrap().contains("ensure!"), "{}: {place}", check.name);
-        let called = called_by(check, &places, &functions).expect("a check stands in a file");
+        let called = called_by(check, places, functions).expect("a check stands in a file");
         assert!(called.iter().any(|(called, _)| *called == name), "{}: {place}", check.name);
         forwarded += usize::from(check.name != name);
     }
@@ -463,11 +475,10 @@ fn not_called<'i>(
 
 #[test]
 fn the_code_of_an_item_is_called_by_its_checks() {
-    let (claims, places) = (claims::all(), Places::read().expect("the sources"));
-    let functions = Functions::of(&places);
+    let (claims, (places, functions)) = (claims::all(), sources());
     let mut uncalled = 0;
     for item in ITEMS {
-        let not_called = |code| not_called(item, code, &claims, (&places, &functions));
+        let not_called = |code| not_called(item, code, &claims, (places, functions));
         assert_eq!(not_called(item.code), Vec::<&str>::new(), "{}", item.name);
         assert_eq!(not_called(item.uncalled).len(), item.uncalled.len(), "{}", item.name);
         uncalled += item.uncalled.len();
@@ -479,10 +490,10 @@ fn the_code_of_an_item_is_called_by_its_checks() {
     for item in ITEMS {
         let mut called = BTreeSet::new();
         for (_, check) in item.found(&claims) {
-            called.extend(called_by(check, &places, &functions).expect("a check"));
+            called.extend(called_by(check, places, functions).expect("a check"));
         }
         for key in &keys {
-            let name = name_at(key, &places).expect("a name");
+            let name = name_at(key, places).expect("a name");
             let is_called = called.contains(&(name, Some(key.0)));
             if is_called != item.code.contains(key) {
                 wrong.push(format!("{}: {key:?}, called: {is_called}", item.name));
@@ -496,7 +507,7 @@ fn the_code_of_an_item_is_called_by_its_checks() {
         ("props/src/bodies/definition.rs", "pub fn big_a("),
         ("src/kernel/contact.rs", "pub fn pressure(&self)"),
     ] {
-        assert_eq!(not_called(of_k, &[place], &claims, (&places, &functions)), [place.1]);
+        assert_eq!(not_called(of_k, &[place], &claims, (places, functions)), [place.1]);
     }
 }
 
