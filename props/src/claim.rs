@@ -82,6 +82,8 @@ pub struct Check {
     pub items: &'static [&'static str],
     /// What is run.
     pub subject: Subject,
+    /// How many draws a function of its own makes at least, if it is said.
+    pub draws: u32,
 }
 
 impl Check {
@@ -162,19 +164,23 @@ fn of_statement(statement: Statement, engine: Engine, control: bool) -> Check {
         control,
         items: &[],
         subject: Subject::Statement(statement),
+        draws: 0,
     }
 }
 
 /// A check by a function of its own; where its name begins with `control_`, a negative control.
 pub fn by(engine: Engine, name: &'static str, stated: Stated, run: fn() -> Outcome) -> Check {
     let control = name.starts_with("control_");
-    Check { name, engine, control, items: &[], subject: Subject::Function(run, stated) }
+    Check { name, engine, control, items: &[], subject: Subject::Function(run, stated), draws: 0 }
 }
 
 /// A check by this engine, as [`exact!`] has it.
 macro_rules! by {
-    ($engine:ident, $name:literal, in $function:path => $run:expr) => {
-        by!(@ $engine, $name, $crate::claim::Stated::In(stringify!($function)), $run)
+    ($engine:ident, $name:literal, in $function:path $(, draws $draws:literal)? => $run:expr) => {
+        $crate::claim::Check {
+            draws: 0 $(+ $draws)?,
+            ..by!(@ $engine, $name, $crate::claim::Stated::In(stringify!($function)), $run)
+        }
     };
     ($engine:ident, $name:literal, at $function:path => $run:expr) => {
         by!(@ $engine, $name, $crate::claim::Stated::At(stringify!($function)), $run)
@@ -185,7 +191,7 @@ macro_rules! by {
 }
 
 /// `exact!("name", in FUNCTION => outcome)`: a check in exact numbers, on one line of a row's list. FUNCTION says what is
-/// compared; `at` for `in` says that the mistake of a control stands in the line itself.
+/// compared; `at` for `in` says that the mistake of a control stands in the line itself; `draws N` behind it, how many there are.
 macro_rules! exact {
     ($($check:tt)+) => {
         by!(Exact, $($check)+)
@@ -235,6 +241,7 @@ pub fn model_checked(harnesses: &[Harness], items: &'static [&'static str]) -> V
         control: harness.counterexample.is_some(),
         items,
         subject: Subject::Harness(harness),
+        draws: 0,
     };
     harnesses.iter().map(one).collect()
 }

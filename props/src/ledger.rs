@@ -8,102 +8,17 @@ use std::sync::OnceLock;
 use crate::claim::{Check, Claim, Engine, Stated, Subject};
 use crate::claims;
 use crate::harness::Harness;
-use crate::items::{ITEMS, Item, Place};
+use crate::items::{ITEMS, Item, ON, Place};
 use crate::paper;
 use crate::proof::tree;
 use crate::receipt::{self, hash, root};
 use crate::solvers;
 
-const HEAD: &str = "\
-# What is verified
-
-`cargo run -p props -- ledger` prints this page from the claims; a test compares. Read the sentences, look
-links up. An item of the paper has the lines that its checks call (*Code*), others that it
-is about (*Uncalled*), and its checks; a check leads to the function that states what is compared, a control to its mistake, § to a
-row. Numbers without a row were rows that are tests now.
-
-The paper is F. Chouly, P. Hild, *A Nitsche-based method for unilateral contact problems: numerical analysis*, SIAM J.
-Numer. Anal. 51 (2013) 1295-1307. n is the outward normal, sigma_n negative in compression, P(v) = v_n - g - gamma sigma_n(v)
-with a gap g (0 in the paper), P0 its linear part, lambda^h = -(1/gamma)[P(u^h)]+, |.|_1 the norm of H^1(Omega),
-|v|_a^2 = a(v, v).
-";
-
-const BODY: &str = "\
-## What a check says
-
-A statement is a Rust function, generic over the number type. It compares the kernel's own functions with the paper's formulas, or
-is a step of the paper's algebra, which calls nothing of the kernel (most of rows 11 and 15). It *holds*, with the class of its
-data (each must be reached), is *vacuous*, where its hypothesis is not met, or *fails*. Other checks assemble on random bodies,
-solve, or compare doubles with exact numbers. Every row has **controls**: planted mistakes, which the same check must reject. A
-check's label is its strongest:
-
-- **Rocq**: the statement, written by hand in [`paper.v`](props/rocq/paper.v), is a theorem over the reals; neither the function nor the
-  engine that found its *proof* is trusted.
-- **proof**: every comparison of polynomials forks the path, and each path that fails contradicts itself, by a certificate (a sum of
-  products of facts and squares that is positive and zero): the statement holds over every ordered field, so over the reals.
-- **exact**: rationals, random or given, without a tolerance; 200 draws of a statement, more until 100 meet its hypothesis; of
-  bodies 3 to 90.
-- **doubles**: 5,000 random draws with edge values and ties (bitwuzla was asked about all finite doubles), or a comparison with
-  exact rationals and a stated bound.
-- **Kani**: the model checker has decided a harness for all its numbers, by a receipt made of these files.
-- **all cases**: each of at most 2^20 cases is run. **draws**: random draws of a harness, *and no more is known*; `for_all` in its
-  name is what Kani is asked.
-
-Receipts are in `props/receipts`. Promises beyond the paper are tested in `props/tests/program`, beside exact rationals, and in `tests/suite`.
-
-## What is trusted
-
-**The trusted core** of what the program computes is what `cargo tree -p signorini-audit -e normal` lists: `src/audit`, which checks
-certificates of the error, `src/kernel`, their vectors, a reader of JSON; no solver, no mesh, no linear algebra.
-[`check_bound.py`](reference/check_bound.py) checks the same certificates with nothing of it, from their documented format.
-
-For this page: the compiler, the standard library, num-rational, num-bigint, proptest, and faer for eigenvalues in doubles. For a
-*proof*: [rationals](props/rational/src/lib.rs), [polynomials](props/src/proof/polynomial.rs),
-[symbols](props/src/proof/symbol.rs), the [forking of paths](props/src/proof/explorer.rs) and the
-[checker of certificates](props/src/proof/certificate.rs), not the search for them;
-[`check_certificates.py`](reference/check_certificates.py) checks exported proofs again with fractions alone, not that their polynomials are
-those of the function. On meshes: the definitions written out
-([fields](props/src/naive.rs), [bodies](props/src/bodies.rs), [method](props/src/bodies/definition.rs),
-[matrices](props/src/discrete.rs)), [exact elimination](props/src/elimination.rs), the
-[counts of roundings](props/src/claims/assembled/compare.rs), the [number types](props/src/numbers/mod.rs). For harnesses: the
-[stand-in of Kani](props/src/harness.rs). Random bodies are two or four triangles, isotropic or with a tensor that couples all strains;
-gamma is gamma0 times a drawn number there, and gamma0 h_T on meshes of the solver.
-
-## Errata of the paper
-
-In (17) and (18) the integral of (sigma_n(u) + [P(u^h)]+/gamma) sigma_n(u - v^h) lacks a factor gamma: its dimension is
-stress^2 length, that of the other terms gamma stress^2 length. As printed both are false at points:
-
-- (17) with gamma = 2, sigma_n(u) = -1, all else 0: 0 + 2 <= 1; with the factor 2 <= 2.
-- (18) with z = sigma_n(u - v^h) = 1, gamma = 1/4, beta_2 = 1: 1 <= 1/8 + 1/8; with the factor 1/4 <= 1/4.
-
-With it both are proved, and used so: the theorem stands (row 11). In section 2.3 the set of the
-multipliers is printed as L^2(Gamma_C), for its nonpositive functions. Before (23) the last equality is h_T <= h.
-
-## What is taken from analysis
-
-No check establishes these. Where an item has them, or other items, as *Unchecked*, its checks start from them.
-
-- **H1**: Korn's inequality alpha |v|_1^2 <= a(v, v), with meas(Gamma_D) > 0, on every body; alpha is not computed.
-- **H2**: Green's formula, but for affine fields, and inside the residuals of row 8.
-- **H3**: |v|_a^2 <= M |v|_1^2; M is a number for isotropic A only (row 15).
-- **H4**: the Cauchy-Schwarz and triangle inequalities of norms.
-- **H5**: what holds at points of Gamma_C holds for integrals, and what holds on edges or triangles for meshes: on paper
-  (`docs/theory.md`, 2.3, 3.2, 8), and run where an *exact* check integrates over bodies.
-- **H6**: the traces u_n and sigma_n exist, and are square integrable.
-";
+/// The page, with names in braces where what is printed is to be.
+const TEXT: &str = include_str!("ledger.md");
 
 /// With this begins a line of links, which is not read but looked up.
 const LINKS: &str = "- ";
-
-/// What introduces the lists at the end, which are not read but looked up.
-const LISTS: &str = "\
-## Lists to look things up in
-
-The proofs, as `reference/check_certificates.py` reads them: how many paths, how many of them are refuted, and a hash of the tree of
-questions, answers and ends; whether it was drawn, too; its theorem.
-
-";
 
 /// The text of `VERIFY.md`.
 ///
@@ -111,22 +26,17 @@ questions, answers and ends; whether it was drawn, too; its theorem.
 /// A file of the sources that can't be read, and a name that does not stand in them once.
 pub fn ledger() -> Result<String, String> {
     let (claims, places) = (claims::all(), Places::read()?);
-    let mut text =
-        format!("{HEAD}\n## State\n\n{}\n{BODY}\n## The items of the paper\n", state(&claims));
-    for item in ITEMS {
-        text += &of_item(item, &claims, &places)?;
-    }
-    text += "\n## The rows\n";
-    for claim in &claims {
-        text += &row(claim, &places)?;
-    }
-    let changed = receipt::changed_files();
-    let changed = if changed.is_empty() { "nothing".to_owned() } else { changed.join(", ") };
-    let proofs = proofs(&claims, &places)?;
-    let ranges = ranges(&claims::harnesses());
-    Ok(format!(
-        "{text}\n{LISTS}{proofs}\n{ranges}\n\nChanged since the receipt of Kani: {changed}.\n"
-    ))
+    let items = ITEMS.iter().map(|item| of_item(item, &claims, &places));
+    let rows = claims.iter().map(|claim| row(claim, &places));
+    let standing = claims::harnesses().iter().any(receipt::is_verified);
+    let changed = receipt::changed_files().join(", ");
+    let text = TEXT.replace("{state}", state(&claims).trim_end());
+    let text = text.replace("{kani}", if standing { "" } else { " (now of no check)" });
+    let text = text.replace("{items}", items.collect::<Result<String, _>>()?.trim());
+    let text = text.replace("{rows}", rows.collect::<Result<String, _>>()?.trim());
+    let text = text.replace("{proofs}", proofs(&claims, &places)?.trim_end());
+    let text = text.replace("{ranges}", &ranges(&claims::harnesses()));
+    Ok(text.replace("{changed}", if changed.is_empty() { "nothing" } else { &changed }))
 }
 
 /// The lines of the sources by what stands in them.
@@ -171,7 +81,16 @@ impl Places {
     fn of(&self, check: &Check) -> Result<String, String> {
         let name = check.name;
         match check.subject {
-            Subject::Statement(_) => self.of_claims(&[format!("fn {name}<")]),
+            Subject::Statement(_) => {
+                let place = self.of_claims(&[format!("fn {name}<")])?;
+                let (file, _) = place.split_once('#').unwrap_or_default();
+                let text = self.files.iter().find(|(name, _)| name == file);
+                match text.and_then(|(_, text)| comparing(text, name)) {
+                    _ if check.control => Ok(place),
+                    Some(of) => self.find(|name| name == file, &[format!("fn {of}<")]),
+                    None => Err(format!("{name} compares nothing")),
+                }
+            }
             Subject::Harness(_) => {
                 self.of_claims(&["holds ", "fails "].map(|kind| format!(" {kind}{name}(")))
             }
@@ -205,6 +124,18 @@ impl Places {
         });
         line.map(|line| line + 1).ok_or(format!("no line of {file} begins with '{text}'"))
     }
+}
+
+/// The function of a text that compares for this one: itself, or where it compares nothing the one that it calls.
+fn comparing<'a>(text: &'a str, name: &'a str) -> Option<&'a str> {
+    let (_, rest) = text.split_once(&format!("fn {name}<"))?;
+    let body = rest.split("\n}").next()?;
+    if body.contains("ensure!") {
+        return Some(name);
+    }
+    let words = body.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+    let called = |word: &&str| *word != name && text.contains(&format!("fn {word}<"));
+    words.filter(called).find_map(|word| comparing(text, word))
 }
 
 /// Where the theorems are.
@@ -285,7 +216,8 @@ fn label(checks: &[&Check]) -> (usize, String) {
 }
 
 fn link(check: &Check, places: &Places) -> Result<String, String> {
-    Ok(format!("[{}]({})", check.name, places.of(check)?))
+    let draws = if check.draws == 0 { String::new() } else { format!(" ({} draws)", check.draws) };
+    Ok(format!("[{}]({}){draws}", check.name, places.of(check)?))
 }
 
 /// Links to checks, those of one label together, the strongest first.
@@ -317,6 +249,15 @@ fn beyond<'a>(item: &Item, claims: &'a [Claim]) -> (Option<&'static str>, Vec<&'
     let mut own = checks(item);
     own.retain(|check| !included.as_ref().is_some_and(|(_, theirs)| theirs.contains(check.name)));
     (included.map(|(name, _)| name), own)
+}
+
+/// What a line that checks call is: of the program, of the definitions beside it, or what both run on.
+fn kind(place: &Place) -> &'static str {
+    match place {
+        _ if ON.contains(place) => "On",
+        (file, _) if file.starts_with("props/") => "Defined",
+        _ => "Code",
+    }
 }
 
 /// Links to lines of the program.
@@ -368,7 +309,12 @@ fn of_item(item: &Item, claims: &[Claim], places: &Places) -> Result<String, Str
     if !item.missing.is_empty() {
         let _ = write!(text, " *Unchecked:* {}.", item.missing);
     }
-    let mut links = linked("Code", item.code, places)?;
+    let mut links = String::new();
+    for label in ["Code", "Defined", "On"] {
+        let is_such = |place: &&Place| label == kind(place);
+        let code: Vec<Place> = item.code.iter().copied().filter(|place| is_such(&place)).collect();
+        links += &linked(label, &code, places)?;
+    }
     links += &linked("Uncalled", item.uncalled, places)?;
     links += &linked("Rocq, by hand", &by_hand(item), places)?;
     let (included, own) = beyond(item, claims);
@@ -408,13 +354,13 @@ fn state(claims: &[Claim]) -> String {
     let more = claims.iter().filter(|claim| !claim.is_about_the_paper());
     let more: Vec<&str> = more.map(|claim| claim.id).collect();
     format!(
-        "- {} rows are about the paper, rows {} about more: {} statements proved, {} of them drawn, too; {} more checks in exact \
+        "- {} rows are about the paper, rows {} about what it has not: {} statements proved, {} of them drawn, too; {} other checks in exact \
          numbers, {} statements and {} other checks in doubles, {} harnesses; {} controls. `cargo test` runs all of them.\n\
          - {} ({}): {proved} of {} theorems, with the axioms of the classical reals; {twins} false twins are refused.\n\
          - {} ({}): each of the {} failing paths of the statements in doubles is impossible over all finite doubles; {} of the controls' \
          are possible.\n\
          - {}\n\
-         - The whole solver, of which rows see small meshes only, is compared with FEniCSx, which shares nothing but the case files: with stored \
+         - The whole solver (rows see small meshes only) is compared with FEniCSx, which shares only the case files: with stored \
          results by `cargo test` ([`reference.rs`](tests/suite/reference.rs)), with new ones, and scikit-fem's, by [`.ci/run`](.ci/run).\n",
         claims.iter().filter(|claim| claim.is_about_the_paper()).count(),
         joined(&more),
@@ -438,23 +384,22 @@ fn state(claims: &[Claim]) -> String {
 
 /// Over what the harnesses range.
 fn ranges(harnesses: &[Harness]) -> String {
-    let holds: Vec<&str> =
-        harnesses.iter().filter(|h| h.counterexample.is_none()).map(|h| h.name).collect();
+    let must_hold = || harnesses.iter().filter(|harness| harness.counterexample.is_none());
+    let decided = must_hold().filter(|harness| receipt::is_decided(harness)).count();
+    let holds: Vec<&str> = must_hold().map(|harness| harness.name).collect();
     let ending = |ends: &[&str]| {
         holds.iter().filter(|name| ends.iter().any(|end| name.ends_with(end))).count()
     };
     let over_doubles = ending(&["_for_all_doubles", "_for_all_finite_doubles"]);
     let over_numbers = ending(&["_for_all_doubles_but_nan"]);
-    let over_words = ending(&["i16"]);
-    let over_bytes = holds
-        .iter()
-        .filter(|name| name.contains("for_all_i8") || name.ends_with("i8_gamma"))
-        .count();
+    let (over_words, over_bytes) = (ending(&["i16"]), ending(&["for_all_i8", "i8_gamma"]));
     format!(
         "Of the {} harnesses that must hold, {over_doubles} range over all doubles or all finite ones, {over_numbers} over all but NaN, \
-         {over_words} over i16, {over_bytes} over bytes, {} over smaller sets, which their names say.",
+         {over_words} over i16, {over_bytes} over bytes, {} over smaller sets, which their names say. `cargo test` runs {decided} on all \
+         their cases and {} on draws.",
         holds.len(),
         holds.len() - over_doubles - over_numbers - over_words - over_bytes,
+        holds.len() - decided,
     )
 }
 

@@ -3,6 +3,9 @@
 
 use super::*;
 
+/// What begins the lists at the end, which are not read but looked up.
+const LISTS: &str = "## Lists to look things up in\n";
+
 fn evidence(claim: &Claim) -> impl Iterator<Item = &Check> {
     claim.checks.iter().filter(|check| !check.control)
 }
@@ -37,16 +40,16 @@ fn read_aloud(page: &str) -> String {
 #[test]
 fn verify_md_is_what_the_claims_print() {
     let stored = std::fs::read_to_string(root().join("VERIFY.md")).unwrap_or_default();
-    let printed = ledger().expect("each name stands in the sources");
+    let printed = page();
     assert!(stored == printed, "stale: cargo run -p props -- ledger > VERIFY.md");
 }
 
 #[test]
 fn verify_md_is_read_aloud_in_a_quarter_of_an_hour() {
-    let page = ledger().expect("each name stands in the sources");
-    assert!(words(&page) <= 4500, "{} words", words(&page));
+    let page = page();
+    assert!(words(page) <= 4500, "{} words", words(page));
     // At 150 words a minute.
-    let read = words(&read_aloud(&page));
+    let read = words(&read_aloud(page));
     assert!((1500..=2300).contains(&read), "{read} words of prose");
     // A sentence counts, and so do the words of a link that are no name; a line of links does not.
     let text = format!(
@@ -59,6 +62,11 @@ fn verify_md_is_read_aloud_in_a_quarter_of_an_hour() {
 /// header of the function that a check of this name is stated by.
 fn astray(page: &str, checks: &[Check], places: &Places) -> Vec<String> {
     let mut found = Vec::new();
+    // Whether a statement hands its data to the function that stands there: asked by another test, too.
+    let leads_there = |shown: &str, place: &str| {
+        let of = checks.iter().filter(|c| is_a_statement(c) && !c.control && c.name == shown);
+        of.map(|check| places.of(check)).any(|of| of.as_deref() == Ok(place))
+    };
     for (shown, place) in links(page) {
         let Some((file, line)) = place.split_once("#L") else { continue };
         let text = places.files.iter().find(|(name, _)| name == file).map(|(_, text)| text);
@@ -75,7 +83,7 @@ fn astray(page: &str, checks: &[Check], places: &Places) -> Vec<String> {
                 let name = parts(function).1;
                 ['<', '('].iter().any(|end| line.contains(&format!("fn {name}{end}")))
             }
-            None => line.contains(shown.trim_matches('`')),
+            None => line.contains(shown.trim_matches('`')) || leads_there(shown, place),
         };
         if !line.is_some_and(has) {
             found.push(format!("{shown}: {place}"));
@@ -86,10 +94,10 @@ fn astray(page: &str, checks: &[Check], places: &Places) -> Vec<String> {
 
 #[test]
 fn each_link_leads_to_a_line_with_the_name_that_it_shows_or_with_the_function_that_states_it() {
-    let (page, places) = (ledger().expect("a page"), Places::read().expect("the sources"));
+    let (page, places) = (page(), Places::read().expect("the sources"));
     let checks: Vec<Check> = claims::all().into_iter().flat_map(|claim| claim.checks).collect();
-    assert_eq!(astray(&page, &checks, &places), Vec::<String>::new());
-    assert!(links(&page).filter(|(_, place)| place.contains("#L")).count() > 400);
+    assert_eq!(astray(page, &checks, &places), Vec::<String>::new());
+    assert!(links(page).filter(|(_, place)| place.contains("#L")).count() > 400);
     // A link that is a line off, one to a function that states another check, one to a file that is not there.
     let right = places.of(checks.iter().find(|c| c.name == "positive_part_satisfies_4").unwrap());
     let (file, line) = right.as_deref().unwrap().split_once("#L").unwrap();
@@ -105,7 +113,7 @@ fn each_link_leads_to_a_line_with_the_name_that_it_shows_or_with_the_function_th
 
 #[test]
 fn the_controls_that_are_counted_are_those_that_are_listed() {
-    let page = ledger().expect("a page");
+    let page = page();
     let lines = page.lines().filter(|line| line.starts_with("- *Controls:*"));
     let listed = lines.flat_map(links).filter(|(shown, _)| !shown.starts_with('`')).count();
     let checks = claims::all().into_iter().flat_map(|claim| claim.checks);
@@ -117,12 +125,14 @@ fn the_controls_that_are_counted_are_those_that_are_listed() {
 /// A name that is called, behind that of a module or a type, or `.` for a method.
 type Call<'a> = (&'a str, &'a str);
 
-/// A function: its name, its file, the header of the `impl` around it, whether it is a method, and what it calls.
+/// A function: its name, its file, the header of the `impl` around it, whether it is a method, to what it belongs, and what it calls.
 struct Function<'a> {
     name: &'a str,
     file: &'a str,
     header: &'a str,
     is_method: bool,
+    /// Its type or its trait, or else its module.
+    owner: &'a str,
     calls: Vec<Call<'a>>,
 }
 
@@ -137,10 +147,29 @@ struct Functions<'a> {
     imported: BTreeMap<&'a str, BTreeSet<&'a str>>,
 }
 
+/// The page, printed once for all tests.
+fn page() -> &'static str {
+    static PAGE: OnceLock<String> = OnceLock::new();
+    PAGE.get_or_init(|| ledger().expect("each name stands in the sources"))
+}
+
+/// The sources with their functions, read once for all tests.
+fn sources() -> (&'static Places, &'static Functions<'static>) {
+    static SOURCES: OnceLock<(&Places, Functions)> = OnceLock::new();
+    let (places, functions) = SOURCES.get_or_init(|| {
+        let places: &Places = Box::leak(Box::new(Places::read().expect("the sources")));
+        (places, Functions::of(places))
+    });
+    (places, functions)
+}
+
 /// The names in the imports of a text.
 fn imports(text: &str) -> BTreeSet<&str> {
     let statements = text.split("use ").skip(1).filter_map(|rest| rest.split(';').next());
-    statements.flat_map(|names| names.split(|c| !is_name(c))).collect()
+    statements
+        .flat_map(|names| names.split(|c| !is_name(c)))
+        .filter(|name| !name.is_empty())
+        .collect()
 }
 
 fn is_name(c: char) -> bool {
@@ -157,6 +186,15 @@ fn inside(text: &str, [open, close]: [char; 2]) -> Option<&str> {
     end.map(|end| &text[..end])
 }
 
+/// The type, or the trait, to which the functions below this header belong.
+fn own_type(header: &str) -> &str {
+    let of = header.rsplit_once(" for ").map_or(header, |(_, of)| of);
+    let parameters = of.strip_prefix("impl<").and_then(|rest| inside(rest, ['<', '>']));
+    let of = parameters.map_or(of, |inside| &of["impl<>".len() + inside.len()..]);
+    let mut names = of.split(|c| !is_name(c)).filter(|name| !name.is_empty());
+    names.find(|name| !["impl", "pub", "trait"].contains(name)).unwrap_or_default()
+}
+
 /// The functions of a text.
 fn functions<'a>(file: &'a str, text: &'a str) -> Vec<Function<'a>> {
     let mut found = Vec::new();
@@ -166,7 +204,9 @@ fn functions<'a>(file: &'a str, text: &'a str) -> Vec<Function<'a>> {
         let start = at;
         at += line.len();
         match () {
-            () if line.starts_with("impl") => header = line,
+            () if ["impl", "pub trait", "trait"].iter().any(|s| line.starts_with(s)) => {
+                header = line;
+            }
             () if line.starts_with('}') => header = "",
             () => {}
         }
@@ -181,7 +221,9 @@ fn functions<'a>(file: &'a str, text: &'a str) -> Vec<Function<'a>> {
         let rest = &part[open + 1..];
         let body = inside(rest, ['{', '}']).unwrap_or(rest);
         let (name, is_method) = (&part[..end], part[..open].contains("self"));
-        found.push(Function { name, file, header, is_method, calls: calls(body) });
+        let module = file.trim_end_matches(".rs").rsplit('/').next().unwrap_or_default();
+        let owner = if header.is_empty() { module } else { own_type(header) };
+        found.push(Function { name, file, header, is_method, owner, calls: calls(body) });
     }
     found
 }
@@ -194,7 +236,9 @@ impl<'a> Functions<'a> {
             let is_definition = ["bodies", "naive", "discrete", "elimination", "numbers/"];
             let of_claims = ["claims/", "sharpness", "problems"];
             let mut known = is_definition.iter().chain(&of_claims);
-            file.starts_with("props/") && !known.any(|start| name.starts_with(start))
+            // Reading and writing files calls all, and is called by none of the checks.
+            let is_beside = file.starts_with("src/io/");
+            is_beside || file.starts_with("props/") && !known.any(|start| name.starts_with(start))
         };
         let files = places.files.iter().filter(|(file, _)| !runs(file));
         let all = files.flat_map(|(file, text)| functions(file, text));
@@ -239,7 +283,7 @@ impl<'a> Functions<'a> {
         let is_path = before.starts_with(char::is_alphabetic);
         let mut meant = if is_path { of(&is_in) } else { Vec::new() };
         // Another module than those with the functions.
-        let beside = ["self", "super", "crate"];
+        let beside = ["self", "super", "crate", "Self"];
         if is_path && before.starts_with(char::is_lowercase) && !beside.contains(&before) {
             return meant;
         }
@@ -249,7 +293,10 @@ impl<'a> Functions<'a> {
             let is_near = !["src/kernel/", "src/"].iter().any(is_below);
             match before {
                 "." => f.is_method && is_near,
-                _ => is_path || !f.is_method && (f.file == file || self.imports(file, name)),
+                _ if beside.contains(&before) => true,
+                // Of a trait: that of the type is found above.
+                _ if is_path => !f.header.is_empty() && self.imports(file, f.owner),
+                _ => f.header.is_empty() && (f.file == file || self.imports(file, name)),
             }
         };
         if meant.is_empty() {
@@ -259,7 +306,18 @@ impl<'a> Functions<'a> {
             let all: Vec<usize> = of(&is_such);
             let near = of(&|f| f.file.starts_with("props/src/") && is_such(f));
             let is_near = file.starts_with("props/src/") && !near.is_empty();
-            let found = if is_near { near } else { all };
+            // Those of a type, or of a module, that the file imports.
+            let imported = self.imported.get(file);
+            let known = |all: &[usize]| -> Vec<usize> {
+                let is_known = |f: &Function| imported.is_some_and(|names| names.contains(f.owner));
+                all.iter().copied().filter(|&i| is_known(&self.all[i])).collect()
+            };
+            let of_types = if before == "." { known(&all) } else { Vec::new() };
+            let found = match if is_near { near } else { all } {
+                _ if of_types.len() == 1 => of_types,
+                found if found.len() > 1 => known(&found),
+                found => found,
+            };
             meant = if found.len() == 1 { found } else { Vec::new() };
         }
         meant
@@ -339,13 +397,12 @@ fn called_by<'a>(
 
 #[test]
 fn a_check_runs_the_function_that_its_link_leads_to() {
-    let places = Places::read().expect("the sources");
-    let functions = Functions::of(&places);
+    let (places, functions) = sources();
     let checks: Vec<Check> = claims::all().into_iter().flat_map(|claim| claim.checks).collect();
     let (mut count, mut strangers) = (0, 0);
     for check in &checks {
         let Subject::Function(_, stated) = check.subject else { continue };
-        let names = called_by(check, &places, &functions).expect("a line of a row");
+        let names = called_by(check, places, functions).expect("a line of a row");
         let name = parts(stated.by()).1;
         let calls = |asked: &str| names.iter().any(|(name, _)| *name == asked);
         assert!(calls(&name), "{} does not call {name}", check.name);
@@ -362,6 +419,40 @@ fn a_check_runs_the_function_that_its_link_leads_to() {
     assert_eq!(names.into_iter().collect::<Vec<_>>(), [("a", here), ("b", here), ("c", None)]);
 }
 
+#[test]
+fn a_statement_leads_to_the_function_that_compares_and_that_it_calls() {
+    let (places, functions) = sources();
+    let checks: Vec<Check> = claims::all().into_iter().flat_map(|claim| claim.checks).collect();
+    let mut forwarded = 0;
+    for check in checks.iter().filter(|check| is_a_statement(check) && !check.control) {
+        let place = places.of(check).expect("a place");
+        let (file, line) = place.split_once("#L").expect("a line");
+        let (_, text) = places.files.iter().find(|(name, _)| name == file).expect("a file");
+        let line = text.lines().nth(line.parse::<usize>().unwrap() - 1).expect("a line");
+        let name = line.split_once("fn ").and_then(|(_, rest)| rest.split('<').next()).unwrap();
+        let (_, body) = text.split_once(&format!("fn {name}<")).expect("a function");
+        assert!(body.split("\n}").next().unwrap().contains("ensure!"), "{}: {place}", check.name);
+        let called = called_by(check, places, functions).expect("a check stands in a file");
+        assert!(called.iter().any(|(called, _)| *called == name), "{}: {place}", check.name);
+        forwarded += usize::from(check.name != name);
+    }
+    assert!(forwarded >= 10, "{forwarded}");
+    // What is asked can fail: a function that compares nothing and calls none that does.
+    let text =
+        "fn a<S>(x: S) {\n    b(x)\n}\nfn b<S>(x: S) {\n    ensure!(x);\n}\nfn c<S>(x: S) {\n}\n";
+    assert_eq!([comparing(text, "a"), comparing(text, "c")], [Some("b"), None]);
+}
+
+/// The name of the constant or the function of a place; of another line, of the one around it.
+fn name_at<'p>(&(file, start): &Place, places: &'p Places) -> Option<&'p str> {
+    let (_, text) = places.files.iter().find(|(name, _)| name == file).expect("a file");
+    let line = places.line((file, start)).expect("a line");
+    let lines: Vec<&str> = text.lines().take(line).collect();
+    let start = if start.starts_with("const ") { "const " } else { "fn " };
+    let header = lines.iter().rev().find_map(|line| line.split_once(start));
+    header.and_then(|(_, rest)| rest.split(|c| !is_name(c)).next())
+}
+
 /// The lines of code that no check of an item calls.
 fn not_called<'i>(
     item: &'i Item,
@@ -373,38 +464,55 @@ fn not_called<'i>(
     for (_, check) in item.found(claims) {
         called.extend(called_by(check, places, functions).expect("a check stands in a file"));
     }
-    let is_called = |&&(file, start): &&Place| {
-        // A constant, or a function; of another line, the one around it.
-        let (_, text) = places.files.iter().find(|(name, _)| name == file).expect("a file");
-        let line = places.line((file, start)).expect("a line");
-        let lines: Vec<&str> = text.lines().take(line).collect();
-        let start = if start.starts_with("const ") { "const " } else { "fn " };
-        let header = lines.iter().rev().find_map(|line| line.split_once(start));
-        let name = header.and_then(|(_, rest)| rest.split(|c| !is_name(c)).next());
-        name.is_some_and(|name| [None, Some(file)].iter().any(|&of| called.contains(&(name, of))))
+    let is_called = |&place: &&Place| {
+        let name = name_at(place, places);
+        name.is_some_and(|name| {
+            [None, Some(place.0)].iter().any(|&of| called.contains(&(name, of)))
+        })
     };
     code.iter().filter(|place| !is_called(place)).map(|(_, start)| *start).collect()
 }
 
 #[test]
 fn the_code_of_an_item_is_called_by_its_checks() {
-    let (claims, places) = (claims::all(), Places::read().expect("the sources"));
-    let functions = Functions::of(&places);
+    let (claims, (places, functions)) = (claims::all(), sources());
     let mut uncalled = 0;
     for item in ITEMS {
-        let not_called = |code| not_called(item, code, &claims, (&places, &functions));
+        let not_called = |code| not_called(item, code, &claims, (places, functions));
         assert_eq!(not_called(item.code), Vec::<&str>::new(), "{}", item.name);
         assert_eq!(not_called(item.uncalled).len(), item.uncalled.len(), "{}", item.name);
         uncalled += item.uncalled.len();
     }
     assert!(uncalled >= 8, "{uncalled}");
+    // Of the bodies, and of the kernel's lines that are compared, it has all that its checks call, and no other.
+    let keys: Vec<&Place> = ON.iter().chain(crate::items::KERNEL).collect();
+    let of_8 = ITEMS.iter().find(|item| item.name == "(8)").expect("an item");
+    let (mut wrong, mut strange) = (Vec::new(), 0);
+    for item in ITEMS {
+        let mut called = BTreeSet::new();
+        for (_, check) in item.found(&claims) {
+            called.extend(called_by(check, places, functions).expect("a check"));
+        }
+        for key in &keys {
+            let name = name_at(key, places).expect("a name");
+            let is_called = called.contains(&(name, Some(key.0)));
+            if is_called != item.code.contains(key) {
+                wrong.push(format!("{}: {key:?}, called: {is_called}", item.name));
+            }
+            strange += usize::from(is_called && !of_8.code.contains(key));
+        }
+    }
+    // What is asked can fail: with the lines of (8) others would lack some.
+    assert!(strange > 50, "{strange}");
+    assert_eq!(wrong.len(), 0, "{}", wrong.join("\n"));
     // What is asked can fail for lines that checks of other items call.
     let of_k = ITEMS.iter().find(|item| item.name == "K").expect("an item");
     for place in [
         ("props/src/bodies/definition.rs", "pub fn big_a("),
         ("src/kernel/contact.rs", "pub fn pressure(&self)"),
+        ("props/src/claims/assembled/draw.rs", "pub(crate) fn problems("),
     ] {
-        assert_eq!(not_called(of_k, &[place], &claims, (&places, &functions)), [place.1]);
+        assert_eq!(not_called(of_k, &[place], &claims, (places, functions)), [place.1]);
     }
 }
 
@@ -487,4 +595,18 @@ fn every_harness_has_a_false_twin_and_there_are_at_least_25() {
     let twins = harnesses.iter().filter(|harness| harness.counterexample.is_some()).count();
     assert!(twins >= 25, "{twins}");
     assert_eq!(2 * twins, harnesses.len());
+}
+
+#[test]
+fn an_item_has_checks_or_says_what_is_missing_and_a_check_names_items_that_exist() {
+    let claims = claims::all();
+    assert!(ITEMS.len() >= 40);
+    for item in ITEMS {
+        assert!(!item.says.is_empty(), "{item:?}");
+        assert!(!item.missing.is_empty() || !item.found(&claims).is_empty(), "{}", item.name);
+    }
+    for check in claims.iter().flat_map(|claim| &claim.checks) {
+        let known = |name: &&str| ITEMS.iter().any(|item| item.name == *name);
+        assert!(check.items.iter().all(known), "{}: {:?}", check.name, check.items);
+    }
 }

@@ -117,8 +117,19 @@ pub fn lemma_3_2_holds_with_constants_without_h<S: Ordered>(
 /// (13), squared: from Theorem 3.4 with kappa <= 1/2, in |.|_1, with the constant 13 max(M, 1)/min(alpha, 1). With E^2 =
 /// |e|_a^2, H^2 = |eta|_a^2, Z = |z|_g, S = |sigma_n(eta)|_g, R = |gamma^(-1/2) P0(eta)|, D = |gamma^(-1/2) eta_n|, and
 /// n, m the squares of |e|_1, |eta|_1.
-pub fn estimate_13_holds_with_a_constant_without_h<S: Ordered>(
+pub fn estimate_13_holds_with_a_constant_without_h<S: Ordered>(v: [S; 11]) -> Verdict {
+    estimate_13(v, S::from(1))
+}
+
+/// (13) without the stress of the test function on the right.
+pub fn control_estimate_13_without_the_stress<S: Ordered>(v: [S; 11]) -> Verdict {
+    estimate_13(v, S::from(0))
+}
+
+/// (13), with a factor of |sigma_n(eta)|_g^2 on the right.
+fn estimate_13<S: Ordered>(
     [e2, h2, z2, s, r, d, kappa, n, m, alpha, most]: [S; 11],
+    of_stress: S,
 ) -> Verdict {
     let (zero, one, two) = (S::from(0), S::from(1), S::from(2));
     given!(e2 >= zero && h2 >= zero && z2 >= zero && s >= zero && r >= zero && d >= zero);
@@ -142,19 +153,28 @@ pub fn estimate_13_holds_with_a_constant_without_h<S: Ordered>(
     ensure!(r * r <= (d + s) * (d + s));
     ensure!((d + s) * (d + s) <= two * d * d + two * s * s);
     ensure!(delta * (r * r) <= r * r);
-    ensure!(e2 + z2 <= S::from(13) * (h2 + s * s + d * d));
-    ensure!(alpha * n + z2 <= S::from(13) * (most * m + s * s + d * d));
+    ensure!(e2 + z2 <= S::from(13) * (h2 + of_stress * s * s + d * d));
+    ensure!(alpha * n + z2 <= S::from(13) * (most * m + of_stress * s * s + d * d));
     Verdict::Holds("always")
 }
 
 /// (21), squared, from (13), squared, and (22)-(24), which are hypotheses: with r = h^(1/2 + nu) |u|_(3/2 + nu), m = |eta|_1
 /// <= c_1 r, d = |gamma^(-1/2) eta_n| <= c_2 r, s = |sigma_n(eta)|_g <= c_3 r; `left` is the left side.
-pub fn rate_21_follows_from_13_and_22_to_24<S: Ordered>(
-    [left, m, d, s, r, c1, c2, c3, most]: [S; 9],
-) -> Verdict {
+pub fn rate_21_follows_from_13_and_22_to_24<S: Ordered>(v: [S; 9]) -> Verdict {
+    rate_21(v, true)
+}
+
+/// (21) without (23).
+pub fn control_rate_21_without_23<S: Ordered>(v: [S; 9]) -> Verdict {
+    rate_21(v, false)
+}
+
+/// (21), with (23) or without.
+fn rate_21<S: Ordered>([left, m, d, s, r, c1, c2, c3, most]: [S; 9], with_23: bool) -> Verdict {
     let zero = S::from(0);
     given!(m >= zero && d >= zero && s >= zero && most >= zero);
-    given!(m <= c1 * r && d <= c2 * r && s <= c3 * r);
+    given!(m <= c1 * r && s <= c3 * r);
+    given!(!with_23 || d <= c2 * r);
     given!(left <= S::from(13) * (most * m * m + s * s + d * d));
     ensure!(m * m <= c1 * r * (c1 * r));
     ensure!(d * d <= c2 * r * (c2 * r));
@@ -165,13 +185,22 @@ pub fn rate_21_follows_from_13_and_22_to_24<S: Ordered>(
 }
 
 /// (25): |sigma_n(e)|_g <= s + k (E + H) with (21) for E, (22) for H and (24) for s.
-pub fn rate_25_follows_from_corollary_3_6<S: Ordered>(
-    [x, s, e, h, k, r, c1, c3, c4]: [S; 9],
-) -> Verdict {
+pub fn rate_25_follows_from_corollary_3_6<S: Ordered>(v: [S; 9]) -> Verdict {
+    rate_25(v, true)
+}
+
+/// (25) without (24).
+pub fn control_rate_25_without_24<S: Ordered>(v: [S; 9]) -> Verdict {
+    rate_25(v, false)
+}
+
+/// (25), with (24) or without.
+fn rate_25<S: Ordered>([x, s, e, h, k, r, c1, c3, c4]: [S; 9], with_24: bool) -> Verdict {
     let (zero, one) = (S::from(0), S::from(1));
     given!(k >= zero && k <= one && e >= zero && h >= zero);
     given!(x <= s + k * (e + h));
-    given!(s <= c3 * r && h <= c1 * r && e <= c4 * r);
+    given!(h <= c1 * r && e <= c4 * r);
+    given!(!with_24 || s <= c3 * r);
     ensure!(k * (e + h) <= e + h);
     ensure!(x <= (c1 + c3 + c4) * r);
     Verdict::Holds("always")
@@ -209,6 +238,12 @@ mod row {
                         about "Theorem 3.5", "(21)";
                     proved rate_25_follows_from_corollary_3_6[x, s, e, h, k, r, c1, c3, c4]
                         about "Corollary 3.6", "(25)";
+                    refuted control_estimate_13_without_the_stress[e2, h2, z2, s, r, d, kappa, n, m, alpha, most]
+                        fails "e2 + z2 <= S::from(13) * (h2 + of_stress * s * s + d * d)";
+                    refuted control_rate_21_without_23[left, m, d, s, r, c1, c2, c3, most]
+                        fails "d * d <= c2 * r * (c2 * r)";
+                    refuted control_rate_25_without_24[x, s, e, h, k, r, c1, c3, c4]
+                        fails "x <= (c1 + c3 + c4) * r";
                     refuted control_half_the_shape_constant[a, b, c, rho, sigma]
                         fails "diameter * diameter <= factor * sigma * area";
                 },

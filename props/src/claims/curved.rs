@@ -302,17 +302,17 @@ fn consistent<const N: usize>(draw: &Draw, (n, d): (i64, i64), weight: i32) -> V
     Verdict::Holds("an edge with contact and gap")
 }
 
-fn data() -> impl Strategy<Value = (Draw, (i64, i64))> {
+fn curved_bodies() -> impl Strategy<Value = (Draw, (i64, i64))> {
     (bodies(1).prop_map(|draw| draw.isotropic()), draws::positive())
 }
 
 /// The residual vanishes at the curved solution, for P1 (N = 3) or P2.
 pub fn residual_vanishes<const N: usize>(cases: u32) -> Outcome {
     let classes = ["an edge with contact and gap"];
-    draws::hold(cases, data(), &classes, |(draw, c)| consistent::<N>(draw, *c, 1))
+    draws::hold(cases, curved_bodies(), &classes, |(draw, c)| consistent::<N>(draw, *c, 1))
 }
 
 /// Without the contact term: the penalty-free method is not consistent.
 pub fn without_the_contact_term<const N: usize>() -> Outcome {
-    draws::reject(data(), |(draw, c)| consistent::<N>(draw, *c, 0))
+    draws::reject(curved_bodies(), |(draw, c)| consistent::<N>(draw, *c, 0))
 }

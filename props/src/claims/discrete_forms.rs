@@ -211,8 +211,8 @@ mod row {
                         fails "g[0] * d[0] + g[1] * d[1] == S::from(1)";
                 },
                 vec![
-                    exact!("the_loops_of_the_solver_over_rationals_are_the_definitions", in compare::loops => assembled::loops_over_rationals()).about(&["P_gamma, A_gamma", "(8)", "Lemma 3.1", "(12)"]),
-                    doubles!("gamma_of_the_solver_is_gamma0_times_the_diameter", in roots::gamma_is => assembled::gamma_by_the_diameter()).about(&["(7)"]),
+                    exact!("the_loops_of_the_solver_over_rationals_are_the_definitions", in compare::loops, draws 47 => assembled::loops_over_rationals()).about(&["P_gamma, A_gamma", "(8)", "Lemma 3.1", "(12)"]),
+                    doubles!("gamma_of_the_solver_is_gamma0_times_the_diameter", in roots::gamma_is, draws 80 => assembled::gamma_by_the_diameter()).about(&["(7)"]),
                     doubles!("control_gamma_by_the_length_of_the_edge", in roots::gamma_by_the_edge => assembled::gamma_by_the_edge()),
                     exact!("control_the_loops_of_the_solver_beside_other_definitions", in assembled::loops_beside_other_definitions => assembled::loops_beside_other_definitions()),
                 ],

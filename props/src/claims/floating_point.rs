@@ -176,7 +176,7 @@ mod row {
             id: "13",
             title: "What the computer's numbers keep",
             paper: "Nothing: it computes in R.",
-            limits: "That rounded operations enclose is drawn against rationals (`props/tests/program/balls.rs`), not proved over all doubles: no solver at hand decides it. One engine: rounding is a fact about doubles alone.",
+            limits: "That rounded operations enclose is drawn against rationals (`props/tests/program/balls.rs`), not proved over all doubles. One engine: rounding is a fact about doubles alone.",
             checks: model_checked(HARNESSES, &[]),
         }
     }

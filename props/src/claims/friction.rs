@@ -288,7 +288,7 @@ mod row {
             id: "27",
             title: "Friction",
             paper: "Nothing: it has sigma_t = 0 on Gamma_C.",
-            limits: "Integrals, which are tested (`props/tests/program/edges.rs`; over P2 edges beside a fine rule, in the kernel); existence and uniqueness, by Brouwer's and Banach's theorems (`docs/theory.md`, 13), which nothing here runs.",
+            limits: "Integrals, which are tested (`props/tests/program/edges.rs`, the kernel); existence and uniqueness, on paper (`docs/theory.md`, 13).",
             checks: [
                 statements! {
                     proved + tested tresca_is_one_equation[v, sigma, s, gamma]: "sticks", "slides", "neither holds";

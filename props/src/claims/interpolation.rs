@@ -162,21 +162,21 @@ pub fn checks() -> Vec<Check> {
                 fails "energy <= factor * (two * mu + two * part) * gradient";
         },
         vec![
-            exact!("estimate_22_holds_for_quadratics", in estimate_22 => {
+            exact!("estimate_22_holds_for_quadratics", in estimate_22, draws 1000 => {
             draws::hold(1000, draws_of(), &["always"], |draw| estimate_22(draw, (1, 1)))
         }).about(&["(22)-(24)"]),
             // Quadratics come nearer than four fifths of the constant.
         exact!("control_four_fifths_of_the_constant_of_22", at estimate_22 => {
             draws::reject(draws_of(), |draw| estimate_22(draw, (16, 25)))
         }),
-            exact!("the_trace_inequality_holds_for_affine_functions", in trace => {
+            exact!("the_trace_inequality_holds_for_affine_functions", in trace, draws 400 => {
             draws::hold(400, draws_of(), &["without the gradient", "with it"], |draw| trace(draw, 1))
         }).about(&["(22)-(24)"]),
             exact!("control_the_trace_without_the_gradient", at trace => {
             draws::reject(draws_of(), |draw| trace(draw, 0))
         }),
             // pi^2 > 9.8696
-        exact!("estimate_23_holds_for_polynomials", in estimate_23 => {
+        exact!("estimate_23_holds_for_polynomials", in estimate_23, draws 400 => {
             draws::hold(400, draws_of(), &["always"], |draw| estimate_23(draw, (98_696, 10_000)))
         }).about(&["(22)-(24)"]),
             // s (1 - s) has the quotient 10.

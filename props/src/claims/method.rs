@@ -196,8 +196,8 @@ mod row {
                     refuted control_edge_not_cut[p0, p1] fails "S::from(2) * (g0 + g1) == q[0] + q[1]";
                 },
                 vec![
-                    exact!("the_left_side_is_the_gradient_of_j_h_on_random_bodies", in gradient => gradients()).about(&["(8)"]),
-                    doubles!("the_loads_of_the_solver_are_near_their_definition", in compare::loads => assembled::loads_of_the_solver()).about(&["L"]),
+                    exact!("the_left_side_is_the_gradient_of_j_h_on_random_bodies", in gradient, draws 75 => gradients()).about(&["(8)"]),
+                    doubles!("the_loads_of_the_solver_are_near_their_definition", in compare::loads, draws 28 => assembled::loads_of_the_solver()).about(&["L"]),
                     exact!("control_theta_other_than_1", in other_theta => other_theta()),
                     doubles!("control_loads_of_the_solver_taken_wrong", in assembled::load_taken_wrong => assembled::load_taken_wrong()),
                 ],

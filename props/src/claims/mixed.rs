@@ -1,6 +1,6 @@
 //! Section 2.3: lambda^h = -(1/gamma) \[P(u^h)\]+ is a projection, (9) and (10), and method (8) as a mixed method.
 //!
-//! The set of the multipliers is printed as L^2(Gamma_C); it is the cone of the nonpositive functions in it.
+//! The set of the multipliers stands as L^2(Gamma_C) in the text that was read; it is the cone of the nonpositive functions in it.
 
 use signorini::kernel::ContactPoint;
 
@@ -258,11 +258,11 @@ mod row {
                         fails "nine(&point, zero, l) == zero && nine(&point, l + l, l) == zero";
                 },
                 vec![
-                    exact!("mixed_form_9_and_10_hold_on_random_bodies_for_p1", in mixed => mixed_p1()).about(&["(9)", "(10)", "the mixed problem"]),
+                    exact!("mixed_form_9_and_10_hold_on_random_bodies_for_p1", in mixed, draws 60 => mixed_p1()).about(&["(9)", "(10)", "the mixed problem"]),
                     exact!("sigma_n_of_a_discrete_solution_is_not_its_multiplier", in stress_beside_multiplier => Exact::scope(|| stress_beside_multiplier(Exact::ratio(1, 18)))).about(&["the mixed problem"]),
                     // The vertex on the floor.
                     exact!("control_sigma_n_is_the_multiplier_without_penetration", at stress_beside_multiplier => noticed(Exact::scope(|| stress_beside_multiplier(Exact::from(0))))),
-                    exact!("mixed_form_by_points_holds_on_random_bodies_for_p2", in mixed_by_points => mixed_p2()).about(&["the mixed problem"]),
+                    exact!("mixed_form_by_points_holds_on_random_bodies_for_p2", in mixed_by_points, draws 20 => mixed_p2()).about(&["the mixed problem"]),
                     exact!("control_sign_of_the_multiplier_turned", in sign_of_the_multiplier => sign_of_the_multiplier()),
                 ],
             ]

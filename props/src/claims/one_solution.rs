@@ -296,6 +296,16 @@ fn found_by_elimination() -> Outcome {
     })
 }
 
+/// The solver's result a millionth too large is not next to the solution.
+fn a_millionth_off() -> Outcome {
+    draws::reject(problems([1, 1], NARROW), |draw| {
+        of_solved(draw, P1, |d, u| {
+            let larger: Vec<[f64; 2]> = u.iter().map(|v| v.map(|c| 1.000_001 * c)).collect();
+            Certifier::new(d).one_solution(&exactly(&larger))
+        })
+    })
+}
+
 /// The triangle (0, 0), (3, 0), (0, 4) in contact at y = 0, all but (3, 0) clamped, lambda = mu = 1, with the body force
 /// (-1/2, 0), whose load is (-1, 0).
 ///
@@ -389,10 +399,11 @@ fn attained(constant: f64) -> Outcome {
 }
 
 /// The checks, for the row of Theorem 3.3.
-pub fn checks() -> [Check; 4] {
+pub fn checks() -> [Check; 5] {
     [
-        exact!("a_is_positive_definite_and_the_one_solution_is_found_by_elimination", in one_solution => found_by_elimination())
+        exact!("a_is_positive_definite_and_the_one_solution_is_found_by_elimination", in one_solution, draws 16 => found_by_elimination())
             .about(&["Theorem 3.3"]),
+        exact!("control_the_result_a_millionth_too_large", in a_millionth_off => a_millionth_off()),
         exact!("control_certificate_beyond_the_limit", in refused_beyond_the_limit => refused_beyond_the_limit()),
         doubles!("the_constant_of_12_is_attained", in attained => attained(1.0)).about(&["(12)"]),
         doubles!("control_the_constant_of_12_a_fiftieth_too_large", at attained => noticed(attained(1.02))),

@@ -255,7 +255,7 @@ pub fn claim() -> Claim {
         id: "18",
         title: "Bodies of revolution",
         paper: "Nothing: its integrals have the weight 1, here it is r.",
-        limits: "Isotropic laws, and so n = (1, 0); the sharp constant of P2, a root, is drawn by its determinant. Others are in `tests/suite/revolution.rs`.",
+        limits: "Isotropic laws, and so n = (1, 0); the sharp constant of P2, a root, is drawn by its determinant.",
         checks: statements! {
             proved the_weighted_trace_constant_of_p2_is_at_most_4[a, b, c, ra, rb, rc]
                 hints(|v| { let [a, b, c, ..] = take::<_, 6>(v); squared([a, b, c]).to_vec() });

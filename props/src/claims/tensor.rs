@@ -283,9 +283,9 @@ pub fn checks() -> Vec<Check> {
         proved + tested the_constant_of_any_tensor_is_attained[c11, c12, c16, c22, c26, c66, nx, ny, dx, dy, c]
             about "Lemma 3.2", "(11)";
         proved + tested no_direction_has_more_than_the_largest_eigenvalue[c11, c16, c66, dx, dy, r]
-            about "Lemma 3.2", "(11)" hints(|v| vec![v[3], v[4], across(take(&v[..5]))]) prepared(with_a_root);
+            hints(|v| vec![v[3], v[4], across(take(&v[..5]))]) prepared(with_a_root);
         proved + tested the_whole_traction_is_bounded_by_the_largest_eigenvalue[c11, c16, c66, dx, dy, energy, r]
-            about "Lemma 3.2", "(11)" prepared(with_a_root_at_the_end);
+            prepared(with_a_root_at_the_end);
         refuted control_lambda_plus_two_mu_of_the_nearest_law[l11, l21, l22, l31, l32, l33, xx, yy, xy]
             fails "yy * yy <= constant(&material) * form(c, eps, eps)";
         refuted control_half_the_trace_of_the_acoustic_tensor[l11, l21, l22, l31, l32, l33, xx, yy, xy]

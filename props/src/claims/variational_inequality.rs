@@ -68,7 +68,7 @@ mod row {
                     refuted control_sign_of_3_for_every_v[u_n, g, sigma_n, v_n] fails "s * (v - u) >= zero";
                 },
                 vec![
-                    exact!("inequality_3_holds_at_affine_solutions_on_random_bodies", in lemma_3_1::inequality_3 => inequality_3_at_affine_solutions()).about(&["(3)", "K"]),
+                    exact!("inequality_3_holds_at_affine_solutions_on_random_bodies", in lemma_3_1::inequality_3, draws 60 => inequality_3_at_affine_solutions()).about(&["(3)", "K"]),
                 ],
             ]
             .concat(),

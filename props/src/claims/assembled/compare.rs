@@ -11,6 +11,7 @@ use crate::bodies::{Definition, contact_class};
 use crate::discrete::Discrete;
 use crate::elimination::dot;
 use crate::ensure;
+use crate::naive::Hooke;
 use crate::numbers::{Exact, Magnitude};
 use crate::verdict::Verdict;
 
@@ -64,10 +65,6 @@ pub(crate) fn discretized<'a, const N: usize>(
 /// the ends of the contact edges, and where they need no root the left side of (8) and its derivative along a field. Nothing is
 /// rounded: the normal is a unit vector of rational numbers, another one than the edge has, for none of the sums depends on that.
 pub(super) fn loops<const N: usize>(draw: &Draw, mistake: Mistake) -> Verdict {
-    // lambda of plane stress is a quotient that doubles round.
-    if draw.stress && draw.tensor.is_none() {
-        return Verdict::Vacuous;
-    }
     let problem = draw.problem();
     let Some(d) = discretized::<N>(draw, &problem) else {
         return Verdict::Fails("the problem is refused");
@@ -75,6 +72,10 @@ pub(super) fn loops<const N: usize>(draw: &Draw, mistake: Mistake) -> Verdict {
     let Some(mut setting) = Setting::<Exact>::new::<N>(draw, &d) else {
         return Verdict::Fails("nodes and contact edges are those of the mesh");
     };
+    // lambda of plane stress is a quotient that doubles round: it is the solver's.
+    if let (true, Hooke::Isotropic { lambda, .. }) = (draw.stress, &mut setting.body.hooke) {
+        *lambda = Exact::of_double(d.problem.material.of(0).lambda());
+    }
     setting.plant(mistake);
     let n = [Exact::ratio(5, 13), Exact::ratio(-12, 13)];
     setting.body.contact.iter_mut().for_each(|side| side.n = n);

@@ -113,8 +113,8 @@ pub fn claim() -> Claim {
                 refuted control_smaller_trace_constant[a, b, c] fails "edge <= constant * triangle";
             },
             vec![
-                exact!("11_and_coercivity_hold_for_all_fields_for_p1", in coercive_for_all => coercive::<3>(30)).about(&["Lemma 3.2", "(11)"]),
-                exact!("11_and_coercivity_hold_for_all_fields_for_p2", in coercive_for_all => coercive::<6>(8)).about(&["Lemma 3.2", "(11)", "Remark 3.7"]),
+                exact!("11_and_coercivity_hold_for_all_fields_for_p1", in coercive_for_all, draws 30 => coercive::<3>(30)).about(&["Lemma 3.2", "(11)"]),
+                exact!("11_and_coercivity_hold_for_all_fields_for_p2", in coercive_for_all, draws 8 => coercive::<6>(8)).about(&["Lemma 3.2", "(11)", "Remark 3.7"]),
                 exact!("control_constant_one_percent_smaller", in smaller_constant => smaller_constant()),
                 exact!("control_the_nearest_isotropic_law_for_a_nnnn", in nearest_law => nearest_law()),
                 exact!("a_gamma_is_positive_on_a_triangle_below_its_limit", in positive_on_the_triangle => positive_on_the_triangle((1, 15))),

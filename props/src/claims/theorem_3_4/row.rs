@@ -45,7 +45,7 @@ pub fn claim() -> Claim {
         id: "11",
         title: "The abstract error estimate, with its constant",
         paper: "",
-        limits: "That computed errors obey the bound is tested (`tests/suite/convergence.rs`).",
+        limits: "",
         checks: [
             statements! {
                 proved + tested error_identity_holds_at_a_point[gamma, g, u, su, uh, sh, v, sv]: "pressed", "open"
