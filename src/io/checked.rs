@@ -195,16 +195,11 @@ fn gap(name: &str, contact: Option<&ContactLine>, shown: &QuantityFormat) -> Str
     let least = gaps.iter().min_by(|a, b| a.0.total_cmp(&b.0));
     let largest = gaps.iter().max_by(|a, b| a.0.total_cmp(&b.0));
     let (Some(&(least, at)), Some(&(largest, _))) = (least, largest) else { return String::new() };
-    let number = |gap| shown.number(gap, Measure::Length);
+    let [least, largest] = [least, largest].map(|gap| shown.number(gap, Measure::Length));
     if least == largest {
-        return format!(", initial gap {}", number(least));
+        return format!(", initial gap {least}");
     }
-    format!(
-        ", initial gap from {} at {} to {}",
-        number(least),
-        summary::vector(at),
-        number(largest)
-    )
+    format!(", initial gap from {least} at {} to {largest}", summary::vector(at))
 }
 
 #[cfg(test)]
