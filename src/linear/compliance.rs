@@ -92,6 +92,20 @@ impl Reach {
     }
 }
 
+/// G in the order of the functionals from its lower triangle in that of the walk, column by column; `places` lead from one to the other.
+fn in_order(walked: &[f64], places: &[usize]) -> Mat<f64> {
+    let q = places.len();
+    // Column by column: `Mat::from_fn` takes ten times the instructions.
+    let mut g = Mat::zeros(q, q);
+    for (j, &b) in places.iter().enumerate() {
+        let below = &walked[b * q..(b + 1) * q];
+        for (g, &a) in g.col_as_slice_mut(j).iter_mut().zip(places) {
+            *g = if a >= b { below[a] } else { walked[a * q + b] };
+        }
+    }
+    g
+}
+
 /// The place of each node of a forest in a walk that meets the children of a node before it, one subtree after the other.
 fn postorder(parent: &[Option<usize>]) -> Vec<usize> {
     // Parents have larger numbers than their children. A subtree's size is known when its root is met; places are then
@@ -211,14 +225,7 @@ impl<'a> Compliance<'a> {
                 Par::Seq,
             );
         }
-        // Column by column: `Mat::from_fn` takes ten times the instructions.
-        let mut g = Mat::zeros(q, q);
-        for (j, &b) in reach.places.iter().enumerate() {
-            let below = &walked[b * q..(b + 1) * q];
-            for (g, &a) in g.col_as_slice_mut(j).iter_mut().zip(&reach.places) {
-                *g = if a >= b { below[a] } else { walked[a * q + b] };
-            }
-        }
+        let g = in_order(&walked, &reach.places);
         Ok(Compliance { structure, reach, x, g })
     }
 

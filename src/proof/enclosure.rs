@@ -185,6 +185,25 @@ struct HeldByContact {
     factor: Option<Arc<Factor>>,
 }
 
+/// The factor with these springs: the one that is there, or a new one, to which the one `at_hand` is near.
+fn factored<'f>(
+    factor: &'f mut Option<Arc<Factor>>,
+    system: &System,
+    at_hand: &Option<Factored>,
+    springs: &[DMatrix<f64>],
+) -> Result<&'f mut Arc<Factor>, Unproved> {
+    match factor {
+        Some(factor) => Ok(factor),
+        None => {
+            let factored = system.factor(at_hand.clone(), springs.to_vec());
+            Ok(factor.insert(factored.map(|it| it.factor).map_err(|error| match error {
+                SolveError::NotPositiveDefinite => Unproved::NoFactor,
+                _ => Unproved::OutOfMemory,
+            })?))
+        }
+    }
+}
+
 impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
     /// The verifier of a system, with its own loads.
     pub fn new(system: &'s System<'d, 'p>, at_hand: Option<Factored>) -> Self {
@@ -367,16 +386,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         let coulomb = d.has_coulomb();
         let mut dual = Dual { norm: first, z: Vec::new(), left: first };
         if !(first <= negligible) || coulomb {
-            let factor = match factor {
-                Some(factor) => factor,
-                None => {
-                    let factored = system.factor(self.at_hand.clone(), springs.clone());
-                    factor.insert(factored.map(|it| it.factor).map_err(|error| match error {
-                        SolveError::NotPositiveDefinite => Unproved::NoFactor,
-                        _ => Unproved::OutOfMemory,
-                    })?)
-                }
-            };
+            let factor = factored(factor, system, &self.at_hand, springs)?;
             let lines = &self.lines;
             let product = Product { system, lines, pressed, arithmetic };
             // With Coulomb's friction every further digit of the norm widens the ball without another solution.
