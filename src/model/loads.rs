@@ -40,10 +40,7 @@ fn vanishes(load: &dyn Function) -> bool {
 /// # Errors
 /// [`DataError::NotFinite`] where a load has no value, and unknown boundary names.
 pub fn assemble(problem: &Problem, space: &Space) -> Result<Vec<[f64; 2]>, DataError> {
-    let mut load = vec![[0.0; 2]; space.nodes().len()];
-    let add = |force: Force| force.add_to(&force.shapes.in_doubles, &mut load);
-    each_force(problem, space, enough(tested(problem, space)), add)?;
-    Ok(load)
+    in_doubles(problem, space, enough(tested(problem, space)))
 }
 
 /// The degree of the test functions: shape functions, in a body of revolution times r.
@@ -60,9 +57,17 @@ pub fn assemble_with(
     space: &Space,
     points: impl Fn(&dyn Function) -> usize + Copy,
 ) -> Result<Vec<[f64; 2]>, DataError> {
+    in_doubles(problem, space, Rules { points, corners: false })
+}
+
+fn in_doubles(
+    problem: &Problem,
+    space: &Space,
+    rules: Rules<impl Fn(&dyn Function) -> usize + Copy>,
+) -> Result<Vec<[f64; 2]>, DataError> {
     let mut load = vec![[0.0; 2]; space.nodes().len()];
     let add = |force: Force| force.add_to(&force.shapes.in_doubles, &mut load);
-    each_force(problem, space, Rules { points, corners: false }, add)?;
+    each_force(problem, space, rules, add)?;
     Ok(load)
 }
 
@@ -127,7 +132,6 @@ pub(crate) fn assemble_twice(problem: &Problem, space: &Space) -> Result<LoadVec
 }
 
 /// The shape functions at a point of a triangle or an edge.
-#[derive(Clone)]
 struct Shapes {
     in_doubles: Vec<f64>,
     in_balls: Vec<PreciseBall>,
@@ -331,7 +335,6 @@ fn each_body_force(
     mut add: impl FnMut(Force, [f64; 2]),
 ) -> Result<(), DataError> {
     let mut wrong = None;
-    let shapes_at = |l| Shapes::inside(space.degree(), l);
     let mut act = |nodes: &[usize], x: [f64; 2], weight: f64, shapes: &Shapes| match checked(
         f.at(x),
         x,
@@ -340,26 +343,26 @@ fn each_body_force(
         Ok(f) => add(Force { c, value: weight * f, nodes, shapes }, x),
         Err(error) => wrong = wrong.take().or(Some(error)),
     };
-    // The same on every triangle that is not cut.
-    let known: Vec<(Option<[f64; 3]>, Shapes)> = match rule {
+    match rule {
         BodyRule::Corners => {
-            (0..3).map(|k| (None, Shapes::for_corner(space.degree(), k))).collect()
-        }
-        BodyRule::Points(rule) => rule.plain().map(|l| (Some(l), shapes_at(l))).collect(),
-    };
-    for t in triangles {
-        let (nodes, triangle) = (space.nodes_of(t), space.mesh().triangle(t));
-        match rule {
-            BodyRule::Corners => {
+            let shapes = [0, 1, 2].map(|k| Shapes::for_corner(space.degree(), k));
+            for t in triangles {
+                let triangle = space.mesh().triangle(t);
                 let weight = triangle.double_area().abs() / 6.0;
-                for (&x, (_, shapes)) in triangle.vertices.iter().zip(&known) {
-                    act(nodes, x.into(), weight, shapes);
+                for (&x, shapes) in triangle.vertices.iter().zip(&shapes) {
+                    act(space.nodes_of(t), x.into(), weight, shapes);
                 }
             }
-            BodyRule::Points(rule) => {
-                let mut expected = known.iter();
+        }
+        BodyRule::Points(rule) => {
+            let shapes_at = |l| Shapes::inside(space.degree(), l);
+            // The same on every triangle that is not cut.
+            let known: Vec<([f64; 3], Shapes)> = rule.plain().map(|l| (l, shapes_at(l))).collect();
+            for t in triangles {
+                let (nodes, mut expected) = (space.nodes_of(t), known.iter());
+                let triangle = space.mesh().triangle(t);
                 rule.on_triangle(&triangle, |l, x, weight| match expected.next() {
-                    Some((at, shapes)) if *at == Some(l) => act(nodes, x, weight, shapes),
+                    Some((at, shapes)) if *at == l => act(nodes, x, weight, shapes),
                     _ => act(nodes, x, weight, &shapes_at(l)),
                 });
             }
