@@ -378,7 +378,7 @@ mod tests {
         }
     }
 
-    /// Of a ring that widens as a whole, where only hoops are strained.
+    /// Widens a ring as a whole, so that hoops alone are strained.
     #[test]
     fn the_energy_of_hoops_in_doubles_is_within_what_is_said_of_its_rounding() {
         let cells = Rectangle { width: 1.0, height: 1.0, nx: 4, ny: 4, diagonal: Diagonal::Right };

@@ -304,7 +304,7 @@ impl Mixing {
         self.steps.last().map_or(0.0, |step| norm(&Self::change(step)))
     }
 
-    /// What changes of the bound: what pulls is no bound.
+    /// The change of the bound, for which tension counts as none.
     fn change([before, after]: &[Vec<[f64; 3]>; 2]) -> Vec<f64> {
         let pairs = before.as_flattened().iter().zip(after.as_flattened());
         pairs.map(|(b, a)| a.max(0.0) - b.max(0.0)).collect()

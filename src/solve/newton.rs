@@ -77,7 +77,7 @@ pub struct Until {
 /// line search cut the step short or found no decrease: the step has not been made, and the iterate is as far off as before.
 ///
 /// # Errors
-/// Those of [`Body::step`].
+/// As [`Body::step`].
 pub fn minimise(
     edges: &impl ContactEnergy,
     body: &mut impl Body,
