@@ -245,8 +245,9 @@ fn between([low, high]: [f64; 2]) -> String {
     let digits =
         if distance > 0.0 { (2.0 - distance.log10()).ceil().clamp(4.0, 12.0) } else { 4.0 };
     let digits = digits as i32;
+    // Adding 0.0 spares the reader a -0.
     let [low, high] = [(low, -0.5), (high, 0.5)].map(|(end, half)| {
-        numbers::short(end + half * 10_f64.powi(1 - digits) * end.abs(), digits as usize)
+        numbers::short(end + half * 10_f64.powi(1 - digits) * end.abs() + 0.0, digits as usize)
     });
     format!("between {low} and {high}")
 }
