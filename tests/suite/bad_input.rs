@@ -399,6 +399,22 @@ fn lists_that_are_no_mesh_are_refused_by_number_and_boundaries_run_in_either_dir
     ]);
 }
 
+#[test]
+fn nodes_have_as_many_parameters_as_their_entity_has_dimensions_and_none_in_a_volume() {
+    let mesh = |last: &str| {
+        format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"bottom\"\n1 2 \"top\"\n2 3 \"body\"\n$EndPhysicalNames\n\
+             $ParametricNodes\n4\n1 0 0 0 0 1\n2 1 0 0 1 1 0.5\n3 1 1 0 2 1 0.1 0.2\n4 0 1 0 {last}\n$EndParametricNodes\n\
+             $Elements\n4\n1 1 2 1 1 1 2\n2 1 2 2 2 3 4\n3 2 2 3 3 1 2 3\n4 2 2 3 3 1 3 4\n$EndElements\n"
+        )
+    };
+    let about = |last: &str| message_of_mesh("parametric", mesh(last).as_bytes());
+    assert_eq!(about("3 1"), "nothing: the case was read");
+    for missing in ["1 1", "2 1 0.5"] {
+        assert!(about(missing).contains("expected a parameter of a node"), "{missing}");
+    }
+}
+
 /// Two blocks with a side that has no condition yet.
 const BLOCKS: &str = r#"
 mesh.gmsh = "blocks.msh"
