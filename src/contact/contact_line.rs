@@ -543,3 +543,36 @@ pub(crate) fn bulge_of(f: &SharedFunction, ends: [[f64; 2]; 2]) -> f64 {
     let is_affine = f.degree().is_some_and(|degree| degree <= 1);
     if is_affine { 0.0 } else { f.at(middle) - (f.at(a) + f.at(b)) / 2.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+
+    #[test]
+    fn coefficients_and_slip_bounds_are_finite_and_not_negative() {
+        let ends = [[0.0, 0.0], [1.0, 0.0]];
+        let law = |friction: Friction| law_of(&friction, ends, || "it".to_owned());
+        for mu in [0.0, 0.3, 1e300] {
+            let bound = Law::Friction(Bound::Coulomb(mu));
+            assert!(law(Friction::Coulomb(mu)).is_ok_and(|law| law == bound), "{mu}");
+        }
+        for mu in [-0.1, f64::INFINITY, f64::NAN, -f64::INFINITY] {
+            let refused = law(Friction::Coulomb(mu));
+            assert!(matches!(refused, Err(DataError::Value { .. })), "{mu}: {refused:?}");
+        }
+        let tresca = |at: [f64; 2]| {
+            law(Friction::Tresca(Arc::new(move |[x, _]: [f64; 2]| at[0] + (at[1] - at[0]) * x)))
+        };
+        let bound = Law::Friction(Bound::Tresca([0.5, 0.25]));
+        assert!(tresca([0.5, 0.25]).is_ok_and(|law| law == bound));
+        let refused = tresca([0.5, -0.25]);
+        let place = matches!(
+            refused,
+            Err(DataError::NegativeFriction { value: -0.25, x: 1.0, y: 0.0, .. })
+        );
+        assert!(place, "{refused:?}");
+        assert!(matches!(tresca([f64::INFINITY, 0.0]), Err(DataError::NotFinite { .. })));
+    }
+}

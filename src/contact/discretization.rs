@@ -301,3 +301,68 @@ fn rounding_of_directions(constraints: &Constraints, space: &Space, contact: &[P
 fn norm_1(v: Vector2<f64>) -> f64 {
     v[0].abs() + v[1].abs()
 }
+
+#[cfg(test)]
+mod tests {
+    use approx::{assert_abs_diff_eq, assert_relative_eq};
+
+    use super::*;
+    use crate::contact::EdgeRule;
+    use crate::kernel::{Material, Plane};
+    use crate::model::{Condition, Mesh, Problem};
+
+    /// Two triangles between these corners, the first side `bottom` and so on.
+    fn square(corners: [[f64; 2]; 4], plane: Plane) -> Problem {
+        let named = ["bottom", "right", "top", "left"].into_iter().enumerate();
+        let named = named.map(|(k, name)| (name.to_owned(), vec![[k, (k + 1) % 4]]));
+        let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]], named).unwrap();
+        Problem::of(mesh, Material::lame(1.0, 1.0, plane))
+            .with("bottom", Condition::contact(|_| 0.0))
+    }
+
+    fn discretized(problem: &Problem) -> Discretization<'_> {
+        Discretization::new(problem, Degree::One, |c| c.limit() / 2.0, EdgeRule::Exact).unwrap()
+    }
+
+    #[test]
+    fn forces_on_a_roller_are_free_along_it_and_held_across() {
+        // Standing on a corner: rollers on the two upper sides.
+        let on_corner = [[0.0, 0.0], [1.0, 1.0], [0.0, 2.0], [-1.0, 1.0]];
+        let problem = square(on_corner, Plane::Strain)
+            .with("right", Condition::roller())
+            .with("top", Condition::roller());
+        let d = discretized(&problem);
+        let norm = |node: usize, force: [f64; 2]| {
+            let mut all = vec![[0.0; 2]; 4];
+            all[node] = force;
+            d.free_norm(&all)
+        };
+        // The normals of right and top are (1, 1) and (-1, 1), times the root of 1/2.
+        assert_abs_diff_eq!(norm(1, [3.0, 3.0]), 0.0, epsilon = 1e-14);
+        assert_relative_eq!(norm(1, [3.0, -3.0]), 18.0_f64.sqrt());
+        assert_abs_diff_eq!(norm(3, [-3.0, 3.0]), 0.0, epsilon = 1e-14);
+        assert_relative_eq!(norm(3, [3.0, 3.0]), 18.0_f64.sqrt());
+        assert_eq!(norm(2, [3.0, 4.0]), 0.0);
+        assert_eq!(norm(0, [3.0, 4.0]), 5.0);
+    }
+
+    #[test]
+    fn a_ring_that_moves_off_the_axis_as_a_whole_is_strained_along_its_hoops() {
+        let problem = square([[1.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0]], Plane::Axisymmetric)
+            .with("top", Condition::Displacement([None, Some(Arc::new(|_| 0.0))]));
+        let d = discretized(&problem);
+        // Moved by the same to the bit, and by hardly another amount at one node.
+        let [same, other] =
+            [[[1.0, 0.5]; 4], [[1.0 + 1e-9, 0.5], [1.0, 0.5], [1.0, 0.5], [1.0, 0.5]]];
+        let [forces, near] = [same, other].map(|u| d.internal_forces(&u));
+        assert!(forces.energy > 1.0);
+        assert_relative_eq!(forces.energy, near.energy, max_relative = 1e-8);
+        for (f, g) in forces.values.as_flattened().iter().zip(near.values.as_flattened()) {
+            assert_abs_diff_eq!(f, g, epsilon = 1e-8);
+        }
+        let work: f64 = forces.values.iter().map(|[r, z]| r + 0.5 * z).sum();
+        assert_relative_eq!(work, forces.energy, max_relative = 1e-14);
+        // The control: along the axis it moves without strain.
+        assert_eq!(d.internal_forces(&[[0.0, 0.5]; 4]).energy, 0.0);
+    }
+}

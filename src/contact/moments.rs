@@ -360,6 +360,42 @@ mod tests {
     }
 
     #[test]
+    fn what_is_missed_between_two_roots_counts_with_its_radius() {
+        // P = (1 + d) (2 s - 1)^2 - d is below zero on a stretch as long as the root of d, where doubles see no root.
+        let (d, r) = (1e-17_f64, 1e12);
+        let p = [1.0, 1.0, -d].map(PreciseBall::from);
+        let radii = Some([PreciseBall::from(r); 2]);
+        let moments = moments(&EdgeRule::Exact, Degree::Two, radii, &p);
+        let sum = moments.into_iter().fold(PreciseBall::from(0), |sum, moment| sum + moment);
+        let third = PreciseBall::from(1) / PreciseBall::from(3);
+        let whole = third - PreciseBall::from(2) * third * PreciseBall::from(d);
+        let off = sum - PreciseBall::from(r) * whole;
+        // The integral of [-P]+, to its first digits.
+        let missed = r * 2.0 / 3.0 * d * d.sqrt();
+        assert!(off.lower() <= 0.999 * missed && off.upper() >= 1.001 * missed, "{off:?}");
+        // The control: the centre is farther off than the rounding of the rest.
+        assert!(off.head().abs() < missed / 2.0 && missed > 1e-15, "{off:?}");
+    }
+
+    #[test]
+    fn the_largest_of_a_parabola_is_no_value_less_and_hardly_more() {
+        for p in values() {
+            let parabola = Parabola::new(Degree::Two, &p.map(PreciseBall::from));
+            let size = p.iter().fold(1e-200, |m: f64, p| m.max(p.abs()));
+            for (sign, a, b) in [(1, 0.0, 1.0), (-1, 0.0, 1.0), (1, 0.25, 0.75), (-1, 0.5, 1.0)] {
+                let at = |k: i32| {
+                    f64::from(sign)
+                        * parabola.at((a + (b - a) * f64::from(k) / 256.0).into()).head()
+                };
+                let most = (0..=256).map(at).fold(f64::NEG_INFINITY, f64::max);
+                let found = parabola.largest(sign, a.into(), b.into());
+                assert!(most <= found + 1e-15 * size, "{p:?}: {found} is below {most}");
+                assert!(found <= most + 1e-3 * size, "{p:?}: {found} is far above {most}");
+            }
+        }
+    }
+
+    #[test]
     fn control_a_wrong_cut_costs_width() {
         // Positive on the left of 1/2, cut at 0.6: the part between is integrated with the wrong sign, and counted.
         let parabola = Parabola::new(Degree::One, &[0.5, -0.5].map(PreciseBall::from));

@@ -87,3 +87,24 @@ pub fn exactly<S: Scalar + From<f64>>(t: Triangle<f64>) -> Triangle<S> {
     };
     Triangle { vertices: t.vertices.map(|x| x.zip_map(&first, moved)) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sides_that_doubles_round_are_exact() {
+        let [a, b, c] = [[0.1, 1e8], [1e8, 0.1], [1e8, 1e8]];
+        let t = Triangle { vertices: [a, b, c].map(Vector2::from) };
+        let moved: Triangle<DoubleDouble> = exactly(t);
+        for (vertex, at) in moved.vertices.iter().zip([a, b, c]) {
+            for i in 0..2 {
+                let off = vertex[i] + DoubleDouble::from(a[i]) - DoubleDouble::from(at[i]);
+                assert_eq!(off.head(), 0.0);
+            }
+        }
+        // The control: a double does not hold them.
+        let rounded = DoubleDouble::from(b[0] - a[0]) + DoubleDouble::from(a[0]);
+        assert_ne!((rounded - DoubleDouble::from(b[0])).head(), 0.0);
+    }
+}

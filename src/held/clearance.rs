@@ -64,7 +64,8 @@ impl Slides {
             let none = rounding * lengths.fold(0.0, |m: f64, [x, y]| m.max(x.hypot(y)));
             let coefficients = degree.bernstein(p);
             // No step towards an edge with a positive coefficient where P itself is not positive.
-            let open = *idle || coefficients.iter().all(|p| *p <= 0.0);
+            let is_clear = coefficients.iter().all(|p| *p <= 0.0);
+            let open = is_clear || (*idle && degree.maximum(p) > 0.0);
             let jumps: Vec<Vec<f64>> =
                 basis.iter().map(|b| degree.bernstein(&edge.jumps(b))).collect();
             for (a, coefficient) in coefficients.into_iter().enumerate() {

@@ -171,3 +171,32 @@ fn key(name: &str) -> String {
 fn string(text: &str) -> String {
     quote::in_json(&serde_json::Value::from(text).to_string())
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+
+    #[test]
+    fn each_surface_has_a_material_where_no_triangle_is_left_out_or_in_two() {
+        let square = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let headers = |surfaces: &[(&str, &[usize])]| {
+            let mesh = Mesh::new(square.clone(), vec![[0, 1, 2], [0, 2, 3]], []).unwrap();
+            let named = surfaces.iter().map(|(name, of)| ((*name).to_owned(), of.to_vec()));
+            let mesh = mesh.with_names(named.collect(), BTreeMap::new()).unwrap();
+            let mut text = String::new();
+            materials(&mesh, &mut text);
+            text.lines().filter(|line| line.starts_with('[')).collect::<Vec<_>>().join(" ")
+        };
+        assert_eq!(headers(&[("a", &[0]), ("b", &[1])]), "[material.a] [material.b]");
+        for surfaces in [
+            &[("a", &[0][..]), ("all", &[0, 1])][..],
+            &[("a", &[0]), ("b", &[])],
+            &[("all", &[0, 1])],
+            &[],
+        ] {
+            assert_eq!(headers(surfaces), "[material]", "{surfaces:?}");
+        }
+    }
+}

@@ -76,6 +76,19 @@ mod tests {
     }
 
     #[test]
+    fn a_number_above_is_not_below_and_off_by_a_digit_at_most() {
+        for k in 1..500 {
+            let x = f64::from(k) * 0.777 * 10_f64.powi(k % 11 - 5);
+            for digits in [1, 2, 3] {
+                let found: f64 = above(x, digits).parse().unwrap();
+                let digit = 10_f64.powi(1 - digits as i32);
+                assert!(x <= found && found <= x * (1.0 + digit), "{x}: {found}");
+            }
+        }
+        assert_eq!(above(0.0, 2), "0");
+    }
+
+    #[test]
     fn ticks_are_round_and_inside() {
         let texts =
             |min, max| ticks(min, max).into_iter().map(|(_, text)| text).collect::<Vec<_>>();

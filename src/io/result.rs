@@ -645,6 +645,25 @@ pub(super) mod tests {
     }
 
     #[test]
+    fn places_that_a_result_does_not_say_are_not_made_up() {
+        let mut value = serde_json::to_value(everything()).unwrap();
+        let part = value["contact"][0].as_object_mut().unwrap();
+        for key in ["peak_at", "penetration", "penetration_at"] {
+            assert!(part.remove(key).is_some(), "{key}");
+        }
+        let results: Results = serde_json::from_value(value).unwrap();
+        let part = &results.contact[0];
+        let unknown = [part.peak_at, part.penetration_at, [part.penetration; 2]];
+        assert!(unknown.as_flattened().iter().all(|number| number.is_nan()));
+        let said = |results: &Results| crate::io::summary::solved(results, &[], true);
+        let is_there = |said: String| ["kN/cm^2 at (2.71", "penetration"].map(|w| said.contains(w));
+        assert_eq!(
+            [is_there(said(&results)), is_there(said(&everything()))],
+            [[false; 2], [true; 2]]
+        );
+    }
+
+    #[test]
     fn a_nan_or_an_infinity_is_refused_by_its_path() {
         type Spoil = fn(&mut Results);
         let spoils: [(Spoil, &str); 5] = [

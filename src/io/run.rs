@@ -68,7 +68,8 @@ pub fn solve(
         let of_solve = |phase| watcher(Stage::Solve(phase));
         let course = Course::default().watched_by(&of_solve);
         let course = start.map_or(course, |start| course.from_displacement(&start.displacement));
-        let solved = solve_along(&case.problem, &case.method, &case.settings, course)?;
+        let solved = solve_along(&case.problem, &case.method, &case.settings, course)
+            .map_err(|error| error.of_thickness(case.thickness.unwrap_or(1.0)))?;
         let mut solved = Solved::from(solved);
         if case.asks_for_certificate() {
             watcher(Stage::Certify(0));
@@ -78,7 +79,14 @@ pub fn solve(
     };
     let goal = (target, force.as_deref());
     let how = (&case.method, &case.settings);
-    let (problem, adapted) = adapt::adapt_to(case.problem, how, goal, &case.asked, watcher)?;
+    let thickness = case.thickness.unwrap_or(1.0);
+    let (problem, adapted) = adapt::adapt_to(case.problem, how, goal, &case.asked, watcher)
+        .map_err(|error| match error {
+            AdaptError::Solve { level, error } => {
+                AdaptError::Solve { level, error: error.of_thickness(thickness) }
+            }
+            other => other,
+        })?;
     case.problem = problem;
     let adaptation = Adaptation {
         target: target.relative,

@@ -245,8 +245,9 @@ fn between([low, high]: [f64; 2]) -> String {
     let digits =
         if distance > 0.0 { (2.0 - distance.log10()).ceil().clamp(4.0, 12.0) } else { 4.0 };
     let digits = digits as i32;
+    // Adding 0.0 spares the reader a -0.
     let [low, high] = [(low, -0.5), (high, 0.5)].map(|(end, half)| {
-        numbers::short(end + half * 10_f64.powi(1 - digits) * end.abs(), digits as usize)
+        numbers::short(end + half * 10_f64.powi(1 - digits) * end.abs() + 0.0, digits as usize)
     });
     format!("between {low} and {high}")
 }
@@ -580,7 +581,7 @@ fn distance(certificate: &ContinuousCertificate, lines: &mut Lines) {
         proved(certificate.rigorous, certificate.reason.as_deref(), certificate.problem.as_deref());
     lines.line("error", format!("energy error at most {as_it_is}: {proved}"));
     if as_it_is != pushed_out {
-        let of = "for the displacement pushed out of the obstacle, as in certificate.json";
+        let of = "for the displacement pushed out of the obstacle, which a certificate is about";
         lines.line("", format!("at most {pushed_out} {of}"));
     }
 }
@@ -714,7 +715,7 @@ mod tests {
         "displacement: up to 0.173 cm",
         "remark: the body can still move along (0.6, 0.8), from -0.151 cm to 0.157 cm: no support and no obstacle that it presses on stops it. One displacement of many is shown, the smallest; in reality friction would decide",
         "error: energy error at most 2.7 % of the energy norm: proved",
-        ": at most 5.4 % of the energy norm for the displacement pushed out of the obstacle, as in certificate.json",
+        ": at most 5.4 % of the energy norm for the displacement pushed out of the obstacle, which a certificate is about",
         "adapted: target 6.6 % met; 2 levels: 6.8 % 5.4 %",
         "errors: energy 7.19, H1 7.27, L2 7.33, contact pressure 7.39, normal stress 7.43",
         "mesh: 103 P1 triangles, 202 unknowns, 107 contact edges, h = 0.109",

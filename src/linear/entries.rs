@@ -18,9 +18,14 @@ pub(super) enum Entries {
 }
 
 impl Entries {
+    /// The bytes of so many.
+    pub(super) fn bytes(count: usize) -> usize {
+        size_of::<f64>() * count
+    }
+
     /// So many zeros; `None` if there is no memory for them.
     pub(super) fn zeros(count: usize) -> Option<Self> {
-        let bytes = size_of::<f64>() * count;
+        let bytes = Entries::bytes(count);
         if bytes < LONG {
             return Some(Entries::Short(vec![0.0; count]));
         }
@@ -70,6 +75,7 @@ mod tests {
             assert_eq!(matches!(entries, Entries::Long(_)), long);
             assert!(entries.len() == count && entries.iter().all(|entry| *entry == 0.0));
             entries.fill(2.5);
+            assert_eq!(Entries::bytes(count), size_of_val(&entries[..]));
             let copy = entries.copied().unwrap();
             entries.fill(1.0);
             assert!(copy.len() == count && copy.iter().all(|entry| *entry == 2.5));

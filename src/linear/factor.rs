@@ -141,7 +141,7 @@ impl Factor {
     pub fn with(structure: &Arc<Structure>, matrix: &LowerTriangle) -> Result<Self, SolveError> {
         let scratch = numeric::scratch_bytes(structure);
         let entries = structure.stored_entries();
-        let bytes = (8 * entries + scratch + BESIDE * structure.size()) as u64;
+        let bytes = (Entries::bytes(entries) + scratch + BESIDE * structure.size()) as u64;
         memory::check(bytes)?;
         let mut values = Entries::zeros(entries).ok_or(SolveError::OutOfMemory { bytes })?;
         numeric::factorise(structure, matrix, &mut values, |_| true)?;
@@ -167,7 +167,7 @@ impl Factor {
                 stale[structure.supernode_of(row)] = true;
             }
         }
-        let bytes = 8 * structure.stored_entries() as u64;
+        let bytes = Entries::bytes(structure.stored_entries()) as u64;
         memory::check(bytes)?;
         let mut values = match Arc::try_unwrap(self) {
             Ok(own) => own.values,

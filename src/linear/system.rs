@@ -294,18 +294,32 @@ mod tests {
     use crate::kernel::{Material, Plane};
     use crate::model::{Condition, Degree, Mesh, Problem};
 
-    /// A body between r = 1 and r = 2, as long as 3; `moved` as far as that.
-    fn norm_if_strained(plane: Plane, moved: f64) -> f64 {
+    /// A body between r = 1 and r = 2, as long as 3, with a body force.
+    fn with_system<T>(plane: Plane, load: f64, f: impl FnOnce(&System) -> T) -> T {
         let vertices = vec![[1.0, 0.0], [2.0, 0.0], [2.0, 3.0], [1.0, 3.0]];
         let named = [("bottom", [0, 1]), ("top", [2, 3])];
         let named = named.map(|(name, edge)| (name.to_owned(), vec![edge]));
         let mesh = Mesh::new(vertices, vec![[0, 1, 2], [0, 2, 3]], named).unwrap();
         let problem = Problem::of(mesh, Material::lame(1.0, 1.0, plane))
             .with("top", Condition::clamped())
-            .with("bottom", Condition::contact(|_| 0.0));
+            .with("bottom", Condition::contact(|_| 0.0))
+            .with_body_force(|_| 0.0, move |_| load);
         let rule = EdgeRule::Exact;
         let d = Discretization::new(&problem, Degree::One, |c| c.limit() / 2.0, rule).unwrap();
-        System::new(&d).unwrap().norm_if_strained(&[[0.0, moved]; 4])
+        f(&System::new(&d).unwrap())
+    }
+
+    #[test]
+    fn the_size_of_a_displacement_is_its_norm_unless_no_load_acts_and_all_of_that_is_rounding() {
+        let moved = [[0.0, 0.3]; 4];
+        let [at_rest, loaded] = [0.0, 1.0].map(|load| {
+            with_system(Plane::Strain, load, |system| {
+                [0.25, 1e-3, 1e-30].map(|norm| system.size(norm, &moved))
+            })
+        });
+        assert_eq!(loaded, [0.25, 1e-3, 1e-30]);
+        assert_eq!(at_rest[..2], [0.25, 1e-3]);
+        assert!(at_rest[2] > 1e-3, "{at_rest:?}");
     }
 
     #[test]
@@ -317,7 +331,8 @@ mod tests {
             for (moved, strain) in [(0.03, 0.01), (6.0, 1.0)] {
                 let k = strain * 2.0_f64.sqrt();
                 let energy = k * k * weight;
-                let found = norm_if_strained(plane, moved);
+                let found =
+                    with_system(plane, 0.0, |system| system.norm_if_strained(&[[0.0, moved]; 4]));
                 assert_relative_eq!(found, energy.sqrt(), max_relative = 1e-14);
             }
         }

@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 use super::solution::{Quantities, Solution};
 use super::{ContactBoundary, EnergyBalance};
 use crate::kernel::ball::up;
+use crate::proof::enclosure::Enclosure;
 use crate::proof::intervals::{Intervals, Range};
 
 /// By what the results of the whole are larger.
@@ -74,15 +75,20 @@ pub(super) fn of_the_whole(mut s: Solution) -> Solution {
     s.quantities.reaction_moments.values_mut().for_each(|moment| *moment = 0.0);
     s.boundaries.iter_mut().for_each(|part| part.moment = 0.0);
     if let Ok(enclosure) = &mut s.enclosure {
-        // Both are roots of energies.
-        for norm in [&mut enclosure.radius, &mut enclosure.pressure] {
-            *norm = up(*norm * TAU.sqrt());
-        }
-        enclosure.if_strained *= TAU.sqrt();
-        let product = |range, factor: f64| if factor == 1.0 { range } else { times(range) };
-        whole.intervals(&mut enclosure.intervals, product);
+        enclosed(enclosure, &whole);
     }
     s
+}
+
+/// The same of where the exact solution is.
+fn enclosed(enclosure: &mut Enclosure, whole: &Times) {
+    // All three are roots of energies.
+    for norm in [&mut enclosure.radius, &mut enclosure.pressure] {
+        *norm = up(*norm * TAU.sqrt());
+    }
+    enclosure.if_strained *= TAU.sqrt();
+    let product = |range, factor: f64| if factor == 1.0 { range } else { times(range) };
+    whole.intervals(&mut enclosure.intervals, product);
 }
 
 /// 2 pi times an interval, rounded outwards: the double is off by less than half a unit.
@@ -94,6 +100,38 @@ fn times([low, high]: Range) -> Range {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn norms_of_the_whole_are_those_of_a_radian_times_one_root() {
+        let interval = [1.0, 2.0];
+        let mut enclosure = Enclosure {
+            kappa: 0.5,
+            radius: 1e-9,
+            relative: Some(1e-8),
+            hardly_strains: false,
+            if_strained: 3.0,
+            pressure: 2e-9,
+            nodes: vec![1e-10],
+            intervals: Intervals {
+                energy: interval,
+                max_displacement: interval,
+                contact: Vec::new(),
+                reactions: [("top".to_owned(), [interval; 2])].into(),
+            },
+            isolation: None,
+        };
+        enclosed(&mut enclosure, &Times { force: [1.0, TAU], all: TAU });
+        let root = TAU.sqrt();
+        let norms = [enclosure.radius, enclosure.pressure, enclosure.if_strained];
+        for (norm, before) in norms.into_iter().zip([1e-9, 2e-9, 3.0]) {
+            assert!(norm >= root * before && norm <= root * before * (1.0 + 1e-14), "{norm}");
+        }
+        // What is relative, and lengths, are the same.
+        assert_eq!((enclosure.relative, &enclosure.nodes[..]), (Some(1e-8), &[1e-10][..]));
+        let Intervals { energy, max_displacement, reactions, .. } = enclosure.intervals;
+        assert_eq!((energy, max_displacement), (times(interval), interval));
+        assert_eq!(reactions["top"], [interval, times(interval)]);
+    }
 
     #[test]
     fn an_interval_of_the_whole_contains_twice_pi_of_that_of_a_radian() {

@@ -427,6 +427,26 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_solve_ends_by_what_is_known_of_it() {
+        let settings = Settings { tolerance: 1e-10, max_iterations: 3, proof: 1e-6 };
+        let status = |radius, residual, steps: usize, condition| {
+            // A residual before the first step and one after each.
+            let residuals = vec![1.0; steps + 1];
+            Outcome { residuals, condition, ..outcome(radius, residual) }.status(&settings)
+        };
+        assert_eq!(status(None, 1e-10, 1, 1.0), Ok(Status::Converged));
+        assert_eq!(status(Some(1e-6), 1e-9, 1, 1e17), Ok(Status::ConvergedToRounding));
+        let is_out_of_steps = |end| matches!(end, Err(SolveError::NotConverged { residuals, .. }) if residuals.len() == 4);
+        let is_rounding = |end| matches!(end, Err(SolveError::IllConditioned { .. }));
+        assert!(is_out_of_steps(status(None, 1e-9, 3, 1e3)));
+        assert!(is_out_of_steps(status(Some(1e-5), 1e-9, 3, 1e3)));
+        assert!(is_rounding(status(None, 1e-9, 3, 1e17)));
+        assert!(is_rounding(status(None, 1e-9, 2, 1e3)));
+        let singular = Outcome { enclosure: Err(Unproved::NoFactor), ..outcome(None, 1.0) };
+        assert_eq!(singular.status(&settings), Err(SolveError::Singular));
+    }
+
     /// Where it ends there are thirds, which doubles round, and it moves nothing.
     struct Thirds;
 

@@ -80,6 +80,15 @@ pub fn history(residuals: &[f64]) -> String {
 }
 
 impl SolveError {
+    /// The error of a body of this thickness, from that per unit of thickness.
+    #[must_use]
+    pub(crate) fn of_thickness(mut self, thickness: f64) -> Self {
+        if let SolveError::Data(DataError::RigidMotion { drive: Some(drive), .. }) = &mut self {
+            *drive *= thickness;
+        }
+        self
+    }
+
     /// Returns whether the case is wrong. Otherwise it is right, but there is no solution of it here.
     pub fn is_wrong_case(&self) -> bool {
         match self {
@@ -93,6 +102,34 @@ impl SolveError {
             | SolveError::NoFrictionSolution { .. }
             | SolveError::OutsidePattern(_)
             | SolveError::OutOfMemory { .. } => false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_machine_or_the_method_lacks_is_no_wrong_case() {
+        let lack = OutOfMemory { needed: 1 << 40, available: None };
+        let edge = [[0.0; 2], [1.0, 0.0]];
+        let residuals = vec![1.0, 0.1];
+        for (error, is_wrong) in [
+            (SolveError::Data(DataError::NoContact), true),
+            (SolveError::Data(DataError::Mesh(MeshError::Empty)), true),
+            (SolveError::NotCoercive { gamma0: 1.0, kappa: 2.0, limit: 0.5, edge }, true),
+            (SolveError::Data(DataError::Mesh(MeshError::OutOfMemory(lack.clone()))), false),
+            (SolveError::from(lack), false),
+            (SolveError::NotPositiveDefinite, false),
+            (SolveError::NotConverged { residual: 0.1, residuals, tolerance: 1e-10 }, false),
+            (SolveError::IllConditioned { condition: 1e17, forward_error: 1.0 }, false),
+            (SolveError::Singular, false),
+            (SolveError::OutOfRange, false),
+            (SolveError::NoFrictionSolution { residual: 0.1, factorizations: 3 }, false),
+            (SolveError::OutsidePattern(OutsidePattern { row: 1, column: 2 }), false),
+        ] {
+            assert_eq!(error.is_wrong_case(), is_wrong, "{error}");
         }
     }
 }

@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 
 use signorini::io::{Case, gmsh};
 use signorini::model::Mesh;
+use signorini::solve::check;
+
+use super::common::root;
 
 pub const CASE: &str = r#"title = "Block"
 [mesh]
@@ -394,4 +397,75 @@ fn lists_that_are_no_mesh_are_refused_by_number_and_boundaries_run_in_either_dir
             "no boundary named 'a'; this mesh has: none (in Gmsh a Physical Curve is one, in a case file where = \"abs(y) < 1e-9\" makes one)",
         ),
     ]);
+}
+
+#[test]
+fn nodes_have_as_many_parameters_as_their_entity_has_dimensions_and_none_in_a_volume() {
+    let mesh = |last: &str| {
+        format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"bottom\"\n1 2 \"top\"\n2 3 \"body\"\n$EndPhysicalNames\n\
+             $ParametricNodes\n4\n1 0 0 0 0 1\n2 1 0 0 1 1 0.5\n3 1 1 0 2 1 0.1 0.2\n4 0 1 0 {last}\n$EndParametricNodes\n\
+             $Elements\n4\n1 1 2 1 1 1 2\n2 1 2 2 2 3 4\n3 2 2 3 3 1 2 3\n4 2 2 3 3 1 3 4\n$EndElements\n"
+        )
+    };
+    let about = |last: &str| message_of_mesh("parametric", mesh(last).as_bytes());
+    assert_eq!(about("3 1"), "nothing: the case was read");
+    for missing in ["1 1", "2 1 0.5"] {
+        assert!(about(missing).contains("expected a parameter of a node"), "{missing}");
+    }
+}
+
+/// Two blocks with a side that has no condition yet.
+const BLOCKS: &str = r#"
+mesh.gmsh = "blocks.msh"
+material.lower = { young = 1, poisson = 0.3 }
+material.upper = { young = 3, poisson = 0.2 }
+boundary.base.displacement = [0, 0]
+boundary.top.displacement = ["0", "-0.01"]
+[[pair]]
+boundaries = ["table", "foot"]
+"#;
+
+#[test]
+fn what_has_no_value_is_named_by_its_own_key() {
+    let file = root().join("tests/recorded/blocks.toml");
+    let about = |settings: &[&str]| {
+        let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
+        let case = Case::parse(&file, BLOCKS, &settings).unwrap();
+        check(&case.problem, &case.method).err().map_or(String::new(), |error| error.to_string())
+    };
+    assert_eq!(about(&[]), "");
+    // Beside another key of the kind that has a value: the wrong one must not be called.
+    for (settings, what) in [
+        (&["load.body=['1/(x - x)', 1]"][..], "[load] body[0]"),
+        (&["load.body=[1, '1/(x - x)']"], "[load] body[1]"),
+        (&["load.upper.body=[1, '1/(x - x)']", "load.body=[1, 1]"], "[load.upper] body[1]"),
+        (&["boundary.flank.traction=['1/(x - x)', 1]"], "[boundary.flank] traction[0]"),
+        (&["boundary.flank.traction=[1, '1/(x - x)']"], "[boundary.flank] traction[1]"),
+        (&["boundary.flank.pressure='1/(x - x)'"], "[boundary.flank] pressure"),
+        (&["boundary.flank.displacement=['1/(x - x)', 1]"], "[boundary.flank] displacement[0]"),
+        (
+            &["boundary.flank.displacement=['free', '1/(x - x)']"],
+            "[boundary.flank] displacement[1]",
+        ),
+        (&["boundary.flank={normal='1/(x - x)', tangential=1}"], "[boundary.flank] normal"),
+        (&["boundary.flank={normal=1, tangential='1/(x - x)'}"], "[boundary.flank] tangential"),
+        (&["boundary.flank.contact.gap='1/(x - x)'"], "[boundary.flank] contact.gap"),
+        (
+            &["boundary.flank.contact={gap=1, friction.tresca='1/(x - x)'}"],
+            "[boundary.flank] contact.friction.tresca",
+        ),
+        (
+            &["boundary.flank.contact.obstacle='wall'", "obstacle.wall.distance='1/(x - x)'"],
+            "[obstacle.wall]",
+        ),
+        (&["pair.0.clearance='1/(x - x)'"], "the clearance between 'table' and 'foot'"),
+        (
+            &["pair.0.friction.tresca='1/(x - x)'"],
+            "the slip bound of the pair of 'table' and 'foot'",
+        ),
+    ] {
+        let message = about(settings);
+        assert!(message.starts_with(&format!("{what} is ")), "{settings:?}: {message}");
+    }
 }

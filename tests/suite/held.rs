@@ -7,7 +7,7 @@ use signorini::kernel::{Material, Plane};
 use signorini::linear::system::System;
 use signorini::model::Degree;
 use signorini::model::{
-    Condition, DataError, Diagonal, Mesh, Obstacle, PointSupport, Problem, Side, Space,
+    Condition, DataError, Diagonal, Mesh, Obstacle, PointSupport, Problem, Rectangle, Side, Space,
 };
 use signorini::results::{RouteName, Solution};
 use signorini::solve::accuracy::Outcome;
@@ -209,6 +209,19 @@ fn a_block_between_walls_that_it_does_not_touch_is_where_its_displacement_is_lea
             assert!(s.enclosure.is_ok(), "{:?}", s.enclosure.err());
         }
     }
+}
+
+#[test]
+fn a_bulge_of_a_wall_that_is_not_touched_moves_no_body() {
+    // One edge of P2 along the wall: P is negative there, and Bernstein's coefficient of its middle positive.
+    let mesh = Rectangle { width: 1.0, height: 1.0, nx: 2, ny: 1, diagonal: Diagonal::Right };
+    let gap = |[_, y]: [f64; 2]| 0.001 + 0.4 * (y - 0.5).powi(2);
+    let parts = vec![("bottom", Condition::contact(|_| 0.0)), ("left", Condition::contact(gap))];
+    let s = solved(&block_under(mesh.mesh().unwrap(), [0.0, -0.001], parts), Degree::Two);
+    assert!(s.displacement.iter().all(|u| u[0].abs() < 1e-3), "{:?}", s.displacement);
+    let [play] = s.plays[..] else { panic!("{:?}", s.plays) };
+    assert!(play.least.is_some_and(|least| (-1e-3..=0.0).contains(&least)), "{play:?}");
+    assert_eq!(play.most, None);
 }
 
 #[test]

@@ -32,6 +32,7 @@ mod pairs;
 mod parts;
 mod patch;
 mod peaks;
+mod printed;
 mod properties;
 mod quantities;
 mod recorded;

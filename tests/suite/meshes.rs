@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use approx::abs_diff_eq;
 use signorini::io::{Case, gmsh};
-use signorini::model::{Diagonal, Rectangle};
+use signorini::model::{Diagonal, Mesh, Rectangle};
 use signorini::solve::solve;
 
 /// How the boundaries of a mesh are named.
@@ -319,4 +319,19 @@ fn a_side_of_a_rectangle_without_cells_is_named() {
         let error = rectangle.mesh().unwrap_err().to_string();
         assert!(error.starts_with(said), "{error}");
     }
+}
+
+#[test]
+fn an_edge_that_is_listed_twice_is_one_edge_of_its_boundary() {
+    let square = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let mesh = |edges: Vec<[usize; 2]>| {
+        let named = [("all round".to_owned(), edges)];
+        Mesh::new(square.clone(), vec![[0, 1, 2], [0, 2, 3]], named).unwrap()
+    };
+    let once = vec![[0, 1], [1, 2], [2, 3]];
+    let again = vec![[0, 1], [1, 2], [0, 1], [2, 3], [2, 1], [3, 2]];
+    let [once, again] =
+        [once, again].map(|edges| mesh(edges).edges_of("all round").unwrap().to_vec());
+    assert_eq!(once.len(), 3);
+    assert_eq!(once, again);
 }

@@ -262,6 +262,9 @@ fn what_only_the_other_engine_or_only_this_one_can_do_is_refused() {
         let output = signorini(&folder, &[&["solve", "case.toml"], arguments].concat());
         assert_eq!(ended(&output), (Some(2), message));
     }
+    let output = signorini(&folder, &["solve", "-", "--engine", "fenicsx"]);
+    let message = "error: -: the engine fenicsx reads the case file itself; expected its name\n";
+    assert_eq!(ended(&output), (Some(2), message));
 }
 
 #[test]

@@ -15,6 +15,7 @@ use signorini::model::material::{
     Across, Orthotropic, eigenvalues, least_eigenvalue, stable, stable_orthotropic,
 };
 use signorini::model::{Condition, Diagonal, Mesh, Obstacle, Problem};
+use signorini::nalgebra::Matrix2;
 use signorini::results::{Solution, Verdict};
 use signorini::solve::{Settings, solve};
 use study::Ladder;
@@ -243,4 +244,28 @@ fn cases_have_the_materials_that_they_say() {
     // Control: another angle.
     let other = read(&WOOD.replace("angle = 30", "angle = 31"));
     assert_ne!(other.problem.material, case.problem.material);
+}
+
+#[test]
+fn a_hoop_strain_acts_on_a_tensor_as_its_law_says_and_by_a_symmetric_one() {
+    let [c, a, e] = [&[7.0, 2.0, 1.0, 5.0, -1.0, 3.0][..], &[0.25, 0.5, -0.125], &[4.0]];
+    let c: [f64; 6] = std::array::from_fn(|k| c[k]);
+    let material = Material::tensor(c, Some([a[0], a[1], a[2]])).of_revolution(e[0]);
+    // The strains e_rr, e_zz, gamma and that of the hoop, one at a time; the stresses that go with them.
+    let columns: [[f64; 4]; 4] = std::array::from_fn(|k| {
+        let unit: [f64; 4] = std::array::from_fn(|i| f64::from(u8::from(i == k)));
+        let gradient = Matrix2::new(unit[0], unit[2], 0.0, unit[1]);
+        let (stress, hoop) = material.stress_of_revolution(gradient, unit[3]);
+        let [rr, zz, rz] = stress.components();
+        [rr, zz, rz, hoop]
+    });
+    let [c11, c12, c16, c22, c26, c66] = c;
+    let rows = [[c11, c12, c16], [c12, c22, c26], [c16, c26, c66]];
+    let of_hoop = rows.map(|row| row[0] * a[0] + row[1] * a[1] + row[2] * a[2]);
+    for i in 0..3 {
+        assert_eq!(columns[i][..3], rows[i]);
+        assert_eq!([columns[3][i], columns[i][3]], [of_hoop[i]; 2]);
+    }
+    let own: f64 = of_hoop.iter().zip(a).map(|(stress, factor)| stress * factor).sum();
+    assert_eq!(columns[3][3], own + e[0]);
 }

@@ -162,3 +162,41 @@ impl MeshError {
         self
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_number_of_an_error_is_that_of_the_file_and_places_stay() {
+        let (x, y) = (0.5, 0.25);
+        // With numbers that no vertex has in common with a triangle, and what they are in the file.
+        let all = |v: [usize; 3], t: [usize; 2]| {
+            let ([vertex, w, _], [triangle, _]) = (v, t);
+            let two = [vertex, w];
+            let near = [[x, y], [y, x]];
+            [
+                MeshError::NotFinite { vertex, x, y },
+                MeshError::Unused { vertex, x, y },
+                MeshError::JoinedAtVertex { vertex, x, y },
+                MeshError::NoSuchVertex { triangle, vertex: 99, count: 9 },
+                MeshError::Clockwise { triangle, vertices: v, area: x },
+                MeshError::Flat { triangle, vertices: v, area: x, diameter: y },
+                MeshError::Duplicate { vertices: two, x, y },
+                MeshError::Overlap { triangles: t, vertices: two },
+                MeshError::Overlapping { triangles: t, x, y },
+                MeshError::Bodies { triangles: t, x, y, overlap: true, pair: None },
+                MeshError::Near { vertices: two, places: near, distance: x, local: y, merge: 1e-3 },
+                MeshError::Hanging { vertex, x, y, edge: [v[1], v[2]], triangle, off: 0.0 },
+                MeshError::NoCells { name: "nx", value: 0 },
+            ]
+        };
+        let here = all([1, 2, 3], [7, 8]);
+        let in_file = all([101, 102, 103], [1007, 1008]);
+        for (here, in_file) in here.into_iter().zip(in_file) {
+            let found = here.clone().renumbered(|v| v + 100, |t| t + 1000);
+            assert_eq!(found, in_file);
+            assert_eq!(found.to_string() == here.to_string(), found == here, "{found}");
+        }
+    }
+}
