@@ -10,7 +10,6 @@ use signorini::certificates::forces::Evidence;
 use signorini::certificates::{Continuous, certify, certify_field};
 use signorini::io::certificate::{self, Header};
 use signorini::io::run;
-use signorini::kernel::Ball;
 
 use crate::common::{case, case_of, encoded};
 
@@ -109,12 +108,12 @@ fn the_corner_that_a_triangle_is_numbered_from_does_not_matter() {
                 piece.edges.rotate_left(1);
                 piece.body.rotate_left(1);
             }
-            let turned = certificate.evaluate::<Ball>().unwrap();
+            let turned = certificate.prove().unwrap();
             assert_relative_eq!(turned.bound, proof.bound, max_relative = 1e-9);
         }
         // Control: another body force at the same corners.
         certificate.pieces.iter_mut().for_each(|piece| piece.body.rotate_left(1));
-        let other = certificate.evaluate::<Ball>().unwrap();
+        let other = certificate.prove().unwrap();
         assert!((other.bound / proof.bound - 1.0).abs() > 1e-6);
     }
 }
