@@ -15,7 +15,7 @@ use approx::abs_diff_eq;
 use signorini::certificates::binding::compare;
 use signorini::certificates::forces::Evidence;
 use signorini::certificates::format::{self, Refused};
-use signorini::certificates::proof::{Claim, Rejection};
+use signorini::certificates::proof::{Claim, Rejection, Role};
 use signorini::certificates::{Certificate, Continuous, Proof, certify};
 use signorini::io::certificate::{Header, decode, hash};
 use signorini::io::{Case, run};
@@ -217,16 +217,17 @@ impl Honest {
             }
             Err(error) => error,
         };
-        let kind = match &error {
-            Refused::Rejected(Rejection::Share { .. }) => "share",
-            Refused::Rejected(Rejection::Bound { .. }) => "bound",
-            Refused::Rejected(Rejection::Force { .. }) => "force",
+        let (kind, place) = match &error {
+            Refused::Rejected(Rejection::Share { triangle, .. }) => ("share", *triangle),
+            Refused::Rejected(Rejection::Bound { .. }) => ("bound", 0),
+            Refused::Rejected(Rejection::Force { force, .. }) => ("force", *force),
             _ => return words(&error.to_string()),
         };
         let (certificate, Claim { forces, .. }) = decode(header, bytes).unwrap();
         let proof = certificate.prove().unwrap();
         let bound = certificate.with_lifts(proof.bound);
         let (text, mut number) = self.of_case((&certificate, &forces), &proof, bound);
+        number += place as f64;
         let mut found = BTreeSet::new();
         let mut failed = |error: String| found.insert(format!("; {}", words(&error).0));
         match certificate.prove_forces(&forces) {
@@ -505,4 +506,30 @@ fn what_is_forged_is_answered_as_was_recorded() {
     let key = "vertices 0 nan: rejected: vertex : a number is not finite";
     recorded.remove(key).unwrap();
     assert_eq!(changed(&recorded, &answers).len(), 2, "control");
+}
+
+/// The lower body first: the upper one, whose pressures are held by it, needs no more than it does.
+#[test]
+fn of_bodies_that_slide_on_each_other_each_has_one_support() {
+    fs::create_dir_all(folder()).unwrap();
+    fs::write(folder().join("flat-2.msh"), two_bodies(2, false)).unwrap();
+    let text = r#"
+mesh.gmsh = "flat-N.msh"
+material = { young = 1, poisson = 0.3 }
+boundary.base.normal = 0
+boundary.top.pressure = "0.1 + 0.02*x"
+[[pair]]
+boundaries = ["foot", "table"]
+"#;
+    let (_, certified) = certified(read(text, 2, 1));
+    assert!(certified.proof.stop < 1e-10 && certified.relative < 1.0, "{certified:?}");
+    // Control: a force along them that no rounding leaves is taken by no support.
+    let mut pushed = certified.certificate;
+    for edge in &mut pushed.edges {
+        if let Role::Pressed(pressure) = edge.role {
+            let turned = pressure.map(|p| [1e-6 * p, -p]);
+            edge.role = Role::Loaded(turned);
+        }
+    }
+    assert!(matches!(pushed.prove(), Err(Rejection::Unbalanced(_))), "{:?}", pushed.prove());
 }
