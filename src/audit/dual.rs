@@ -176,6 +176,12 @@ fn in_doubles(vectors: [Vector2<Ball>; 2]) -> ([Vector2<f64>; 2], f64) {
     (values, off)
 }
 
+/// The work on a gap of a traction on an edge that is as much as `off` at each of its ends, with 20 times the integrals of the gap with
+/// the hat functions of these.
+fn work_of(off: Ball, [at_start, at_end]: [Ball; 2]) -> Ball {
+    (off * at_start + off * at_end) / Ball::from(20)
+}
+
 impl<S: Enclosing> Forces<'_, S> {
     /// Verifies that this is a pair, whose tractions balance on every triangle to the rounding of doubles, and bounds those that
     /// make up for the rest.
@@ -274,7 +280,7 @@ impl<S: Enclosing> Forces<'_, S> {
             let at_end = g[0] + g[1] * two + g[2] * three + g[3] * four;
             middle -= (r[0] * at_start + r[1] * at_end) / S::from(20);
             let off = Ball::around(0.0, pair.off[e]);
-            beside += (off * at_start.ball() + off * at_end.ball()) / Ball::from(20);
+            beside += work_of(off, [at_start, at_end].map(S::ball));
             for k in 0..2 {
                 let r = (r[k].ball() + off) / length;
                 most[0] = most[0].max(ratio(-r.lower(), -pressure[k]));
@@ -302,5 +308,33 @@ impl<S: Enclosing> Forces<'_, S> {
             if ends[1].is_nan() { f64::INFINITY } else { ends[1] },
         ];
         Ok(ByPair { between, shares, factors })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn doubles_are_off_by_the_largest_radius_of_them() {
+        for place in 0..4 {
+            let radius = |k: usize| if k == place { 0.25 } else { 0.125 };
+            let vectors = [0, 2].map(|k| {
+                let x = [k, k + 1].map(|k| Ball::around(k as f64, radius(k)));
+                Vector2::from(x)
+            });
+            let (values, off) = in_doubles(vectors);
+            assert_eq!(values.map(<[f64; 2]>::from), [[0.0, 1.0], [2.0, 3.0]]);
+            assert_eq!(off, 0.25, "{place}");
+        }
+    }
+
+    /// A gap that is 3 at the start and 1 at the end has the integrals 7/6 and 5/6 with the hat functions.
+    #[test]
+    fn what_tractions_are_off_does_work_on_both_ends_of_a_gap() {
+        let at_ends = [7.0, 5.0].map(|x| Ball::point(20.0 * x / 6.0));
+        let found = work_of(Ball::around(0.0, 0.5), at_ends);
+        // Both together are 2, the mean of the gap.
+        assert!((found.upper() - 1.0).abs() < 1e-12 && (found.lower() + 1.0).abs() < 1e-12);
     }
 }

@@ -356,6 +356,17 @@ impl Certificate {
         Ok(targets.zip(found).map(nearest).collect())
     }
 
+    /// [`Certificate::forces`] in [balls](Ball), compiled with the checker.
+    ///
+    /// # Errors
+    /// As [`Certificate::forces`].
+    pub fn prove_forces(
+        &self,
+        evidence: &Evidence,
+    ) -> Result<Vec<Result<[f64; 2], WrongLifting>>, WrongPair> {
+        self.forces::<Ball>(evidence)
+    }
+
     /// Verifies that what is said of forces is what their data give.
     pub(crate) fn check_forces(
         &self,

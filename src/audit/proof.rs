@@ -95,6 +95,14 @@ impl Certificate {
         self.sum(&state)
     }
 
+    /// [`Certificate::evaluate`] in [balls](Ball), compiled with the checker.
+    ///
+    /// # Errors
+    /// As [`Certificate::evaluate`].
+    pub fn prove(&self) -> Result<Proof, Rejection> {
+        self.evaluate::<Ball>()
+    }
+
     /// [`Certificate::evaluate`] in [balls](Ball), and more than a proof needs: that the certificate is as it was
     /// made. Its tractions balance on every triangle to the rounding of doubles, its shares are the very numbers that
     /// its data give, the bound is no smaller, and forces lie between what they are said to.

@@ -862,11 +862,10 @@ const LEAST_PART: f64 = 0.15;
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_pressure_that_ends_near_the_middle_of_an_edge_ends_there_and_pulls_nowhere() {
+    /// Of the edge with the places from 0 to 1, where 1e-3 is one place.
+    fn contact(parts: Vec<Part>) -> Contact {
         let edge = BoundaryEdge { triangle: 0, local: 0 };
-        let part = |ends, pressure| Part { ends, pressure, shear: [0.0; 2] };
-        let contact = |at: f64| Contact {
+        Contact {
             edge,
             boundary: "short".into(),
             // Beside an edge that is a thousand times as long.
@@ -878,8 +877,39 @@ mod tests {
             gap_bulge: 0.0,
             law: Law::Contact,
             offset: ([0.0; 2], 0.0),
-            parts: vec![part([0.0, at], [-1.0, 0.0]), part([at, 1.0], [0.0; 2])],
+            parts,
+        }
+    }
+
+    fn part(ends: [f64; 2], pressure: [f64; 2]) -> Part {
+        Part { ends, pressure, shear: [0.0; 2] }
+    }
+
+    #[test]
+    fn a_part_that_is_no_longer_than_one_place_has_what_its_neighbour_has() {
+        let joined = |ends: [f64; 4]| {
+            let pressures = [[-1.0, -2.0], [-3.0, -4.0], [-5.0, -6.0]];
+            let of = |k: usize| part([ends[k], ends[k + 1]], pressures[k]);
+            let mut contact = contact((0..3).map(of).collect());
+            contact.join_slivers();
+            contact.parts.iter().map(|part| (part.ends, part.pressure)).collect::<Vec<_>>()
         };
+        let (first, last) = ([-1.0, -2.0], [-5.0, -6.0]);
+        // The first one, one between, the last one.
+        let found = joined([0.0, 1e-4, 0.5, 1.0]);
+        assert_eq!(found, [([0.0, 0.5], [-3.0, -4.0]), ([0.5, 1.0], last)]);
+        let found = joined([0.0, 0.5, 0.5001, 1.0]);
+        assert_eq!(found, [([0.0, 0.5001], first), ([0.5001, 1.0], last)]);
+        let found = joined([0.0, 0.5, 0.9999, 1.0]);
+        assert_eq!(found, [([0.0, 0.5], first), ([0.5, 1.0], [-3.0, -4.0])]);
+        // Control: parts that are longer.
+        assert_eq!(joined([0.0, 0.3, 0.302, 1.0]).len(), 3);
+    }
+
+    #[test]
+    fn a_pressure_that_ends_near_the_middle_of_an_edge_ends_there_and_pulls_nowhere() {
+        let contact =
+            |at: f64| contact(vec![part([0.0, at], [-1.0, 0.0]), part([at, 1.0], [0.0; 2])]);
         for at in [0.4995, 0.5, 0.5005] {
             assert_eq!(contact(at).tractions_between(0, [0.0, 0.5])[0], [-1.0, 0.0]);
             assert_eq!(contact(at).tractions_between(0, [0.5, 1.0])[0], [0.0; 2]);

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use approx::{abs_diff_eq, assert_relative_eq};
 use signorini::certificates::binding::compare;
 use signorini::certificates::forces::Evidence;
-use signorini::certificates::{Continuous, certify, certify_field};
+use signorini::certificates::proof::{Claim, Role};
+use signorini::certificates::{Continuous, Rejection, certify, certify_field};
 use signorini::io::certificate::{self, Header};
 use signorini::io::run;
-use signorini::kernel::Ball;
 
 use crate::common::{case, case_of, encoded};
 
@@ -109,12 +109,12 @@ fn the_corner_that_a_triangle_is_numbered_from_does_not_matter() {
                 piece.edges.rotate_left(1);
                 piece.body.rotate_left(1);
             }
-            let turned = certificate.evaluate::<Ball>().unwrap();
+            let turned = certificate.prove().unwrap();
             assert_relative_eq!(turned.bound, proof.bound, max_relative = 1e-9);
         }
         // Control: another body force at the same corners.
         certificate.pieces.iter_mut().for_each(|piece| piece.body.rotate_left(1));
-        let other = certificate.evaluate::<Ball>().unwrap();
+        let other = certificate.prove().unwrap();
         assert!((other.bound / proof.bound - 1.0).abs() > 1e-6);
     }
 }
@@ -227,6 +227,74 @@ fn what_is_measured_by_quadrature_is_measured_again_for_a_case() {
             assert!(found.to_string().contains(difference), "{found}");
         }
     }
+}
+
+#[test]
+fn what_is_measured_is_compared_to_nine_digits() {
+    let whole = certified(CURVED_DATA, &[]).certificate;
+    let found = |by: f64| {
+        let mut of_loads = whole.clone();
+        of_loads.pieces[7].oscillation *= 1.0 - by;
+        let mut of_lifts = whole.clone();
+        of_lifts.lifts[0].norm *= 1.0 - by;
+        [of_loads, of_lifts].map(|certificate| {
+            compare(case_of(CURVED_DATA, &[]).problem, &certificate, &Evidence::default()).is_ok()
+        })
+    };
+    assert_eq!(found(5e-10), [true; 2]);
+    assert_eq!(found(2e-9), [false; 2]);
+}
+
+/// d twice as long, and p half of that: the same traction.
+#[test]
+fn directions_are_from_half_as_long_as_a_unit_to_twice_that() {
+    let whole = certified(OBLIQUE, &[]).certificate;
+    let found = |by: f64| {
+        let mut other = whole.clone();
+        for edge in &mut other.edges {
+            if let Role::Supported { along, force, .. } = &mut edge.role {
+                *along = along.map(|d| d * by);
+                *force = force.map(|p| p / by);
+            }
+        }
+        other.frames.values_mut().for_each(|d| *d = d.map(|d| d * by));
+        other.prove().map(|proof| proof.bound)
+    };
+    for (inside, outside) in [(1.999, 2.001), (0.501, 0.499)] {
+        assert_relative_eq!(found(inside).unwrap(), found(1.0).unwrap(), max_relative = 1e-9);
+        let refused = found(outside);
+        assert!(
+            matches!(refused, Err(Rejection::Wrong { what: "edge" | "point", .. })),
+            "{outside}"
+        );
+    }
+}
+
+/// Moved by a part of the forces on its edges: 128 units of the last digit are allowed, and those of rounding are a few.
+#[test]
+fn a_triangle_may_be_out_of_balance_by_128_units_of_its_forces() {
+    let honest = certified(OBLIQUE, &[]);
+    let Continuous { certificate, proof, .. } = honest;
+    let is_inner = |role: &Role| matches!(role, Role::Inner(_));
+    let e = certificate.edges.iter().position(|edge| is_inner(&edge.role)).unwrap();
+    let balances = |units: f64| {
+        let mut moved = certificate.clone();
+        let mut least = f64::INFINITY;
+        for piece in certificate.pieces.iter().filter(|piece| piece.edges.contains(&e)) {
+            let forces = piece.edges.map(|e| match certificate.edges[e].role {
+                Role::Inner(f) | Role::Held(_, f) => f.as_flattened().iter().map(|f| f.abs()).sum(),
+                _ => f64::NAN,
+            });
+            least = least.min(forces.iter().sum());
+        }
+        if let Role::Inner(force) = &mut moved.edges[e].role {
+            force.iter_mut().for_each(|f| f[0] += units * f64::EPSILON * least);
+        }
+        let claim = Claim { shares: proof.shares.clone(), bound: 1.0, forces: Evidence::default() };
+        !matches!(moved.audit(&claim), Err(Rejection::OutOfBalance { .. }))
+    };
+    assert!(balances(0.0) && balances(96.0));
+    assert!(!balances(192.0));
 }
 
 #[test]

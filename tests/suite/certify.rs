@@ -19,7 +19,7 @@ use signorini::certificates::{Continuous, Rejection, certify, certify_field};
 use signorini::io::Case;
 use signorini::io::certificate::{self, Header};
 use signorini::io::result::ContinuousCertificate;
-use signorini::kernel::{Ball, Material, Plane};
+use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
 use signorini::model::{Condition, Obstacle, PointSupport, Problem, SharedFunction, Side};
 use signorini::results::Solution;
@@ -301,7 +301,7 @@ fn the_cases_have_certificates_and_say_what_they_prove() {
 fn the_normal_as_a_direction_is_the_normal() {
     let (problem, solution) = block(8);
     let mut certificate = certify(&problem, &solution).unwrap().certificate;
-    let along_the_normal = certificate.evaluate::<Ball>().unwrap().bound;
+    let along_the_normal = certificate.prove().unwrap().bound;
     for edge in &mut certificate.edges {
         if let Role::Contact { along, .. } = &mut edge.role {
             *along = Some([[0.0, -1.0]; 2]);
@@ -313,7 +313,7 @@ fn the_normal_as_a_direction_is_the_normal() {
             }
         }
     }
-    let along_a_direction = certificate.evaluate::<Ball>().unwrap().bound;
+    let along_a_direction = certificate.prove().unwrap().bound;
     assert_relative_eq!(along_a_direction, along_the_normal, max_relative = 1e-11);
     // Control: in another direction the same tractions have no friction to balance them, or v goes through.
     for edge in &mut certificate.edges {
@@ -321,7 +321,7 @@ fn the_normal_as_a_direction_is_the_normal() {
             *along = Some([[0.6, -0.8]; 2]);
         }
     }
-    let other = certificate.evaluate::<Ball>().map(|proof| proof.bound);
+    let other = certificate.prove().map(|proof| proof.bound);
     assert!(other.as_ref().map_or(true, |&bound| bound > 1.5 * along_the_normal), "{other:?}");
 }
 
@@ -380,7 +380,7 @@ fn v_is_put_on_the_curved_obstacle_that_it_presses() {
 fn balls_intervals_and_doubles_agree_to_rounding() {
     let (problem, solution) = block(8);
     let certificate = certify(&problem, &solution).unwrap().certificate;
-    let proved = certificate.evaluate::<Ball>().unwrap().bound;
+    let proved = certificate.prove().unwrap().bound;
     let quick = certificate.evaluate::<f64>().unwrap().bound;
     assert!(quick <= proved && proved <= (1.0 + 1e-9) * quick, "{quick} {proved}");
 }
@@ -404,7 +404,7 @@ fn control_without_the_contact_term_there_would_be_no_bound() {
     let certified = raised_floor(d);
     let error = 2.0_f64.sqrt() * d;
     let mut certificate = certified.certificate;
-    let with_the_floor = certificate.evaluate::<Ball>().unwrap();
+    let with_the_floor = certificate.prove().unwrap();
     // What is left when the contact term is dropped: nothing, though u is far away.
     // (but for the root of the margin by which v is kept off the floor, 1e-11).
     assert!(with_the_floor.bound < 1e-4, "{}", with_the_floor.bound);
@@ -413,7 +413,7 @@ fn control_without_the_contact_term_there_would_be_no_bound() {
             *gap = [0.0; 2];
         }
     }
-    let without = certificate.evaluate::<Ball>().unwrap();
+    let without = certificate.prove().unwrap();
     let effectivity = without.bound / error;
     assert!((1.0..1.5).contains(&effectivity), "{effectivity}");
 }
@@ -424,7 +424,7 @@ fn control_a_wrong_load_is_seen_by_the_bound() {
     let certified = certify(&problem, &solution).unwrap();
     let mut certificate = certified.certificate;
     certificate.pieces.iter_mut().for_each(|piece| piece.body.iter_mut().for_each(|f| f[1] *= 4.0));
-    let bound = certificate.evaluate::<Ball>().unwrap().bound;
+    let bound = certificate.prove().unwrap().bound;
     assert!(bound > 3.0 * certified.bound, "{bound} {}", certified.bound);
 }
 
@@ -474,7 +474,7 @@ fn an_oscillation_below_zero_is_refused() {
     let with = |oscillation: f64| {
         let mut certificate = certificate.clone();
         certificate.pieces[0].oscillation = oscillation;
-        certificate.evaluate::<Ball>()
+        certificate.prove()
     };
     assert!(with(1e-3).is_ok());
     for oscillation in [-1e-3, -f64::MIN_POSITIVE, f64::INFINITY, f64::NAN] {
@@ -506,7 +506,7 @@ fn a_couple_on_an_edge_leaves_its_triangles_out_of_balance() {
             }
         }
         // Who tampers can compute shares and bound, too.
-        let proof = certificate.evaluate::<Ball>().unwrap();
+        let proof = certificate.prove().unwrap();
         let (bound, forces) = (2.0 * proof.bound, Evidence::default());
         certificate.audit(&Claim { shares: proof.shares, bound, forces })
     };
@@ -739,7 +739,7 @@ fn control_the_signs_are_what_rejects_a_tension_with_a_consistent_claim() {
             *pressure = pressure.map(|p| p + 0.5);
         }
     }
-    let refused = certificate.evaluate::<Ball>();
+    let refused = certificate.prove();
     assert!(matches!(refused, Err(Rejection::Tension { .. })), "{refused:?}");
     // Without the line Gamma_C the same stress passes: as a given pressure.
     for edge in &mut certificate.edges {
@@ -747,7 +747,7 @@ fn control_the_signs_are_what_rejects_a_tension_with_a_consistent_claim() {
             edge.role = Role::Pressed(pressure.map(|p| -p));
         }
     }
-    assert!(certificate.evaluate::<Ball>().is_ok());
+    assert!(certificate.prove().is_ok());
 }
 
 #[test]

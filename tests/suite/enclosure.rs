@@ -4,13 +4,13 @@ use approx::{abs_diff_eq, assert_abs_diff_eq};
 use signorini::kernel::{Material, Plane};
 use signorini::linear::system::System;
 use signorini::model::Degree;
-use signorini::model::{Condition, Diagonal, Problem, Rectangle};
+use signorini::model::{Condition, Diagonal, Mesh, Problem, Rectangle};
 use signorini::proof::enclosure::Enclosure;
 use signorini::proof::{Unproved, enclosure};
 use signorini::results::{Solution, Verdict};
 use signorini::solve::{ContactQuadrature, Gamma0, Method, Settings, check, discretize, solve};
 
-use crate::common::{DEGREES, Random, case};
+use crate::common::{DEGREES, Random, case, polygon};
 
 /// A block that is clamped on top and pushed by `down` on a floor that rises to one side.
 fn block_under(n: usize, down: f64) -> Problem {
@@ -332,5 +332,25 @@ fn the_relative_radius_is_relative_to_the_energy_norm_or_the_body_hardly_strains
         let norm = solution.quantities.energy.sqrt();
         let relative = enclosure.relative.unwrap();
         assert_abs_diff_eq!(relative * norm / enclosure.radius, 1.0, epsilon = 1e-9);
+    }
+}
+
+/// A disk whose rim is of so many boundaries that are held, and one of contact.
+#[test]
+fn reactions_are_enclosed_for_up_to_64_boundaries() {
+    for (count, enclosed) in [(64, 64), (65, 0)] {
+        let disk = polygon(count + 1, 1);
+        let rim = disk.edges_of("rim").unwrap().iter().enumerate();
+        let named: Vec<_> = rim.map(|(k, &edge)| (format!("{k}"), vec![disk.ends(edge)])).collect();
+        let mesh = Mesh::new(disk.vertices().to_vec(), disk.triangles().to_vec(), named).unwrap();
+        let problem = Problem::of(mesh, Material::lame(1.0, 1.0, Plane::Strain))
+            .with_body_force(|_| 0.1, |_| 0.2)
+            .with("0", Condition::contact(|_| 1.0));
+        let problem =
+            (1..=count).fold(problem, |p, k| p.with(&k.to_string(), Condition::clamped()));
+        let solution = solved(&problem, Degree::Two);
+        let found = solution.enclosure.as_ref().unwrap();
+        assert_eq!(solution.quantities.reactions.len(), count);
+        assert_eq!(found.intervals.reactions.len(), enclosed);
     }
 }

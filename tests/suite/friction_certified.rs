@@ -294,9 +294,9 @@ fn a_certificate_with_friction_that_is_tampered_with_is_refused() {
         };
         // One unit in the last place over the bound.
         let over = with(|shear, _| shear[0] = shear[0].next_down());
-        assert!(matches!(over.evaluate::<Ball>(), Err(Rejection::Friction { .. })));
+        assert!(matches!(over.prove(), Err(Rejection::Friction { .. })));
         let nan = with(|_, bound| bound[1] = f64::NAN);
-        assert!(matches!(nan.evaluate::<Ball>(), Err(Rejection::Wrong { .. })));
+        assert!(matches!(nan.prove(), Err(Rejection::Wrong { .. })));
         // Where the direction turns the shear is the same at both ends, as the pressure is.
         let turning = |given: [f64; 2]| {
             let mut certificate = c.certificate.clone();
@@ -311,7 +311,7 @@ fn a_certificate_with_friction_that_is_tampered_with_is_refused() {
                 along: Some([[0.0, -1.0], [1e-6, -1.0]]),
                 law: Law::Friction { shear: given, bound },
             };
-            certificate.evaluate::<Ball>()
+            certificate.prove()
         };
         assert!(matches!(turning([0.0, 1e-9]), Err(Rejection::Wrong { what: "edge", .. })));
         let control = turning([1e-9; 2]);
@@ -319,10 +319,10 @@ fn a_certificate_with_friction_that_is_tampered_with_is_refused() {
         // With the wrong sign it is not in balance; made so, it costs what it does to slide.
         let sign = with(|shear, _| *shear = shear.map(|q| -q));
         assert!(matches!(sign.audit(&claim), Err(Rejection::OutOfBalance { .. })));
-        assert!(sign.evaluate::<Ball>().unwrap().bound > 1.01 * c.proof.bound);
+        assert!(sign.prove().unwrap().bound > 1.01 * c.proof.bound);
         // A larger bound is one of another problem: sliding is not at the bound.
         let larger = with(|_, bound| *bound = bound.map(|s| 1.1 * s));
-        assert!(larger.evaluate::<Ball>().unwrap().bound > c.proof.bound);
+        assert!(larger.prove().unwrap().bound > c.proof.bound);
         let evidence = &c.quantities.evidence;
         let difference = compare(problem.clone(), &larger, evidence).unwrap_err().to_string();
         assert!(difference.contains("the bound of friction"), "{difference}");

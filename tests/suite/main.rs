@@ -19,6 +19,7 @@ mod doors;
 mod enclosure;
 mod exact;
 mod figure;
+mod forged;
 mod friction;
 mod friction_certified;
 mod friction_integrals;

@@ -87,7 +87,7 @@ fn ends_to_second_order(n: usize) -> [f64; 2] {
     let ends = interval(&c, Name::ContactForce, "bottom");
     assert!(ends[0] <= FORCE && FORCE <= ends[1], "n = {n}: {ends:?}");
     // The checker finds the same again.
-    let again = c.certificate.forces::<Ball>(&c.quantities.evidence).unwrap();
+    let again = c.certificate.prove_forces(&c.quantities.evidence).unwrap();
     assert!(again.iter().flatten().any(|found| *found == ends));
     let relative = |end: f64| 100.0 * (end - FORCE).abs() / FORCE;
     let ends = ends.map(relative);
@@ -245,7 +245,7 @@ fn a_dual_stress_that_is_not_one_is_refused() {
     let roles = &mut evidence.pairs[0].1.roles;
     let free = roles.iter_mut().find(|role| matches!(role, Role::Loaded(_))).unwrap();
     *free = Role::Loaded([[1e-9, 0.0]; 2]);
-    let found = c.certificate.forces::<Ball>(&evidence);
+    let found = c.certificate.prove_forces(&evidence);
     assert!(matches!(found, Err(WrongPair::Differs { .. })), "{found:?}");
     // What holds the body holds one component only.
     let mut evidence = c.quantities.evidence.clone();
@@ -253,12 +253,12 @@ fn a_dual_stress_that_is_not_one_is_refused() {
     let top = (0..c.certificate.edges.len()).find(is_top).unwrap();
     let Role::Held([true, true], _) = evidence.pairs[0].1.roles[top] else { panic!("held") };
     evidence.pairs[0].1.roles[top] = Role::Held([false, true], [[0.0; 2]; 2]);
-    let found = c.certificate.forces::<Ball>(&evidence);
+    let found = c.certificate.prove_forces(&evidence);
     assert!(matches!(found, Err(WrongPair::Differs { what: "edge", .. })), "{found:?}");
     // An edge less.
     let mut evidence = c.quantities.evidence.clone();
     evidence.pairs[0].1.roles.pop();
-    assert!(matches!(c.certificate.forces::<Ball>(&evidence), Err(WrongPair::Differs { .. })));
+    assert!(matches!(c.certificate.prove_forces(&evidence), Err(WrongPair::Differs { .. })));
     // Contact holds w along an axis alone, not where its direction turns away from one.
     let roles = &c.certificate.edges;
     let holds = |e: &usize| {
@@ -271,13 +271,13 @@ fn a_dual_stress_that_is_not_one_is_refused() {
         (*along, *pressure) = (Some([[0.0, -1.0], [1e-9, -1.0]]), [pressure[0]; 2]);
         *gap = gap.map(|gap| gap + 1e-6);
     }
-    let found = turned.forces::<Ball>(&c.quantities.evidence);
+    let found = turned.prove_forces(&c.quantities.evidence);
     assert!(matches!(found, Err(WrongPair::Differs { what: "edge", .. })), "{found:?}");
     // A w that is not 0 where the body is held.
     let mut evidence = c.quantities.evidence.clone();
     let held = c.certificate.edges.iter().find(|edge| matches!(edge.role, Role::Held(..))).unwrap();
     evidence.pairs[0].1.w.vertices[held.ends[0]][1] = 1e-9;
-    assert!(matches!(c.certificate.forces::<Ball>(&evidence), Err(WrongPair::Rejected(_))));
+    assert!(matches!(c.certificate.prove_forces(&evidence), Err(WrongPair::Rejected(_))));
 }
 
 #[test]
@@ -318,7 +318,7 @@ fn adapted_to_the_force_it_is_known_to_a_fiftieth_of_a_per_cent_with_ten_thousan
     assert_eq!(within(&adapted.levels[adapted.level]), best);
     // Control: to first order it is not.
     let evidence = Evidence { pairs: Vec::new(), ..c.quantities.evidence };
-    let first = c.certificate.forces::<Ball>(&evidence).unwrap();
+    let first = c.certificate.prove_forces(&evidence).unwrap();
     let whole = |(target, _): &(forces::ForceTarget, _)| target.motion == Motion::Along(None);
     let k = evidence.liftings.iter().position(whole).unwrap();
     assert!(half_width(first[k].clone().unwrap()) > 0.05);
@@ -489,7 +489,7 @@ fn evidence_that_is_wrong_at_one_vertex_of_the_boundary_is_refused() {
     let problem = tilted_punch(8);
     let c = certified(&problem, Degree::One);
     let evidence = &c.quantities.evidence;
-    let as_made = c.certificate.forces::<Ball>(evidence).unwrap();
+    let as_made = c.certificate.prove_forces(evidence).unwrap();
     assert!(as_made.iter().all(Result::is_ok));
     let vertex =
         |place: [f64; 2]| problem.mesh.vertices().iter().position(|x| *x == place).unwrap();
@@ -501,7 +501,7 @@ fn evidence_that_is_wrong_at_one_vertex_of_the_boundary_is_refused() {
         for (_, w) in &mut evidence.liftings {
             w.vertices[vertex][component] += 1e-6;
         }
-        let found = c.certificate.forces::<Ball>(&evidence).unwrap();
+        let found = c.certificate.prove_forces(&evidence).unwrap();
         for (found, as_made) in found.iter().zip(&as_made) {
             match found {
                 Err(WrongLifting::OnContact { .. }) if vertex == pressed => {}
@@ -528,7 +528,7 @@ fn a_bulge_of_w_where_the_body_is_held_is_refused() {
         for (_, w) in &mut evidence.liftings {
             w.beyond.as_mut().unwrap()[1][held][0] += size;
         }
-        for found in c.certificate.forces::<Ball>(&evidence).unwrap() {
+        for found in c.certificate.prove_forces(&evidence).unwrap() {
             let is_refused = matches!(found, Err(WrongLifting::OnSupport { edge }) if edge == held);
             assert!(if size == 0.0 { found.is_ok() } else { is_refused }, "{size}: {found:?}");
         }

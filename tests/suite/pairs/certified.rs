@@ -368,7 +368,7 @@ fn a_body_that_another_one_holds_has_a_bound_and_its_force() {
         if let Some(curved) = &mut alone.curved {
             curved.data.iter_mut().for_each(|data| *data = [0.0; 2]);
         }
-        assert!(matches!(alone.evaluate::<Ball>(), Err(Rejection::Unbalanced(_))));
+        assert!(matches!(alone.prove(), Err(Rejection::Unbalanced(_))));
     }
 }
 
@@ -434,7 +434,7 @@ fn a_certificate_of_a_pair_that_is_tampered_with_is_refused() {
         let rejected = |change: &dyn Fn(&mut Certificate)| {
             let mut certificate = c.certificate.clone();
             change(&mut certificate);
-            let proof = certificate.evaluate::<Ball>();
+            let proof = certificate.prove();
             // What is proved of another problem is not this claim.
             proof.and_then(|proof| {
                 if proof.bound.to_bits() == c.proof.bound.to_bits() {
@@ -866,7 +866,7 @@ fn a_certificate_of_tied_bodies_that_is_tampered_with_is_refused() {
                 }
             }
         });
-        let refused = as_contact.evaluate::<Ball>();
+        let refused = as_contact.prove();
         assert!(
             matches!(refused, Err(Rejection::Tension { .. } | Rejection::Penetration { .. })),
             "{refused:?}"
@@ -879,7 +879,7 @@ fn a_certificate_of_tied_bodies_that_is_tampered_with_is_refused() {
                 *gap = gap.map(|g| g + 1e-9);
             }
         });
-        assert!(matches!(gap.evaluate::<Ball>(), Err(Rejection::Wrong { .. })));
+        assert!(matches!(gap.prove(), Err(Rejection::Wrong { .. })));
         let difference = compare(problem.clone(), &gap, &c.quantities.evidence).unwrap_err();
         assert!(difference.to_string().contains("the gap"), "{difference}");
         if law == Law::Bonded {
@@ -892,7 +892,7 @@ fn a_certificate_of_tied_bodies_that_is_tampered_with_is_refused() {
                     }
                 }
             });
-            assert!(offset.evaluate::<Ball>().is_ok());
+            assert!(offset.prove().is_ok());
             let difference = compare(problem, &offset, &c.quantities.evidence).unwrap_err();
             assert!(difference.to_string().contains("the jump along y"), "{difference}");
             // One edge the other way round: its ends are tied to what is tied to them.
@@ -904,7 +904,7 @@ fn a_certificate_of_tied_bodies_that_is_tampered_with_is_refused() {
                 certificate.edges[second].role = certificate.edges[f].role;
                 certificate.edges[f].role = Role::Facing;
             });
-            let refused = round.evaluate::<Ball>();
+            let refused = round.prove();
             assert!(
                 matches!(refused, Err(Rejection::Wrong { what: "point", .. })),
                 "{degree:?}: {refused:?}"
@@ -920,7 +920,7 @@ fn a_certificate_of_tied_bodies_that_is_tampered_with_is_refused() {
                 _ => certificate.displacement[p][c] += 1.0,
             }
         });
-        assert_eq!(moved.evaluate::<Ball>().unwrap().bound.to_bits(), c.proof.bound.to_bits());
+        assert_eq!(moved.prove().unwrap().bound.to_bits(), c.proof.bound.to_bits());
         let there = changed(&|certificate| {
             let p = certificate.edges[other].ends[0];
             let vertices = certificate.vertices.len();
@@ -929,7 +929,7 @@ fn a_certificate_of_tied_bodies_that_is_tampered_with_is_refused() {
                 _ => certificate.displacement[p][1] += 0.01,
             }
         });
-        assert!(there.evaluate::<Ball>().unwrap().bound > c.proof.bound);
+        assert!(there.prove().unwrap().bound > c.proof.bound);
         // A traction of the wrong sign is not in balance.
         let sign = changed(&|certificate| {
             if let Role::Contact { pressure, .. } = &mut certificate.edges[e].role {
@@ -958,7 +958,7 @@ pub(super) fn held_beside_glue() -> Problem {
 fn a_tied_point_is_where_it_is_prescribed() {
     for degree in DEGREES {
         let c = certified(&held_beside_glue(), degree);
-        assert!(c.certificate.evaluate::<Ball>().is_ok());
+        assert!(c.certificate.prove().is_ok());
         let is_held = |[p, _]: &[usize; 2]| c.certificate.at_own(*p).unwrap().1[0].is_some();
         let pairs = c.certificate.edges.iter().enumerate().flat_map(|(e, edge)| {
             let is_first = matches!(edge.role, Role::Contact { .. });
@@ -971,7 +971,7 @@ fn a_tied_point_is_where_it_is_prescribed() {
         let [_, second] = pairs.into_iter().find(is_held).unwrap();
         let mut moved = c.certificate.clone();
         moved.displacement[second][0] -= 1e-12;
-        let refused = moved.evaluate::<Ball>();
+        let refused = moved.prove();
         assert!(matches!(refused, Err(Rejection::Wrong { what: "point", .. })), "{refused:?}");
     }
 }
@@ -1058,7 +1058,7 @@ fn a_certificate_of_bodies_that_slide_along_a_curve_is_refused_when_it_is_tamper
                 panic!()
             };
             change((pressure, along, law));
-            certificate.evaluate::<Ball>().map(|proof| proof.bound)
+            certificate.prove().map(|proof| proof.bound)
         };
         let refused = |change: &dyn Fn(Fields), why: &str| {
             let found = changed(change).map_err(|refused| refused.to_string());
@@ -1074,7 +1074,7 @@ fn a_certificate_of_bodies_that_slide_along_a_curve_is_refused_when_it_is_tamper
         let with_bulge = |e: usize| {
             let mut certificate = c.certificate.clone();
             certificate.curved.as_mut().unwrap().bulges[e][0] += 0.01;
-            certificate.evaluate::<Ball>().unwrap().bound
+            certificate.prove().unwrap().bound
         };
         assert_eq!(with_bulge(e).to_bits(), c.proof.bound.to_bits());
         assert!(with_bulge(other) > 1.01 * c.proof.bound);
@@ -1142,7 +1142,7 @@ fn where_walls_hold_all_of_both_bodies_that_slide_they_have_one_value() {
         let mut moved = c.certificate.clone();
         moved.prescribed[other[1 - k]][1] = Some(1e-9);
         moved.displacement[other[1 - k]][1] = 1e-9;
-        let refused = moved.evaluate::<Ball>().unwrap_err().to_string();
+        let refused = moved.prove().unwrap_err().to_string();
         assert!(refused.contains("another place than what is prescribed"), "{refused}");
     }
 }

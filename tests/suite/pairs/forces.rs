@@ -5,7 +5,6 @@ use signorini::certificates::forces::{Evidence, Motion, WrongLifting};
 use signorini::certificates::proof::Role;
 use signorini::certificates::quantities::Name;
 use signorini::certificates::{Certificate, Continuous, format};
-use signorini::kernel::Ball;
 
 use super::certified::{certified, held_beside_glue, rough, squares, tied};
 use super::*;
@@ -180,7 +179,7 @@ fn forces_beside_tied_bodies_that_are_tampered_with_are_refused() {
             width: 0.1,
         });
         along.liftings[moment].0.motion = Motion::Along(weight);
-        let found = &c.certificate.forces::<Ball>(&along).unwrap()[moment];
+        let found = &c.certificate.prove_forces(&along).unwrap()[moment];
         assert!(matches!(found, Err(WrongLifting::Tied { .. })), "{found:?}");
     }
 }
@@ -210,7 +209,7 @@ fn a_point_that_is_held_and_tied_has_one_w() {
         let second = corner.map(|(p, _)| p).max().unwrap();
         let mut moved = evidence.clone();
         moved.liftings.iter_mut().for_each(|(_, w)| w.vertices[second][0] += 1e-12);
-        let found = c.certificate.forces::<Ball>(&moved).unwrap();
+        let found = c.certificate.prove_forces(&moved).unwrap();
         let refused = |r: &Result<_, _>| matches!(r, Err(WrongLifting::OnSupport { .. }));
         assert!(!found.is_empty() && found.iter().all(refused), "{found:?}");
     }
@@ -231,7 +230,7 @@ fn forces_beside_friction_that_are_tampered_with_are_refused() {
         assert!(narrow.unwrap_err().contains("it is said to be between"));
         // Where it is not asked for, the same w misses by 1 across the direction, and that costs the integral of the bound on either side.
         let width = |e: &Evidence| {
-            let [low, high] = c.certificate.forces::<Ball>(e).unwrap()[shear].clone().unwrap();
+            let [low, high] = c.certificate.prove_forces(e).unwrap()[shear].clone().unwrap();
             high - low
         };
         let mut elsewhere = evidence.clone();
