@@ -61,11 +61,10 @@ impl Places {
     fn find(&self, is_asked: impl Fn(&str) -> bool, texts: &[String]) -> Result<String, String> {
         let mut found = Vec::new();
         for (file, text) in self.files.iter().filter(|(file, _)| is_asked(file)) {
-            for (number, line) in text.lines().enumerate() {
-                if texts.iter().any(|text| line.contains(text)) {
-                    found.push(format!("{file}#L{}", number + 1));
-                }
-            }
+            let starts = texts.iter().flat_map(|asked| text.match_indices(asked.as_str()));
+            let before = starts.map(|(start, _)| text[..start].matches('\n').count());
+            let numbers: BTreeSet<usize> = before.collect();
+            found.extend(numbers.iter().map(|number| format!("{file}#L{}", number + 1)));
         }
         match &found[..] {
             [place] => Ok(place.clone()),
