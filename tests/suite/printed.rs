@@ -78,7 +78,8 @@ const WORDS_ALONE: [&str; 5] = ["newton", "accuracy", "balance", "proved", "solv
 fn kept(said: &str) -> impl Iterator<Item = String> {
     let label = |line: &str| line.split_whitespace().next().unwrap_or_default().to_owned();
     said.lines().filter(move |line| label(line) != "time").map(move |line| {
-        let alone = WORDS_ALONE.contains(&&*label(line));
+        // A row of load steps has a number of Newton's steps.
+        let alone = WORDS_ALONE.contains(&&*label(line)) || line.ends_with("  converged");
         let words = pieces(line).filter(|piece| !alone || piece.parse::<f64>().is_err());
         words.collect::<String>().trim_end().to_owned()
     })
