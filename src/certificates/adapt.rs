@@ -159,8 +159,7 @@ pub fn adapt_to(
 ) -> Result<(Problem, Adapted), AdaptError> {
     check_straight(&problem)?;
     let mut asked = asked.clone();
-    let whole = force.map(|boundary| (boundary.to_owned(), None));
-    asked.forces.extend(whole.filter(|whole| !asked.forces.contains(whole)));
+    asked.forces.extend(force.map(|boundary| (boundary.to_owned(), None)));
     let of_solve = |phase| watcher(Stage::Solve(phase));
     let mut newest = problem.mesh.opposite_longest();
     let mut start: Option<Vec<[f64; 2]>> = None;

@@ -27,6 +27,16 @@ const ROUNDING: f64 = 1e-11;
 /// Places on an edge that differ by this part of the edge are the same.
 const PLACES: f64 = 1e-9;
 
+/// Whether a stretch of an edge, from one place to another, lies in one.
+fn is_in([s, t]: [f64; 2], [low, high]: [f64; 2]) -> bool {
+    s >= low - PLACES && t <= high + PLACES
+}
+
+/// Whether they have no more than an end in common.
+fn is_off([s, t]: [f64; 2], [low, high]: [f64; 2]) -> bool {
+    t <= low + PLACES || s >= high - PLACES
+}
+
 /// The part of a triangle by which places outside it lie in it: what is the same for other numbers, and the rounding of its own
 /// coordinates.
 fn room(mesh: &Mesh, t: usize) -> f64 {
@@ -522,9 +532,8 @@ impl Comparison<'_> {
         for &(k, i) in &parts.lines[line] {
             let [from, to] = parts.contact[k].sides[i].places;
             let (low, high) = (from.min(to), from.max(to));
-            let is_in = s >= low - PLACES && t <= high + PLACES;
-            let is_off = t <= low + PLACES || s >= high - PLACES;
-            if !(if contact == Some((k, i)) { is_in } else { is_off }) {
+            let of = [low, high];
+            if !(if contact == Some((k, i)) { is_in([s, t], of) } else { is_off([s, t], of) }) {
                 return Err(outside("edge", e, "is in contact in part, or with several"));
             }
         }
@@ -611,5 +620,33 @@ fn kind(role: &Role) -> &'static str {
         Role::Pressed(_) => "one where a pressure acts",
         Role::Contact { .. } => "one of contact",
         Role::Facing => "one that faces another of contact",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stretch_is_in_contact_from_end_to_end_or_not_at_all() {
+        let of = [0.25, 0.75];
+        let cases = [
+            ([0.25, 0.75], [true, false]),
+            ([0.3, 0.5], [true, false]),
+            ([0.25 - 0.9 * PLACES, 0.75 + 0.9 * PLACES], [true, false]),
+            ([0.25 - 1.1 * PLACES, 0.5], [false, false]),
+            ([0.5, 0.75 + 1.1 * PLACES], [false, false]),
+            ([0.0, 0.25], [false, true]),
+            ([0.75, 1.0], [false, true]),
+            ([0.0, 0.25 + 0.9 * PLACES], [false, true]),
+            ([0.75 - 0.9 * PLACES, 1.0], [false, true]),
+            ([0.0, 0.25 + 1.1 * PLACES], [false, false]),
+            ([0.75 - 1.1 * PLACES, 1.0], [false, false]),
+            ([0.0, 1.0], [false, false]),
+        ];
+        for (stretch, expected) in cases {
+            assert_eq!([is_in(stretch, of), is_off(stretch, of)], expected, "{stretch:?}");
+        }
+        assert_eq!(PLACES, 1e-9);
     }
 }

@@ -204,3 +204,40 @@ pub(super) fn cancellation(
     }
     (off > KNOWN * size).then_some(off)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+
+    /// 1 at x = 0 and less elsewhere, which may be off by so much there.
+    struct Rounded(f64);
+
+    impl Function for Rounded {
+        fn at(&self, [x, _]: [f64; 2]) -> f64 {
+            1.0 - x
+        }
+
+        fn enclosed(&self, [x, _]: [f64; 2]) -> Option<Ball> {
+            Some(Ball::exactly(1.0 - x) - Ball::exactly(x * self.0))
+        }
+    }
+
+    #[test]
+    fn data_cancel_where_they_are_off_by_more_than_is_known_of_their_largest_value() {
+        let places = || [[0.0, 0.0], [1.0, 0.0]].into_iter();
+        let found = |off: f64| {
+            let f: SharedFunction = Arc::new(Rounded(off));
+            cancellation(&f, places())
+        };
+        for sign in [1.0, -1.0] {
+            assert_eq!(found(sign * 0.99e-10), None);
+            assert!(found(sign * 1.01e-10).is_some_and(|off| (1.01e-10..1.02e-10).contains(&off)));
+        }
+        assert_eq!(found(f64::NAN), Some(f64::INFINITY));
+        // Control: beside the value there alone it would be off.
+        let f: SharedFunction = Arc::new(Rounded(0.99e-10));
+        assert!(cancellation(&f, places().skip(1)).is_some());
+    }
+}

@@ -162,6 +162,11 @@ const LEVELS: [f64; 3] = [0.5, 0.125, 0.03125];
 /// were moved by what the boundary's displacement has beyond a rigid motion.
 const TELLING: f64 = 0.1;
 
+/// What all of these are at least.
+fn smallest<S: Enclosing>(all: &[S; 4]) -> f64 {
+    all.iter().fold(f64::INFINITY, |least, c| least.min(c.lower()))
+}
+
 /// Where contact can hardly act, and where the body can hardly be off the obstacle.
 pub(super) fn zones<S: Enclosing>(
     certificate: &Certificate,
@@ -169,7 +174,6 @@ pub(super) fn zones<S: Enclosing>(
     line: &Line,
     mean: Mean,
 ) -> Vec<Zone> {
-    let smallest = |c: &[S; 4]| c.iter().fold(f64::INFINITY, |least, c| least.min(c.lower()));
     let mut zones = Vec::new();
     for (boundary, name) in line.names.iter().enumerate() {
         let stations: Vec<Station> =
@@ -724,5 +728,15 @@ mod tests {
         }
         assert_eq!(Name::ContactForce.of_functional([1.0, 2.0], false), [1.0, 2.0]);
         assert_eq!(Name::ContactForce.of_functional([-1.0, 2.0], true), [-1.0, 2.0]);
+    }
+
+    #[test]
+    fn a_gap_is_no_less_than_the_lower_end_of_each_coefficient() {
+        let third = Ball::from(1) / Ball::from(3);
+        let all = |k: usize| [0, 1, 2, 3].map(|i| if i == k { third } else { Ball::from(1) });
+        for k in 0..4 {
+            let found = smallest(&all(k));
+            assert!(found == third.lower() && found < third.upper(), "{k}: {found}");
+        }
     }
 }

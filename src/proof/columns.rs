@@ -260,6 +260,27 @@ mod tests {
     }
 
     #[test]
+    fn the_size_of_what_is_left_is_that_of_its_heads_and_tails() {
+        with_system(Degree::One, |system, lines| {
+            let n = system.numbering.count;
+            let a = system.tangent_in_balls(lines.iter(), &springs(lines, 0.0)).unwrap();
+            let crude: Vec<f64> = (0..n).map(|i| 1.0 + (i % 7) as f64).collect();
+            let of = Enclosed::new(a, &crude);
+            let number = |k: usize| (1.7 * k as f64).sin();
+            let numbers: Vec<f64> = (0..2 * n).map(number).collect();
+            let zero = vec![0.0; 2 * n];
+            for (heads, tails) in [(numbers.clone(), zero.clone()), (zero, numbers)] {
+                let found = of.sizes(&Left { heads, tails }, 2);
+                for (column, found) in found.into_iter().enumerate() {
+                    let size = |i: usize| crude[i] * number(2 * i + column).abs();
+                    let expected: f64 = (0..n).map(size).sum();
+                    assert!(found >= expected && found < (1.0 + 1e-12) * expected);
+                }
+            }
+        });
+    }
+
+    #[test]
     fn what_is_left_of_a_functional_is_no_more_for_any_matrix_in_the_balls_and_is_attained() {
         with_system(Degree::Two, |system, lines| {
             let n = system.numbering.count;

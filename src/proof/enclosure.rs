@@ -678,6 +678,8 @@ fn weighted(v: &[PreciseBall], weights: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
     use crate::contact::EdgeRule;
     use crate::kernel::{Material, Plane};
@@ -721,5 +723,34 @@ mod tests {
                 assert_eq!(of(within, 1.01 * found.abs()), None);
             }
         }
+    }
+
+    #[test]
+    fn a_radius_is_in_parts_of_what_strains_and_one_that_underflows_when_squared_is_none() {
+        let intervals = Intervals {
+            energy: [0.0; 2],
+            max_displacement: [0.0; 2],
+            contact: Vec::new(),
+            reactions: BTreeMap::new(),
+        };
+        let of = |radius: f64, hardly_strains: bool, relative: Option<f64>| {
+            let enclosure = Enclosure {
+                kappa: 0.0,
+                radius,
+                relative,
+                hardly_strains,
+                if_strained: 4.0,
+                pressure: 0.0,
+                nodes: Vec::new(),
+                intervals: intervals.clone(),
+                isolation: None,
+            };
+            enclosure.in_parts()
+        };
+        assert_eq!(of(1.0, true, None), 0.25);
+        assert_eq!(of(1.0, false, Some(0.5)), 0.5);
+        assert_eq!(of(1.0, false, None), f64::INFINITY);
+        assert_eq!(of(0.99e-150, false, None), 0.0);
+        assert_eq!(of(1.01e-150, false, None), f64::INFINITY);
     }
 }

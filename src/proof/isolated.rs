@@ -36,6 +36,11 @@ use crate::solve::coulomb::coefficient;
 pub(super) const MOST_FUNCTIONALS: usize = 2_000;
 pub(super) const MOST_ENTRIES: usize = 200_000_000;
 
+/// Whether matrices of so many functionals, and their columns, are too large.
+fn are_too_many(functionals: usize, unknowns: usize) -> bool {
+    functionals > MOST_FUNCTIONALS || functionals * unknowns > MOST_ENTRIES
+}
+
 /// The shares of a column of the compliance that may be left: first so much that one correction does; where nothing is proved with that, a rounding error.
 pub(super) const SHARES: [f64; 2] = [1e-7, f64::EPSILON];
 
@@ -708,7 +713,7 @@ impl Known {
     ) -> Result<Self, Unproved> {
         let (system, count) = (body.system, body.system.functionals());
         let unknowns = system.numbering.count;
-        if count > MOST_FUNCTIONALS || count * unknowns > MOST_ENTRIES {
+        if are_too_many(count, unknowns) {
             return Err(Unproved::TooManyFunctionals { count, unknowns });
         }
         let compliance = body.compliance(pieces, share)?;
@@ -967,11 +972,13 @@ fn power(n: usize, times: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
     use crate::contact::Friction;
     use crate::kernel::{Material, Plane};
     use crate::model::quadrature::gauss;
-    use crate::model::{Condition, Diagonal, Problem, Rectangle};
+    use crate::model::{Condition, Diagonal, Mesh, Problem, Rectangle};
 
     /// Numbers between -1 and 1.
     fn draws(seed: f64) -> impl FnMut() -> f64 {
@@ -1059,6 +1066,61 @@ mod tests {
     }
 
     const MU: f64 = 0.6;
+
+    #[test]
+    fn two_thousand_functionals_of_a_hundred_thousand_unknowns_are_not_too_many() {
+        assert!(!are_too_many(2_000, 100_000) && !are_too_many(1_000, 200_000));
+        assert!(are_too_many(2_001, 10) && are_too_many(2_000, 100_001));
+    }
+
+    /// A ring on a floor, from 0.1 to 1.1 off its axis.
+    fn ring() -> Problem {
+        let cells = Rectangle { width: 1.0, height: 1.0, nx: 1, ny: 1, diagonal: Diagonal::Right };
+        let mesh = cells.mesh().unwrap();
+        let named = ["top", "bottom"].map(|name| {
+            let ends = mesh.edges_of(name).unwrap().iter().map(|&edge| mesh.ends(edge));
+            (name.to_owned(), ends.collect())
+        });
+        let places = mesh.vertices().iter().map(|[x, y]| [x + 0.1, *y]).collect();
+        let ring = Mesh::new(places, mesh.triangles().to_vec(), BTreeMap::from(named)).unwrap();
+        Problem::of(ring, Material::lame(1.3, 0.7, Plane::Axisymmetric))
+            .with("top", Condition::clamped())
+            .with("bottom", Condition::contact(|_| 0.0))
+    }
+
+    /// Pressed at one end of the edge for sure, and hardly at the other: there the radii are those of that half at points, and the largest
+    /// one between them.
+    #[test]
+    fn what_is_uncertain_at_points_has_their_radii() {
+        let problem = ring();
+        let on_edge = |rule: EdgeRule, [inner, outer]: [f64; 2]| {
+            let d = Discretization::new(&problem, Degree::One, |c| c.limit() / 2.0, rule).unwrap();
+            let lines = Lines::new(&d);
+            let piece = &lines[0];
+            let at = |[x, y]: [f64; 2]| (1.0 - y) * (inner + (outer - inner) * (x - 0.1));
+            let u: Vec<[PreciseBall; 2]> =
+                d.space.nodes().iter().map(|&x| [0.0, at(x)].map(PreciseBall::from)).collect();
+            let of = compliance(&Mat::from_fn(1, piece.p0.len(), |_, _| 1.0));
+            let on = OnPiece::new(&d, (piece, &of), &u);
+            let p = [0, 1].map(|k| on.p[k].head());
+            let radii = piece.radii.unwrap().map(|r| r.upper());
+            let most = larger(p[0], p[1]);
+            let found = on.uncertain(&d, most / 2.0 / on.reach.normal, &on.reach)[0];
+            let along = |[a, b]: [f64; 2], s: f64| a + s * (b - a);
+            let places = (0..1000).map(|k| (f64::from(k) + 0.5) / 1000.0);
+            let uncertain: Vec<f64> = places.filter(|s| along(p, *s).abs() < most / 2.0).collect();
+            let mean = uncertain.iter().map(|s| along(radii, *s)).sum::<f64>();
+            (found, mean / uncertain.len() as f64 / larger(radii[0], radii[1]))
+        };
+        let shares = [[-1.0, 0.1], [0.1, -1.0]].map(|pressed| {
+            let (points, share) = on_edge(EdgeRule::Gauss(gauss(24)), pressed);
+            let (between, _) = on_edge(EdgeRule::Exact, pressed);
+            let found = points / between;
+            assert!(found > 0.85 * share && found < 1.15 * share, "{found} {share}");
+            share
+        });
+        assert!(shares[0] > 1.5 * shares[1], "control: {shares:?}");
+    }
 
     /// A block on a floor as rough as `MU`.
     fn on_a_floor() -> Problem {

@@ -427,6 +427,20 @@ mod tests {
     }
 
     #[test]
+    fn triangles_whose_squares_would_underflow_have_no_bound() {
+        for (area, expected) in [(1.01e-200, true), (0.99e-200, false)] {
+            let size = f64::sqrt(2.0 * area);
+            let vertices = vec![[0.0, 0.0], [size, 0.0], [0.0, size]];
+            let mesh = Mesh::new(vertices, vec![[0, 1, 2]], BTreeMap::new()).unwrap();
+            let materials = Problem::of(mesh.clone(), Material::lame(1.0, 1.0, Plane::Strain));
+            for degree in [Degree::One, Degree::Two] {
+                let found = squared_remainder(&mesh, degree, (&materials.material, 2.0), 0);
+                assert_eq!(found.is_some_and(|c| c > 0.0 && c.is_finite()), expected, "{found:?}");
+            }
+        }
+    }
+
+    #[test]
     fn a_body_with_a_part_that_supports_leave_free_has_no_bound() {
         let vertices = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [3.0, 0.0], [4.0, 0.0], [3.0, 1.0]];
         let named = [("first", [0, 1]), ("second", [3, 4])];

@@ -449,3 +449,78 @@ pub(crate) fn change(line: &Piece<PreciseBall>, far: f64, radius: f64) -> f64 {
 fn stress_factor(line: &Piece<PreciseBall>) -> f64 {
     line.radii.map_or(2.0, |radii| up(most_in_revolution(2, radii).sqrt()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::{Material, Plane};
+    use crate::model::{Condition, Diagonal, Problem, Rectangle};
+
+    fn block(plane: Plane) -> Problem {
+        let cells = Rectangle { width: 1.0, height: 1.0, nx: 1, ny: 1, diagonal: Diagonal::Right };
+        Problem::of(cells.mesh().unwrap(), Material::lame(1.3, 0.7, plane))
+            .with("top", Condition::clamped())
+            .with("bottom", Condition::contact(|_| 0.0))
+    }
+
+    /// The sizes of the holds at the ends of a stretch of an edge on a floor, of degree 1, and what they are at least by the pressure on it
+    /// and by the stress beside it.
+    fn holds(plane: Plane, ends: [f64; 2]) -> (Vec<f64>, [f64; 2]) {
+        let problem = block(plane);
+        let rule = EdgeRule::Exact;
+        let d = Discretization::new(&problem, Degree::One, |c| c.limit() / 2.0, rule).unwrap();
+        let lines = Lines::new(&d);
+        let line = &lines[0];
+        let piece = EdgePiece::between(Degree::One, line.radii, ends);
+        let least = [piece.square.lower().sqrt(), stress_factor(line)].map(|x| root_of(line) * x);
+        let part = PressedPart::new((0, line), 0..2, &[(1.0, piece)], 0.0).unwrap();
+        (part.places.iter().map(|(_, most)| *most).collect(), least)
+    }
+
+    #[test]
+    fn a_hold_beside_the_axis_is_no_smaller_than_the_stress_of_the_whole_edge() {
+        for ends in [[0.0, 1.0], [0.5, 1.0], [0.9, 1.0]] {
+            for plane in [Plane::Strain, Plane::Axisymmetric] {
+                let (found, [of_pressure, of_stress]) = holds(plane, ends);
+                assert_eq!(found.len(), 2);
+                let most = of_pressure.max(of_stress);
+                assert!(found.iter().all(|size| *size >= most && *size < 1.01 * most));
+            }
+        }
+        let (_, [of_pressure, of_stress]) = holds(Plane::Axisymmetric, [0.5, 1.0]);
+        assert!(of_pressure < of_stress, "control: the pressure alone says less");
+    }
+
+    #[test]
+    fn a_node_of_a_piece_lies_on_its_edge_where_its_position_says() {
+        let (problem, rule) = (block(Plane::Strain), EdgeRule::Exact);
+        let d = Discretization::new(&problem, Degree::One, |c| c.limit() / 2.0, rule).unwrap();
+        let mut stretch = d.contact[0].geometry.stretches[0].clone();
+        let [start, end] = problem.mesh.ends(stretch.edge).map(|v| problem.mesh.vertices()[v]);
+        for s in [0.0, 0.125, 1.0 / 3.0, 0.5, 0.9, 1.0] {
+            stretch.positions = vec![s];
+            let found = place_in_balls(&d, &stretch, 0).map(PreciseBall::head);
+            for c in 0..2 {
+                let expected = start[c] + (end[c] - start[c]) * s;
+                assert!((found[c] - expected).abs() <= f64::EPSILON, "{s}: {found:?} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_sticks_is_not_said_to_be_pressed() {
+        let part = |edge: usize, values: Range<usize>, pieces: Vec<[f64; 2]>| {
+            let (bounds, places, mass) = (Vec::new(), Vec::new(), Vec::new());
+            PressedPart { edge, values, pieces, bounds, places, mass }
+        };
+        let (sticks, is_pressed) = (vec![[0.0, 1.0]], vec![[0.0, 0.5]]);
+        let parts = vec![
+            part(0, 2..4, sticks.clone()),
+            part(1, 2..4, sticks),
+            part(1, 0..2, is_pressed.clone()),
+        ];
+        let all = Pressed { count: 2, parts };
+        assert!(all.pieces(0).is_empty());
+        assert_eq!(all.pieces(1), is_pressed);
+    }
+}

@@ -291,6 +291,16 @@ boundary.bottom.contact = { gap = "1" }
     let bounds: Vec<f64> = adapt.levels.iter().map(|level| level.relative).collect();
     let no_better = |four: &[f64]| four[0] > 1.0 && four[1..].iter().all(|bound| *bound > four[0]);
     assert!(bounds.windows(4).any(no_better), "{bounds:?}");
+    // Where no finer mesh is allowed than the first with a larger bound, the one before it is given.
+    let all = &adapt.levels;
+    let worse = (1..all.len()).find(|&k| all[k].bound > all[k - 1].bound).unwrap();
+    let most = format!("adapt.max_unknowns={}", all[worse].unknowns);
+    let (_, solved) =
+        run::solve(case_of(text, &["adapt.target=\"90 %\"", &most]), None, &|_| {}).unwrap();
+    let few = solved.adaptation.unwrap();
+    assert_eq!((few.levels.len(), few.level), (worse + 1, worse - 1), "{:?}", few.levels);
+    assert_eq!(2 * solved.solution.nodes.len(), few.levels[few.level].unknowns);
+    assert_eq!(solved.certified.unwrap().unwrap().bound, few.levels[few.level].bound);
 }
 
 /// Chords of half the length in place of one chord would have a gap of their own: with middles on the chords the bound grows.

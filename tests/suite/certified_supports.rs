@@ -11,7 +11,7 @@ use signorini::certificates::{Continuous, certify};
 use signorini::exact::Kind;
 use signorini::io::certificate;
 use signorini::model::Degree;
-use signorini::model::{Condition, Problem, SharedFunction};
+use signorini::model::{Condition, Mesh, Problem, SharedFunction};
 use signorini::results::Solution;
 use signorini::solve::{Settings, solve};
 use study::Ladder;
@@ -226,4 +226,37 @@ fn a_certificate_of_an_older_format_is_refused_by_its_number() {
     let error = certificate::audit(&json).unwrap_err().to_string();
     assert!(error.contains("of format 6; expected 10"), "{error}");
     std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// Two supports that turn by hardly more than coordinates are rounded: where they meet one direction is held, and it is that of one of them.
+#[test]
+fn supports_that_are_nearly_parallel_have_no_certificate() {
+    let certified = |slope: f64| {
+        let floor = [[0.0, 0.0], [1.0, 0.0], [2.0, slope]];
+        let vertices = floor.into_iter().chain([[2.0, 1.0], [1.0, 1.0], [0.0, 1.0]]).collect();
+        let triangles = vec![[0, 1, 4], [0, 4, 5], [1, 2, 3], [1, 3, 4]];
+        let named = [
+            ("flat", vec![[0, 1]]),
+            ("sloping", vec![[1, 2]]),
+            ("right", vec![[2, 3]]),
+            ("left", vec![[5, 0]]),
+        ];
+        let named = named.map(|(name, edges)| (name.to_owned(), edges));
+        let mesh = Mesh::new(vertices, triangles, named).unwrap();
+        let of = conditions([
+            ("flat", Condition::roller()),
+            ("sloping", Condition::roller()),
+            ("right", Condition::clamped()),
+            ("left", Condition::Contact { gap: expression("0") }),
+        ]);
+        let problem = Problem::new(mesh, unit_material(), ["-0.1", "-1"].map(expression), of);
+        let how = method(Degree::One, EXACT);
+        let (solution, _) = solve(&problem, &how, &Settings::default()).unwrap();
+        certify(&problem, &solution).map(|_| ()).map_err(|error| error.to_string())
+    };
+    for slope in [1e-9, 1e-12] {
+        let error = certified(slope).unwrap_err();
+        assert!(error.contains("the support of 'sloping' holds turns"), "{slope}: {error}");
+    }
+    assert_eq!(certified(0.0), Ok(()), "control: parallel ones");
 }
