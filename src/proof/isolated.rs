@@ -1183,4 +1183,27 @@ mod tests {
         });
         assert!(least_control < 0.75, "control: less without what MU P_n does, {least_control}");
     }
+
+    #[test]
+    fn where_no_region_is_sure_all_terms_are_possible_and_where_one_is_its_own() {
+        let contact = |is: &[Region]| possible(Law::Contact, |region| is.contains(&region));
+        let (open, pressed) = ([0.0; 3], [1.0, 0.0, 0.0]);
+        assert_eq!(contact(&[]), [open, pressed]);
+        assert_eq!(contact(&[Region::Open]), [open]);
+        assert_eq!(contact(&[Region::Pressed]), [pressed]);
+        let coulomb = Law::Friction(Bound::Coulomb(0.5));
+        let coulomb = |is: &[Region]| possible(coulomb, |region| is.contains(&region));
+        let [sticks, right, left] = [[1.0, 0.0, 1.0], [1.0, 0.5, 0.0], [1.0, -0.5, 0.0]];
+        assert_eq!(coulomb(&[]), [open, sticks, right, left]);
+        assert_eq!(coulomb(&[Region::Left]), [open, left]);
+        assert_eq!(coulomb(&[Region::Pressed]), [sticks, right, left]);
+        assert_eq!(coulomb(&[Region::Pressed, Region::Right]), [right]);
+        assert_eq!(coulomb(&[Region::Open]), [open]);
+        let tresca = Law::Friction(Bound::Tresca([1.0; 2]));
+        let tresca = |is: &[Region]| possible(tresca, |region| is.contains(&region));
+        let [normal, shear, both] = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 1.0]];
+        assert_eq!(tresca(&[]), [shear, both, open, normal]);
+        assert_eq!(tresca(&[Region::Open, Region::Sticks]), [shear]);
+        assert_eq!(tresca(&[Region::Pressed, Region::Left]), [normal]);
+    }
 }
