@@ -553,3 +553,50 @@ pub fn place(certificate: &Certificate, p: usize) -> Vector2<f64> {
     let [a, b] = cuts[cut].ends.map(|end| Vector2::from(vertices[end]));
     a + (b - a) * cuts[cut].at
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::Plane;
+
+    #[test]
+    fn lifts_add_up_by_their_squares_and_so_does_a_bound_beside_them() {
+        let of = |norms: &[f64]| {
+            let lift = |&norm: &f64| Lift { corners: [0, 1, 2], norm };
+            Certificate { lifts: norms.iter().map(lift).collect(), ..Certificate::default() }
+        };
+        let near = |found: f64, root: f64| (root..root * (1.0 + 1e-14)).contains(&found);
+        assert!(near(of(&[3.0, 4.0]).lift(), 5.0) && near(of(&[3.0, 4.0]).with_lifts(12.0), 13.0));
+        assert_eq!((of(&[]).lift(), of(&[]).with_lifts(12.0)), (0.0, 12.0));
+    }
+
+    #[test]
+    fn triangles_with_lifts_and_those_that_are_measured_are_counted_apart() {
+        let piece = |oscillation: f64| Piece {
+            vertices: [0, 1, 2],
+            edges: [0, 1, 2],
+            material: Material::lame(1.0, 1.0, Plane::Strain),
+            body: [[0.0; 2]; 3],
+            oscillation,
+        };
+        let lift = Lift { corners: [0, 1, 2], norm: 1.0 };
+        let certificate = Certificate {
+            pieces: [0.0, 1e-30, 2.0, 0.0, 1.0].map(piece).into(),
+            lifts: vec![lift; 2],
+            ..Certificate::default()
+        };
+        let found = certificate.reservations();
+        assert_eq!(found, Reservations { measured: 3, lifted: 2, turning: 0 });
+        assert!(Certificate::default().reservations().is_empty());
+    }
+
+    #[test]
+    fn the_traction_across_an_oblique_support_is_a_force_for_each_length() {
+        // d and its length of 5, the edge's of 3: d turned left is (-4, 3).
+        let found = support([3.0, 4.0], [2.0, -1.0], [0.5, 7.0], || 3.0);
+        let expected = [[6.0 - 6.0, 8.0 + 4.5], [-3.0 - 84.0, -4.0 + 63.0]];
+        assert_eq!(found.map(<[f64; 2]>::from), expected);
+        let alone = support::<f64>([3.0, 4.0], [2.0, -1.0], [0.0; 2], || f64::NAN);
+        assert_eq!(alone.map(<[f64; 2]>::from), [[6.0, 8.0], [-3.0, -4.0]]);
+    }
+}

@@ -467,3 +467,41 @@ impl Certificate {
         Ok(owners)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certificate::Cut;
+    use crate::certificate::Piece;
+    use crate::kernel::Plane;
+
+    #[test]
+    fn a_cut_lies_between_its_ends() {
+        let piece = Piece {
+            vertices: [0, 1, 2],
+            edges: [0; 3],
+            material: Material::lame(1.0, 1.0, Plane::Strain),
+            body: [[0.0; 2]; 3],
+            oscillation: 0.0,
+        };
+        let answer = |at: f64| {
+            let certificate = Certificate {
+                vertices: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+                displacement: vec![[0.0; 2]; 3],
+                prescribed: vec![[None; 2]; 3],
+                cuts: vec![Cut { ends: [0, 1], at }],
+                pieces: vec![piece],
+                ..Certificate::default()
+            };
+            certificate.check_shape()
+        };
+        let refused = Err(wrong("cut", 0, "expected a place between two vertices"));
+        for at in [0.0, -0.0, -0.5, 1.0, 1.5, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert_eq!(answer(at), refused, "{at}");
+        }
+        // Control: between them it is something else that is missing.
+        for at in [f64::MIN_POSITIVE, 0.5, 1.0 - f64::EPSILON] {
+            assert_ne!(answer(at), refused, "{at}");
+        }
+    }
+}

@@ -644,3 +644,30 @@ pub fn hash(bytes: &[u8]) -> String {
     let step = |hash: u64, word: u64| (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
     format!("{:016x}", words.fold(0xcbf2_9ce4_8422_2325, step))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_prescribed_component_is_read_from_its_own_entry() {
+        assert_eq!(given([(1, 2.0), (1, 3.0)]), Ok([Some(2.0), Some(3.0)]));
+        assert_eq!(given([(0, 0.0), (1, 3.0)]), Ok([None, Some(3.0)]));
+        assert_eq!(given([(1, 2.0), (0, 0.0)]), Ok([Some(2.0), None]));
+        for wrong in [(0, 1.0), (2, 1.0)] {
+            assert!(given([wrong, (0, 0.0)]).is_err() && given([(0, 0.0), wrong]).is_err());
+        }
+    }
+
+    #[test]
+    fn the_number_of_a_tensor_is_one_of_those_that_there_are() {
+        let tensors = [1.0, 2.0].map(|c| Material::lame(c, c, Plane::Strain));
+        let read = |number: f64| piece(([[0; 3]; 2], [number, 0.0], [[0.0; 2]; 3], 0.0), &tensors);
+        for (number, tensor) in [0.0, 1.0].into_iter().zip(tensors) {
+            assert_eq!(read(number).map(|piece| piece.material), Ok(tensor));
+        }
+        for number in [-1.0, -0.5, 0.5, 1.0 + f64::EPSILON, 2.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(read(number), Err(format!("there is no tensor {number}")));
+        }
+    }
+}

@@ -917,4 +917,21 @@ mod tests {
         // Control: elsewhere places are what they are.
         assert_eq!(contact(0.4).tractions_between(0, [0.0, 0.2])[0], [-1.0, -0.5]);
     }
+
+    #[test]
+    fn a_pressure_without_friction_falls_off_to_where_contact_ends_and_others_stay() {
+        let fallen = |law: Law| {
+            let of = |ends, pressure| part(ends, pressure);
+            let parts = vec![of([0.0, 0.5], [-2.0, -1.0]), of([0.5, 1.0], [0.0; 2])];
+            let mut contacts = [Contact { law, ..contact(parts) }];
+            let changed = fall_off(&mut contacts, &[(0, 0)]);
+            (changed, contacts[0].parts.iter().map(|part| part.pressure).collect::<Vec<_>>())
+        };
+        let (changed, pressures) = fallen(Law::Contact);
+        // With the same force, and 0 where it ends.
+        assert!(changed && pressures[0][0] == -2.0 && pressures != fallen(Law::Bonded).1);
+        for law in [Law::Friction(Bound::Tresca([1.0; 2])), Law::Bonded] {
+            assert_eq!(fallen(law), (false, vec![[-2.0, -1.0], [0.0; 2]]));
+        }
+    }
 }

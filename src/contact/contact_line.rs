@@ -575,4 +575,26 @@ mod tests {
         assert!(place, "{refused:?}");
         assert!(matches!(tresca([f64::INFINITY, 0.0]), Err(DataError::NotFinite { .. })));
     }
+
+    #[test]
+    fn shares_of_one_edge_add_up_where_they_overlap_and_the_largest_counts_where_they_do_not() {
+        let kappa = |shares: &[(usize, [f64; 2], f64)]| {
+            let share = |&(edge, part, value): &(usize, [f64; 2], f64)| Share {
+                place: (7, edge, Some("other".into())),
+                part,
+                value,
+            };
+            by_triangle(shares.iter().map(share).collect(), f64::max)[&7]
+        };
+        for order in [[0, 1, 2], [2, 0, 1], [1, 2, 0]] {
+            let of = |shares: [(usize, [f64; 2], f64); 3]| kappa(&order.map(|k| shares[k]));
+            let [first, last] = [(1, [0.0, 0.25], 1.0), (1, [0.75, 1.0], 2.0)];
+            assert_eq!(of([first, (1, [0.25, 0.75], 4.0), last]), 4.0);
+            // With the last one, and with the first one.
+            assert_eq!(of([first, (1, [0.5, 0.8], 4.0), last]), 7.0);
+            assert_eq!(of([first, (1, [0.0, 0.5], 4.0), last]), 7.0);
+            // On another edge of the triangle.
+            assert_eq!(of([first, (2, [0.25, 0.75], 4.0), last]), 2.0 + 4.0);
+        }
+    }
 }

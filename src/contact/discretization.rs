@@ -365,4 +365,18 @@ mod tests {
         // The control: along the axis it moves without strain.
         assert_eq!(d.internal_forces(&[[0.0, 0.5]; 4]).energy, 0.0);
     }
+
+    #[test]
+    fn a_rule_for_contact_edges_without_points_is_refused_and_one_with_a_point_is_not() {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let problem = square(corners, Plane::Strain).with("top", Condition::clamped());
+        let by = |points: Vec<(f64, f64)>| {
+            let rule = EdgeRule::Gauss(points);
+            let d = Discretization::new(&problem, Degree::One, |c| c.limit() / 2.0, rule);
+            d.map(|_| ()).map_err(|error| error.to_string())
+        };
+        let error = by(Vec::new()).unwrap_err();
+        assert!(error.contains("the rule for contact edges"), "{error}");
+        assert_eq!(by(vec![(0.5, 1.0)]), Ok(()));
+    }
 }

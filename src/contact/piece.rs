@@ -861,6 +861,28 @@ mod tests {
     }
 
     #[test]
+    fn what_p0_is_added_up_from_has_its_size_whatever_its_signs() {
+        let material = Material::lame(1.0, 1.0, crate::kernel::Plane::Strain);
+        let problem = beside([[0.0, 1.0], [1.0, 2.0]], material, 0.1);
+        let space = Space::new(&problem.mesh, Degree::One);
+        let pieces = contact_line::assemble(&problem, &space, 1.0).unwrap();
+        let [piece] = &pieces[..] else { panic!("one piece") };
+        let by = |sign: f64| -> Vec<[f64; 2]> {
+            (0..8)
+                .map(|k| [(1.7 * f64::from(k)).sin(), sign * (2.3 * f64::from(k)).cos()])
+                .collect()
+        };
+        let [magnitudes, turned] =
+            [1.0, -1.0].map(|sign| piece.p0_magnitudes(&by(sign)).collect::<Vec<f64>>());
+        assert_eq!(magnitudes, turned);
+        let [p, other] = [1.0, -1.0].map(|sign| piece.p0(&by(sign)));
+        for ((p, other), size) in p.iter().zip(&other).zip(magnitudes) {
+            assert!(p.abs() <= size && other.abs() <= size);
+            assert!((p - other).abs() > 0.1, "control");
+        }
+    }
+
+    #[test]
     fn the_slip_bound_of_a_pair_is_that_halfway_between_the_bodies() {
         let material = Material::lame(1.0, 1.0, crate::kernel::Plane::Strain);
         let mut problem = beside([[1.0, 2.0], [3.0, 4.0]], material, 1.5);

@@ -200,6 +200,30 @@ mod tests {
     }
 
     #[test]
+    fn places_and_values_must_be_finite() {
+        let mesh = mesh(Diagonal::Right);
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let read = |change: fn(&mut ([f64; 2], [f64; 2]), f64)| {
+                let mut points = field(&mesh);
+                change(&mut points[5], bad);
+                at_nodes(&points, &mesh, Degree::One)
+            };
+            let changes: [fn(&mut ([f64; 2], [f64; 2]), f64); 4] = [
+                |(x, _), bad| x[0] = bad,
+                |(x, _), bad| x[1] = bad,
+                |(_, u), bad| u[0] = bad,
+                |(_, u), bad| u[1] = bad,
+            ];
+            for change in changes {
+                let error = read(change).unwrap_err();
+                assert!(error.starts_with("point 5 has a number that is NaN or"), "{error}");
+            }
+            // The control: where nothing is changed the field is read.
+            assert!(read(|_, _| ()).is_ok());
+        }
+    }
+
+    #[test]
     fn a_small_body_far_from_the_origin_finds_its_points() {
         let at = |x: f64| 1e5 + x * 2f64.powi(-33);
         let places = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|x| x.map(at));

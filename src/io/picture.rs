@@ -626,4 +626,29 @@ mod tests {
         let nothing = said(Vec::new(), false);
         assert!(!nothing.contains("proved:") && !nothing.contains("opening"), "{nothing}");
     }
+
+    #[test]
+    fn panels_stand_two_in_a_row_and_the_next_ones_below_these() {
+        let mut scene = block(4);
+        scene.contact = vec![scene.contact[0].clone(); 5];
+        let scale = Scale::of(std::slice::from_ref(&scene)).unwrap();
+        let drawn = panel::panels(&scene, &scale, [10.0, 20.0], 600.0).to_string();
+        let mut circles: Vec<[f64; 2]> = Vec::new();
+        for event in svg::read(&drawn).unwrap() {
+            if let Event::Tag("circle", Type::Empty, attributes) = event {
+                circles.push(["cx", "cy"].map(|key| attributes[key].parse().unwrap()));
+            }
+        }
+        // Before each there is the dot at the peak of the pressure.
+        let tags: Vec<[f64; 2]> = circles.into_iter().skip(1).step_by(2).collect();
+        let [a, b, c, d, e] = tags[..] else { panic!("a tag for each: {tags:?}") };
+        assert!(b[0] > a[0] && a[1] == b[1], "{tags:?}");
+        let below = c[1] - a[1];
+        assert!(
+            below > 100.0 && c == [a[0], a[1] + below] && d == [b[0], b[1] + below],
+            "{tags:?}"
+        );
+        assert_eq!(e, [a[0], a[1] + 2.0 * below]);
+        assert_eq!(panel::height(&scene), 3.0 * below);
+    }
 }

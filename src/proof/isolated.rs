@@ -745,6 +745,12 @@ pub(super) struct Rest<'a> {
     pub(crate) size: f64,
 }
 
+/// Whether a map that brings two points of a ball nearer by the factor `q` and moves its centre by `step` stays in the ball, whose
+/// radius is `r`: then one point there, and no other, stays where it is.
+fn contracts(step: f64, q: f64, r: f64) -> bool {
+    up(step + up(q * r)) <= r && q < 1.0
+}
+
 /// Decides around the displacement `u` with the residual `of`. The norm is that of A, or of A with the springs that are
 /// `known`; `by_a` then has the bounds without springs.
 ///
@@ -789,7 +795,7 @@ pub(super) fn isolate(
     let step = up(inverse.times(&w, [rho, left]) + product(spread, &sizes));
     let holds = |r: f64| {
         let q = nearer(r);
-        (up(step + up(q * r)) <= r && q < 1.0).then_some(q)
+        contracts(step, q, r).then_some(q)
     };
     let radii =
         (0..160).map(|k| start * 2.0_f64.powi(k)).take_while(|&r| r <= 1e3 * size.max(start));
@@ -1244,5 +1250,44 @@ mod tests {
             least_control = least_control.min(on.weight * (n * n + t * t) / found);
         });
         assert!(least_control < 0.75, "control: less without what MU P_n does, {least_control}");
+    }
+
+    #[test]
+    fn where_no_region_is_sure_all_terms_are_possible_and_where_one_is_its_own() {
+        let contact = |is: &[Region]| possible(Law::Contact, |region| is.contains(&region));
+        let (open, pressed) = ([0.0; 3], [1.0, 0.0, 0.0]);
+        assert_eq!(contact(&[]), [open, pressed]);
+        assert_eq!(contact(&[Region::Open]), [open]);
+        assert_eq!(contact(&[Region::Pressed]), [pressed]);
+        let coulomb = Law::Friction(Bound::Coulomb(0.5));
+        let coulomb = |is: &[Region]| possible(coulomb, |region| is.contains(&region));
+        let [sticks, right, left] = [[1.0, 0.0, 1.0], [1.0, 0.5, 0.0], [1.0, -0.5, 0.0]];
+        assert_eq!(coulomb(&[]), [open, sticks, right, left]);
+        assert_eq!(coulomb(&[Region::Left]), [open, left]);
+        assert_eq!(coulomb(&[Region::Pressed]), [sticks, right, left]);
+        assert_eq!(coulomb(&[Region::Pressed, Region::Right]), [right]);
+        assert_eq!(coulomb(&[Region::Open]), [open]);
+        let tresca = Law::Friction(Bound::Tresca([1.0; 2]));
+        let tresca = |is: &[Region]| possible(tresca, |region| is.contains(&region));
+        let [normal, shear, both] = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 1.0]];
+        assert_eq!(tresca(&[]), [shear, both, open, normal]);
+        assert_eq!(tresca(&[Region::Open, Region::Sticks]), [shear]);
+        assert_eq!(tresca(&[Region::Pressed, Region::Left]), [normal]);
+    }
+
+    #[test]
+    fn a_contraction_has_a_fixed_point_in_a_ball_that_it_does_not_leave() {
+        // x -> q x + step has the fixed point step / (1 - q).
+        for q in [0.0, 0.25, 0.5, 0.96875] {
+            for step in [1.0, 1e-9, 1e9] {
+                let r = step / (1.0 - q);
+                assert!(contracts(step, q, r * (1.0 + 1e-12)), "{q} {step}");
+                assert!(!contracts(step, q, r * (1.0 - 1e-12)), "{q} {step}");
+            }
+        }
+        for q in [1.0, 1.5, f64::NAN] {
+            assert!(!contracts(0.0, q, 1.0), "{q}");
+        }
+        assert!(!contracts(f64::NAN, 0.5, 1.0) && !contracts(0.1, 0.5, f64::NAN));
     }
 }

@@ -494,4 +494,27 @@ mod tests {
         assert!(attained(share([1.0, 0.0, 0.0], worst), revolution));
         assert!(revolution > plane, "control: the one in the plane is no bound beside an axis");
     }
+
+    #[test]
+    fn the_mean_of_v_r_is_no_more_than_the_hoop_strain_allows_and_as_much_beside_the_axis_and_far_off()
+     {
+        for r in [1e-3, 1.0, 1e3] {
+            let vertices = [[r, 0.0], [r + 0.3 * r, 0.0], [r, 0.5]];
+            let none: [(String, Vec<[usize; 2]>); 0] = [];
+            let mesh = Mesh::new(vertices.to_vec(), vec![[0, 1, 2]], none).unwrap();
+            // sigma : eps = 2 eps : eps.
+            let material = Material::lame(0.0, 1.0, Plane::Axisymmetric);
+            let problem = Problem::of(mesh, material);
+            let holds = hoops(&problem.mesh, &problem.material, &[0], 1);
+            // v = (r, 0) has the strains 1 in its meridian and along its hoops, the mean radius for its mean.
+            let (mean, area) = (1.1 * r, 0.5 * 0.3 * r * 0.5);
+            let norm = (4.0 * mean * area).sqrt();
+            assert!(!holds.is_empty());
+            for hold in holds {
+                let ratio = hold.most * norm / mean;
+                // The strain in the meridian is as large: a root of 2.
+                assert!(ratio >= 2.0_f64.sqrt() && ratio < 1.42, "{r}: {ratio}");
+            }
+        }
+    }
 }

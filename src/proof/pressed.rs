@@ -523,4 +523,33 @@ mod tests {
         assert!(all.pieces(0).is_empty());
         assert_eq!(all.pieces(1), is_pressed);
     }
+
+    #[test]
+    fn no_polynomial_is_larger_than_said_of_its_square_and_one_of_each_degree_is_as_large() {
+        for degree in [Degree::One, Degree::Two] {
+            for [start, end] in [[0.0, 1.0], [0.25, 0.75], [0.5, 0.625]] {
+                let piece = EdgePiece::between(degree, None, [start, end]);
+                // Legendre's polynomials times 2 k + 1 are the largest at the end, for their mean square.
+                let largest = |x: f64| {
+                    let t = (2.0 * x - start - end) / (end - start);
+                    let bend = 2.5 * (3.0 * t * t - 1.0);
+                    1.0 + 3.0 * t + if degree == Degree::Two { bend } else { 0.0 }
+                };
+                let square = |p: &dyn Fn(f64) -> f64| -> f64 {
+                    let at: Vec<f64> =
+                        [0.0, 1.0, 0.5][..degree.nodes_per_edge()].iter().map(|&x| p(x)).collect();
+                    let rows = piece.mass.iter().zip(&at);
+                    rows.map(|(row, p)| {
+                        row.iter().zip(&at).map(|(m, q)| p * m.head() * q).sum::<f64>()
+                    })
+                    .sum()
+                };
+                let said = piece.square.head();
+                let ratio = |p: &dyn Fn(f64) -> f64| p(end).powi(2) / (said * square(p));
+                assert!((ratio(&largest) - 1.0).abs() < 1e-12, "{}", ratio(&largest));
+                // The control: a polynomial that is not the largest.
+                assert!(ratio(&|x| x) < 0.99);
+            }
+        }
+    }
 }

@@ -686,4 +686,34 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn the_rounding_of_a_stress_is_that_of_the_triangles_own_material() {
+        let square = Rectangle { width: 1.0, height: 1.0, nx: 2, ny: 2, diagonal: Diagonal::Right };
+        let mesh = square.mesh().unwrap();
+        let all: Vec<usize> = (0..mesh.triangles().len()).collect();
+        for plane in [crate::kernel::Plane::Strain, crate::kernel::Plane::Axisymmetric] {
+            let [soft, stiff] = [1e-3, 1.0].map(|by| Material::lame(1.3 * by, 0.7 * by, plane));
+            // No triangle is made of the first.
+            let second = Materials::in_parts(soft, all.len(), [(stiff, &all[..])]);
+            let bounds = |materials: Materials, degree: Degree| {
+                let problem = Problem::of(mesh.clone(), materials)
+                    .with("top", Condition::clamped())
+                    .with("bottom", Condition::contact(|_| 0.0));
+                let d = discretize(&problem, &Method { degree, ..Method::default() }).unwrap();
+                let of =
+                    |&[x, y]: &[f64; 2]| [(3.0 * x + y).sin() * x, x * y].map(PreciseBall::from);
+                let u: Vec<[PreciseBall; 2]> = d.space.nodes().iter().map(of).collect();
+                let mut forces = vec![[PreciseBall::from(0); 2]; u.len()];
+                (add_forces(&d, &u, &mut forces), energy_norm_at_most(&d, &u))
+            };
+            for degree in [Degree::One, Degree::Two] {
+                let [alone, own, other] = [stiff.into(), second.clone(), soft.into()]
+                    .map(|materials| bounds(materials, degree));
+                assert_eq!(own, alone, "{degree:?}");
+                // The control: that of the first is another.
+                assert!(other.0 < 0.1 * own.0 && other.1 < 0.1 * own.1, "{other:?} {own:?}");
+            }
+        }
+    }
 }

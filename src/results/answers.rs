@@ -400,7 +400,7 @@ impl ContactBoundary {
         self.partner.is_none() && self.friction.is_none()
     }
 
-    fn empty(boundary: &str, partner: Option<String>) -> Self {
+    pub(super) fn empty(boundary: &str, partner: Option<String>) -> Self {
         ContactBoundary {
             boundary: boundary.to_owned(),
             opening: partner.is_some().then_some(f64::NEG_INFINITY),

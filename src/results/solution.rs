@@ -395,3 +395,57 @@ fn quantities(d: &Discretization, Evaluated { u, p, residual }: &Evaluated) -> Q
     }
     q
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::proof::intervals::ContactIntervals;
+
+    #[test]
+    fn each_pair_of_a_boundary_in_two_pairs_has_its_own_interval() {
+        let partners = [None, Some("left"), Some("right")];
+        let boundary = |(k, partner): (usize, Option<&str>)| ContactBoundary {
+            force: k as f64,
+            resultant: [-(k as f64); 2],
+            ..ContactBoundary::empty("pin", partner.map(str::to_owned))
+        };
+        let mut parts: Vec<_> = partners.into_iter().enumerate().map(boundary).collect();
+        let before = parts.clone();
+        let interval = |(k, partner): (usize, Option<&str>)| {
+            let (low, high) = (k as f64 + 0.25, k as f64 + 0.5);
+            ContactIntervals {
+                boundary: "pin".to_owned(),
+                partner: partner.map(str::to_owned),
+                force: [low, high],
+                resultant: [[-high, -low]; 2],
+            }
+        };
+        let proved = |partners: &[Option<&str>]| Intervals {
+            energy: [0.0; 2],
+            max_displacement: [0.0; 2],
+            contact: partners.iter().copied().enumerate().map(interval).collect(),
+            reactions: BTreeMap::new(),
+        };
+        let mut quantities = Quantities {
+            energy: 0.0,
+            elastic_energy: 0.0,
+            work: 0.0,
+            max_displacement: 0.0,
+            contact_force: 0.0,
+            contact_resultant: [0.0; 2],
+            contact_length: 0.0,
+            peak_pressure: 0.0,
+            reactions: BTreeMap::new(),
+            reaction_moments: BTreeMap::new(),
+        };
+        put_between(&proved(&partners), &mut quantities, &mut parts);
+        for (k, part) in parts.iter().enumerate() {
+            let at = k as f64 + 0.25;
+            assert_eq!((part.force, part.resultant), (at, [-at; 2]), "{k}");
+        }
+        // The control: that of another partner is none of its own.
+        let mut parts = before.clone();
+        put_between(&proved(&[Some("other")]), &mut quantities, &mut parts);
+        assert_eq!(parts, before);
+    }
+}

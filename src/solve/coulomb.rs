@@ -644,6 +644,28 @@ mod tests {
     }
 
     #[test]
+    fn one_piece_with_coulombs_friction_is_enough_for_its_route() {
+        let mesh = Rectangle { width: 1.0, height: 1.0, nx: 2, ny: 2, diagonal: Diagonal::Right };
+        let mesh = mesh.mesh().unwrap();
+        let of = |laws: [Option<Friction>; 2]| {
+            let mut problem = Problem::of(mesh.clone(), Material::lame(1.0, 1.0, Plane::Strain))
+                .with("top", Condition::clamped());
+            for (name, law) in ["bottom", "right"].into_iter().zip(laws) {
+                problem = problem.with(name, Condition::contact(|_| 0.0));
+                problem = law.into_iter().fold(problem, |p, law| p.with_friction(name, law));
+            }
+            let d =
+                Discretization::new(&problem, Degree::One, |c| c.limit() / 2.0, EdgeRule::Exact);
+            d.unwrap().has_coulomb()
+        };
+        let (coulomb, tresca) =
+            (|| Some(Friction::Coulomb(0.2)), || Some(Friction::tresca(|_| 0.1)));
+        assert!(of([coulomb(), coulomb()]) && of([coulomb(), tresca()]) && of([None, coulomb()]));
+        // The control.
+        assert!(!of([tresca(), tresca()]) && !of([None, tresca()]) && !of([None, None]));
+    }
+
+    #[test]
     fn continuation_alone_leads_to_a_solution_which_is_that_with_its_pressure_for_a_bound() {
         let problem = block();
         for degree in [Degree::One, Degree::Two] {

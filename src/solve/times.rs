@@ -66,3 +66,22 @@ impl Stopwatch {
         lap
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_part_but_those_after_the_solution_counts_once_in_the_two_sums() {
+        // Powers of two: a sum tells its terms.
+        let [discretize, matrix, factor, compliance, newton, judge, certify, evaluate] =
+            [1, 2, 4, 8, 16, 32, 64, 128].map(Duration::from_secs);
+        let times =
+            Times { discretize, matrix, factor, compliance, newton, judge, certify, evaluate };
+        assert_eq!(times.assemble().as_secs(), 1 + 2);
+        assert_eq!(times.solve().as_secs(), 4 + 8 + 16 + 32);
+        let twice = times.plus(&times);
+        assert_eq!((twice.assemble(), twice.solve()), (times.assemble() * 2, times.solve() * 2));
+        assert_eq!((twice.certify, twice.evaluate), (certify * 2, evaluate * 2));
+    }
+}

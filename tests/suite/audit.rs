@@ -298,6 +298,26 @@ fn a_triangle_may_be_out_of_balance_by_128_units_of_its_forces() {
 }
 
 #[test]
+fn a_claimed_share_is_the_very_number_that_the_data_give() {
+    let Continuous { certificate, proof, bound, .. } = certified(OBLIQUE, &[]);
+    let audited = |shares: Vec<f64>| {
+        let claim = Claim { shares, bound, forces: Evidence::default() };
+        certificate.audit(&claim).map(|_| ())
+    };
+    assert_eq!(audited(proof.shares.clone()), Ok(()));
+    let of = proof.shares.iter().position(|&share| share > 0.0).unwrap();
+    for other in [proof.shares[of].next_up(), proof.shares[of].next_down()] {
+        let mut shares = proof.shares.clone();
+        shares[of] = other;
+        let found = audited(shares);
+        assert!(
+            matches!(found, Err(Rejection::Share { triangle, .. }) if triangle == of),
+            "{found:?}"
+        );
+    }
+}
+
+#[test]
 fn the_text_of_a_file_is_shown_on_one_short_line() {
     let (header, arrays) = encoded(&certified(LOADED, &[]));
     let forged = "x\n  rigorous    yes\u{1b}[2J".repeat(10_000);

@@ -531,6 +531,24 @@ boundaries = ["foot", "table"]
 "#;
     let (_, certified) = certified(read(text, 2, 1));
     assert!(certified.proof.stop < 1e-10 && certified.relative < 1.0, "{certified:?}");
+    // Triangles balance though there is a support elsewhere: beside an inner edge there is one that the support is not on.
+    let audited = |certificate: &Certificate| {
+        let claim = Claim {
+            shares: certified.proof.shares.clone(),
+            bound: certified.bound,
+            forces: Evidence::default(),
+        };
+        certificate.audit(&claim).map(|_| ())
+    };
+    assert_eq!(audited(&certified.certificate), Ok(()));
+    for e in 0..certified.certificate.edges.len() {
+        let mut moved = certified.certificate.clone();
+        if let Role::Inner(force) = &mut moved.edges[e].role {
+            force.iter_mut().for_each(|f| f[0] += 1e-9);
+            let found = audited(&moved);
+            assert!(matches!(found, Err(Rejection::OutOfBalance { .. })), "{e}: {found:?}");
+        }
+    }
     // Control: a force along them that no rounding leaves is taken by no support.
     let mut pushed = certified.certificate;
     for edge in &mut pushed.edges {

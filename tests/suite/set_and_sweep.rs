@@ -403,6 +403,25 @@ fn forces_reactions_and_energies_of_a_sweep_are_those_of_the_whole_thickness() {
     assert_eq!(thick.len(), thin.len());
 }
 
+/// One step is what its keys say, not the case without them.
+#[test]
+fn one_load_step_is_solved_as_several_are() {
+    let force = |step: &str, name: &str, result: &str| {
+        let folder = folder(name, &[["[output]", &format!("{step}[output]")]]);
+        let output = signorini(&folder, &["solve", "case.toml"]);
+        assert_eq!(ended(&output), (Some(0), ""));
+        let json = fs::read_to_string(folder.join("out/case").join(result)).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+        let force = json["contact"][0]["force"].as_f64().unwrap();
+        (force, names(&folder.join("out/case")))
+    };
+    let step = "[[step]]\nboundary.top.displacement = [\"0\", \"-0.5\"]\n";
+    let (pressed, files) = force(step, "one-step", "1/result.json");
+    assert_eq!(files, ["1", "steps.csv", "steps.pvd", "steps.svg"]);
+    let (free, _) = force("", "no-step", "result.json");
+    assert!(pressed > 2.0 * free.abs(), "{pressed} {free}");
+}
+
 #[test]
 fn load_steps_are_solved_one_after_the_other_and_have_a_table() {
     let steps = "[[step]]\nboundary.top.displacement = [\"0\", \"-0.05\"]\n[[step]]\nboundary.top.displacement = [\"0.05\", \"-0.05\"]\n[[step]]\nboundary.top.displacement = [\"0.02\", \"-0.05\"]\ntitle = \"Back\"\n";

@@ -361,6 +361,31 @@ fn what_is_no_pair_is_refused_with_its_place() {
     );
 }
 
+/// Of the two sides that meet at each of these corners one faces the other corner, whatever the second one does.
+#[test]
+fn a_corner_one_side_of_which_faces_the_other_body_is_not_alone() {
+    let squares =
+        [[[0.0, -1.0], [1.0, 0.0]], [[-1.0, 0.1], [0.0, 1.1]], [[-1.0, -0.5], [-0.5, 0.0]]];
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for [[left, low], [right, high]] in squares {
+        let k = vertices.len();
+        vertices.extend([[left, low], [right, low], [right, high], [left, high]]);
+        triangles.extend([[k, k + 1, k + 2], [k, k + 2, k + 3]]);
+    }
+    // The top and the left side of the first square, the bottom and the right side of the second one, the top of the third.
+    let pieces = |below: &[[usize; 2]]| {
+        let named = [("below", below.to_vec()), ("above", vec![[4, 5], [5, 6]])];
+        let named = named.map(|(name, edges)| (name.to_owned(), edges));
+        let mesh = Mesh::of_edges(vertices.clone(), triangles.clone(), named.into(), &|_, _| true);
+        let pair = Pair::new("below", "above").with_reach(0.2);
+        found(&mesh.unwrap(), &pair, Degree::One).map(|pieces| pieces.len())
+    };
+    assert_eq!(pieces(&[[2, 3], [3, 0], [10, 11]]).unwrap(), 1);
+    // The control: without the side that faces it the corner is alone.
+    let alone = pieces(&[[3, 0], [10, 11]]).unwrap_err().to_string();
+    assert!(alone.contains("the corner at (0, 0) meets the corner at (0, 0.1)"), "{alone}");
+}
+
 #[test]
 fn the_reach_is_bounded_by_the_curvature_and_by_the_bodies() {
     let inner = ring([0.1, 0.5], [0.0, PI], 0.0, 0.0);
