@@ -32,7 +32,7 @@ fn is_in([s, t]: [f64; 2], [low, high]: [f64; 2]) -> bool {
     s >= low - PLACES && t <= high + PLACES
 }
 
-/// Whether they have no more than an end in common.
+/// Whether a stretch of an edge has no more than an end in common with another.
 fn is_off([s, t]: [f64; 2], [low, high]: [f64; 2]) -> bool {
     t <= low + PLACES || s >= high - PLACES
 }

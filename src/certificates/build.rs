@@ -200,7 +200,7 @@ impl Built {
                         Law::Bonded { shear, .. } => *shear = across,
                         Law::Friction { shear, bound } => {
                             let most = bound[0].min(bound[1]);
-                            // What rounding is beyond a bound that varies leaves equal tractions equal: where the direction turns, they
+                            // Tractions that are beyond a varying bound by rounding stay equal to each other: where the direction turns, they
                             // must be.
                             let most = if across[0] == across[1] { [most; 2] } else { *bound };
                             *shear = [0, 1].map(|k| across[k].clamp(-most[k], most[k]));

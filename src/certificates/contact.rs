@@ -862,7 +862,7 @@ const LEAST_PART: f64 = 0.15;
 mod tests {
     use super::*;
 
-    /// Of the edge with the places from 0 to 1, where 1e-3 is one place.
+    /// Contact on an edge with the places from 0 to 1, where 1e-3 is one place.
     fn contact(parts: Vec<Part>) -> Contact {
         let edge = BoundaryEdge { triangle: 0, local: 0 };
         Contact {

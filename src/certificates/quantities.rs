@@ -162,7 +162,7 @@ const LEVELS: [f64; 3] = [0.5, 0.125, 0.03125];
 /// were moved by what the boundary's displacement has beyond a rigid motion.
 const TELLING: f64 = 0.1;
 
-/// What all of these are at least.
+/// The least lower end of four coefficients: no coefficient is below it.
 fn smallest<S: Enclosing>(all: &[S; 4]) -> f64 {
     all.iter().fold(f64::INFINITY, |least, c| least.min(c.lower()))
 }

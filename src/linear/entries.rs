@@ -18,7 +18,7 @@ pub(super) enum Entries {
 }
 
 impl Entries {
-    /// The bytes of so many.
+    /// The bytes of so many entries.
     pub(super) fn bytes(count: usize) -> usize {
         size_of::<f64>() * count
     }

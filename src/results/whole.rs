@@ -80,7 +80,7 @@ pub(super) fn of_the_whole(mut s: Solution) -> Solution {
     s
 }
 
-/// The same of where the exact solution is.
+/// Multiplies what is said of where the exact solution is.
 fn enclosed(enclosure: &mut Enclosure, whole: &Times) {
     // All three are roots of energies.
     for norm in [&mut enclosure.radius, &mut enclosure.pressure] {

@@ -157,7 +157,7 @@ struct Full<'r, 'i, 'a, 'd, 'p> {
     ad: Vec<f64>,
     /// The residual and P may be carried along with the steps: a pass that corrects follows.
     may_carry: bool,
-    /// They are, and wait to be evaluated: the magnitudes that P was added up from since.
+    /// The magnitudes that P was added up from since residual and P are carried along, before these are evaluated.
     carried: Option<Vec<f64>>,
     /// The largest energy of the steps of this pass, and the largest square of one beside its energy.
     energy: f64,

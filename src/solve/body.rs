@@ -149,7 +149,7 @@ pub fn derivatives(
     Derivatives { stiffness, gradient, hessian }
 }
 
-/// Those where all springs act.
+/// The derivatives where all springs act.
 pub(crate) fn all_springs(edges: &impl ContactEnergy, stiffness: f64) -> Derivatives {
     let closed: Vec<f64> = (0..edges.count()).flat_map(|e| edges.closed(e)).collect();
     derivatives(edges, stiffness, &closed)
@@ -178,7 +178,7 @@ pub(super) fn supported(edges: &impl ContactEnergy, at: &Derivatives) -> Vec<DMa
     at.hessian.iter().zip(&all.hessian).map(|(h, all)| h + SUPPORT * all).collect()
 }
 
-/// Those where none acts but what cannot let go.
+/// The derivatives where no spring acts but those that cannot let go.
 pub(crate) fn no_springs(edges: &impl ContactEnergy) -> Derivatives {
     let of = |e: usize| {
         let closed: Vec<DoubleDouble> = edges.closed(e).into_iter().map(Into::into).collect();

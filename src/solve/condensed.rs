@@ -233,7 +233,7 @@ impl Condensed<'_, '_, '_> {
 /// The relative residual to which some pieces are solved for: they tell where contact is, not how hard it presses.
 const ROUGHLY: f64 = 1e-3;
 
-/// One piece of so many is taken to start with: with a quarter of the functionals a dense factorisation takes a sixty-fourth.
+/// The number of pieces of which one is taken to start with: with a quarter of the functionals a dense factorisation takes a sixty-fourth.
 const EVERY: usize = 4;
 
 /// The number of functionals from which this pays: where they are fewer, the body takes most of the time.

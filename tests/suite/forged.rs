@@ -192,7 +192,7 @@ struct Honest {
     energy: Option<f64>,
 }
 
-/// What was answered: words, and a number.
+/// Answers: how often each was given, and the sum of its numbers.
 type Answers = BTreeMap<String, (usize, f64)>;
 
 /// Words without digits, and a number by which the digits count.
@@ -207,7 +207,7 @@ fn words(text: &str) -> (String, f64) {
 }
 
 impl Honest {
-    /// What is said of files, and of the same numbers with the claim that fits them.
+    /// The answer to files, and to the same numbers with the claim that fits them.
     fn answer(&self, header: &Header, bytes: &[u8]) -> (String, f64) {
         let error = match format::audit(header.clone(), bytes) {
             Ok(audit) => {
@@ -318,13 +318,13 @@ fn is_displacement(name: &str) -> bool {
     name.starts_with('w') || name.starts_with("dual w")
 }
 
-/// One of some places, and the first of them or not.
+/// A place among some, and the first one of these unless `one` is enough.
 fn some(places: &[usize], one: bool) -> Vec<usize> {
     let between = places[places.len() * 2 / 3];
     if one || between == places[0] { vec![between] } else { vec![places[0], between] }
 }
 
-/// What is done to a word, other than nothing.
+/// Changes of a word.
 fn changes(letter: u8, old: u64, next: u64, largest: f64) -> Vec<(&'static str, u64)> {
     let mut all = vec![("next", next)];
     if letter == b'f' {
@@ -372,7 +372,7 @@ fn forge(honest: &Honest, answers: &mut Answers) {
                     _ => 0.0,
                 };
                 let largest = places.iter().map(size).fold(0.0, f64::max);
-                // What rounding leaves is not the same everywhere.
+                // Numbers that rounding leaves differ from processor to processor.
                 let is_sure = |entry: &&usize| size(entry) == 0.0 || size(entry) > 1e-6 * largest;
                 let sure: Vec<usize> = places.iter().filter(is_sure).copied().collect();
                 for entry in some(&sure, is_large || is_displacement(layout.name)) {
@@ -380,7 +380,7 @@ fn forge(honest: &Honest, answers: &mut Answers) {
                     let next = sure[next % sure.len()];
                     let [old, other] = [entry, next].map(|entry| word(bytes, at(entry)));
                     for (how, new) in changes(letter, old, other, largest) {
-                        // What is linear needs no more.
+                        // Linear data need no more.
                         if matches!(how, "minus" | "twice") && is_displacement(layout.name) {
                             continue;
                         }
@@ -446,7 +446,7 @@ fn forge(honest: &Honest, answers: &mut Answers) {
 /// The arrays of what is computed to prove forces: zeros of theirs are rounding, which decides what a few forgeries of them are.
 const COMPUTED: [&str; 3] = ["w ", "lifts ", "forces "];
 
-/// What differs from what was recorded by more than rounding.
+/// Answers that differ from the recorded ones by more than rounding.
 fn changed(recorded: &Answers, found: &Answers) -> Vec<String> {
     let all: BTreeSet<&String> = recorded.keys().chain(found.keys()).collect();
     let count = |of: &Answers, key: &str| of.get(key).map_or(0, |(count, _)| *count);

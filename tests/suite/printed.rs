@@ -195,7 +195,7 @@ fn all(room: &Path) -> String {
             add(&format!("report: {name}"), &mut kept(&rows(&html).join("\n")));
         }
     }
-    // Of bodies that have certificates, and of one of revolution, which has none.
+    // A body with a certificate, and one of revolution, which has none.
     for (name, size, cells) in [("steel-p1", [40.0, 20.0], [6, 3]), ("solid-p1", [1.0; 2], [4; 2])]
     {
         let mut field = "x,y,ux,uy\n".to_owned();

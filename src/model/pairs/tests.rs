@@ -361,7 +361,7 @@ fn what_is_no_pair_is_refused_with_its_place() {
     );
 }
 
-/// Of the two sides that meet at each of these corners one faces the other corner, whatever the second one does.
+/// One side of each of two corners faces the other corner, whatever the second side does.
 #[test]
 fn a_corner_one_side_of_which_faces_the_other_body_is_not_alone() {
     let squares =
