@@ -154,7 +154,7 @@ fn check(arguments: &CaseArguments, quiet: bool) -> Result<Done, Failure> {
                 // What is held and what is not shows in the list.
                 say(&quote::lines(&checked::listed(&case)))?;
             }
-            let error = error.of_thickness(case.thickness.unwrap_or(1.0));
+            let error = error.of_thickness(case.thickness);
             Err(Failure::from(error).of(&case.file))
         }
     }

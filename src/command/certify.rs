@@ -36,7 +36,7 @@ pub(crate) fn certify(
     let watcher = |phase| phases.enter_solve(phase);
     let course = Course::default().watched_by(&watcher);
     let (solution, _) = solve_along(&case.problem, &case.method, &case.settings, course)
-        .map_err(|error| error.of_thickness(case.thickness.unwrap_or(1.0)))
+        .map_err(|error| error.of_thickness(case.thickness))
         .map_err(|error| Failure::from(error).of(&case.file))?;
     phases.enter("certifying");
     let certified = certify_field(&case.problem, &solution, &field)

@@ -69,7 +69,7 @@ pub fn solve(
         let course = Course::default().watched_by(&of_solve);
         let course = start.map_or(course, |start| course.from_displacement(&start.displacement));
         let solved = solve_along(&case.problem, &case.method, &case.settings, course)
-            .map_err(|error| error.of_thickness(case.thickness.unwrap_or(1.0)))?;
+            .map_err(|error| error.of_thickness(case.thickness))?;
         let mut solved = Solved::from(solved);
         if case.asks_for_certificate() {
             watcher(Stage::Certify(0));
@@ -79,7 +79,7 @@ pub fn solve(
     };
     let goal = (target, force.as_deref());
     let how = (&case.method, &case.settings);
-    let thickness = case.thickness.unwrap_or(1.0);
+    let thickness = case.thickness;
     let (problem, adapted) = adapt::adapt_to(case.problem, how, goal, &case.asked, watcher)
         .map_err(|error| match error {
             AdaptError::Solve { level, error } => {

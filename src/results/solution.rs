@@ -127,7 +127,7 @@ pub struct ContactPoint {
 }
 
 /// Scalars of a solution, in the units of the case.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "files", derive(Serialize, Deserialize))]
 #[non_exhaustive]
 pub struct Quantities {
@@ -361,12 +361,7 @@ fn quantities(d: &Discretization, Evaluated { u, p, residual }: &Evaluated) -> Q
         elastic_energy: energy / 2.0,
         work: inner(&d.load, u),
         max_displacement: u.iter().fold(0.0, |max, v| f64::max(max, v[0].hypot(v[1]))),
-        contact_force: 0.0,
-        contact_resultant: [0.0; 2],
-        contact_length: 0.0,
-        peak_pressure: 0.0,
-        reactions: BTreeMap::new(),
-        reaction_moments: BTreeMap::new(),
+        ..Quantities::default()
     };
     for (edge, p) in d.contact.iter().zip(p) {
         let contact = edge.contribution(&d.rule, p);
@@ -426,18 +421,7 @@ mod tests {
             contact: partners.iter().copied().enumerate().map(interval).collect(),
             reactions: BTreeMap::new(),
         };
-        let mut quantities = Quantities {
-            energy: 0.0,
-            elastic_energy: 0.0,
-            work: 0.0,
-            max_displacement: 0.0,
-            contact_force: 0.0,
-            contact_resultant: [0.0; 2],
-            contact_length: 0.0,
-            peak_pressure: 0.0,
-            reactions: BTreeMap::new(),
-            reaction_moments: BTreeMap::new(),
-        };
+        let mut quantities = Quantities::default();
         put_between(&proved(&partners), &mut quantities, &mut parts);
         for (k, part) in parts.iter().enumerate() {
             let at = k as f64 + 0.25;

@@ -80,11 +80,11 @@ pub fn history(residuals: &[f64]) -> String {
 }
 
 impl SolveError {
-    /// The error of a body of this thickness, from that per unit of thickness.
+    /// The error of a body of this thickness, if that is given, from the one of a unit of thickness.
     #[must_use]
-    pub(crate) fn of_thickness(mut self, thickness: f64) -> Self {
+    pub(crate) fn of_thickness(mut self, thickness: Option<f64>) -> Self {
         if let SolveError::Data(DataError::RigidMotion { drive: Some(drive), .. }) = &mut self {
-            *drive *= thickness;
+            *drive *= thickness.unwrap_or(1.0);
         }
         self
     }

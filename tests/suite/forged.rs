@@ -443,7 +443,8 @@ fn forge(honest: &Honest, answers: &mut Answers) {
     claim("boundaries, fewer", &|header| header.boundaries.truncate(1));
 }
 
-/// The arrays of what is computed to prove forces: zeros of theirs are rounding, which decides what a few forgeries of them are.
+/// The arrays of what is computed to prove forces: zeros of theirs are rounding, which decides what a few forgeries of them are
+/// (at most two of a kind where a factor added its products up in another order).
 const COMPUTED: [&str; 3] = ["w ", "lifts ", "forces "];
 
 /// Answers that differ from the recorded ones by more than rounding.

@@ -250,6 +250,7 @@ fn changed(recorded: &BTreeMap<String, f64>, found: &BTreeMap<String, f64>) -> V
     let differs = |key: &&&String| match (recorded.get(**key), found.get(**key)) {
         (Some(a), Some(b)) => {
             // Pictures have a few digits, the last of which may be either of two; enclosures are as wide as rounding makes them.
+            // Where a factor added its products up in another order, logarithms of widths differed by up to 0.36, one of a radius by 0.8.
             let tolerance = match key.rsplit(['.', '_', ' ']).next() {
                 Some("svg" | "discrete") => 1e-3 * (1.0 + a.abs()),
                 Some("widths") => 0.6,
