@@ -119,7 +119,7 @@ mod tests {
             (SolveError::Data(DataError::NoContact), true),
             (SolveError::Data(DataError::Mesh(MeshError::Empty)), true),
             (SolveError::NotCoercive { gamma0: 1.0, kappa: 2.0, limit: 0.5, edge }, true),
-            (SolveError::Data(DataError::Mesh(MeshError::OutOfMemory(lack.clone()))), false),
+            (SolveError::Data(DataError::Mesh(MeshError::OutOfMemory(lack))), false),
             (SolveError::from(lack), false),
             (SolveError::NotPositiveDefinite, false),
             (SolveError::NotConverged { residual: 0.1, residuals, tolerance: 1e-10 }, false),
