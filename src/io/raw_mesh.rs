@@ -16,7 +16,7 @@ use crate::model::merge::merge;
 use crate::model::mesh::{ROUNDED, length};
 use crate::model::tree::Bounds;
 use crate::model::{Mesh, MeshError};
-use crate::quote::number;
+use crate::quote::{number, quoted};
 
 type Result<T> = std::result::Result<T, Failure>;
 
@@ -254,8 +254,14 @@ impl RawMesh {
         if let Some(share) = share {
             self.merge_nodes(&places, share, pairs);
         }
-        let note =
+        let mut note =
             if is_mixed { format!("{}; {MIXED}", self.numbers) } else { self.numbers.to_owned() };
+        // Bodies that touch are refused where a name of their pair is misspelt.
+        let curves = self.curve_names();
+        let mut boundaries = pairs.iter().flat_map(|pair| &pair.boundaries);
+        if let Some(name) = boundaries.find(|name| !curves.contains(name)) {
+            note += &format!("; no curve is named {}, as a [[pair]] has it", quoted(name, '\''));
+        }
         let mesh = self.mesh(&places, &note, pairs)?;
         Ok(Made { mesh, remarks })
     }

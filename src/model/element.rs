@@ -172,6 +172,17 @@ impl Degree {
         with_element!(self, E => edge_integral::maximum::<E, _, _>(std::array::from_fn(|a| p[a])))
     }
 
+    /// The place inside (0, 1) where that polynomial is largest or least of all, if there is one.
+    pub(crate) fn vertex(self, p: &[f64]) -> Option<f64> {
+        if self == Degree::One {
+            return None;
+        }
+        let [start, middle, end] = [0.0, 0.5, 1.0].map(|s| self.value_at(p, s));
+        // Where the polynomial is affine the quotient is infinite or no number.
+        let s = (3.0 * start + end - 4.0 * middle) / (4.0 * (start + end - 2.0 * middle));
+        (0.0 < s && s < 1.0).then_some(s)
+    }
+
     /// The Bernstein coefficients of that polynomial, which lies between the least and the largest of them.
     pub(crate) fn bernstein<S: Scalar>(self, p: &[S]) -> Vec<S> {
         let mut coefficients = p.to_vec();

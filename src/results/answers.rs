@@ -486,7 +486,7 @@ impl ContactBoundary {
             let [a, b] = [places[0], places[1]];
             [0, 1].map(|c| (1.0 - s) * a[c] + s * b[c])
         };
-        for s in [0.0, 0.25, 0.5, 0.75, 1.0] {
+        for s in [0.0, 1.0].into_iter().chain(edge.degree.vertex(&overlaps)) {
             let depth = edge.degree.value_at(&overlaps, s);
             self.opening = self.opening.map(|opening| opening.max(-depth));
             if depth > self.penetration {

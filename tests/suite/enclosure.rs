@@ -346,8 +346,7 @@ fn reactions_are_enclosed_for_up_to_64_boundaries() {
         let problem = Problem::of(mesh, Material::lame(1.0, 1.0, Plane::Strain))
             .with_body_force(|_| 0.1, |_| 0.2)
             .with("0", Condition::contact(|_| 1.0));
-        let problem =
-            (1..=count).fold(problem, |p, k| p.with(k.to_string(), Condition::clamped()));
+        let problem = (1..=count).fold(problem, |p, k| p.with(k.to_string(), Condition::clamped()));
         let solution = solved(&problem, Degree::Two);
         let found = solution.enclosure.as_ref().unwrap();
         assert_eq!(solution.quantities.reactions.len(), count);

@@ -12,7 +12,7 @@ use crate::command::{signorini, with_files};
 use crate::common::root;
 
 /// The cases of `tests/recorded/cases.txt` whose text is kept; with the picture of those after which a `*` stands.
-const KEPT: [&str; 56] = [
+const KEPT: [&str; 57] = [
     "block-p1*",
     "coulomb-p1*",
     "steps-p1",
@@ -59,6 +59,7 @@ const KEPT: [&str; 56] = [
     "pair-twice",
     "pair-occupied",
     "pair-third",
+    "pair-misspelt",
     "pair-itself",
     "pair-far",
     "gap-and-obstacle",

@@ -39,7 +39,7 @@ pub enum PairError {
     Inner { boundary: String, pair: [String; 2], ends: [[f64; 2]; 2] },
     #[error(
         "the boundaries of {} face each other nowhere within the reach of {}: they come closest at {} and {}, {} apart; expected outward normals that are opposite there, and a reach above the gap",
-        named(pair), short(*reach), at(&places[0]), at(&places[1]), short(*distance)
+        named(pair), short(*reach), near(&places[0]), near(&places[1]), short(*distance)
     )]
     NoPartner { pair: [String; 2], reach: f64, places: [[f64; 2]; 2], distance: f64 },
     #[error(
@@ -59,4 +59,9 @@ pub(crate) fn named([first, second]: &[String; 2]) -> String {
 fn at([x, y]: &[f64; 2]) -> String {
     // Adding 0.0 spares the reader a -0.
     format!("({}, {})", number(x + 0.0), number(y + 0.0))
+}
+
+/// A place that is computed, to six digits.
+fn near(place: &[f64; 2]) -> String {
+    at(&place.map(|x| format!("{x:.5e}").parse().unwrap_or(x)))
 }
