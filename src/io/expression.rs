@@ -43,6 +43,8 @@ const MOST_OPERATIONS: usize = 10_000;
 pub struct Expression {
     /// The instructions in postfix order: each operation comes after its operands.
     instructions: Vec<Instruction>,
+    /// The degree in x and y, if the expression is a polynomial by its form: asked for on each edge.
+    degree: Option<u32>,
 }
 
 /// The place and the reason why a text is no expression.
@@ -144,6 +146,11 @@ fn constant(instructions: &[Instruction]) -> Option<f64> {
 }
 
 impl Expression {
+    fn new(instructions: Vec<Instruction>) -> Self {
+        let expression = Expression { instructions, degree: None };
+        Expression { degree: expression.polynomial_degree(), ..expression }
+    }
+
     /// The value at (x, y), over any number type.
     pub(crate) fn evaluate<T: Number>(&self, at: [T; 2]) -> T {
         evaluate(&self.instructions, at)
@@ -161,7 +168,7 @@ impl Function for Expression {
     }
 
     fn degree(&self) -> Option<u32> {
-        self.polynomial_degree()
+        self.degree
     }
 
     fn enclosed(&self, x: [f64; 2]) -> Option<Ball> {
@@ -171,7 +178,7 @@ impl Function for Expression {
 
 impl From<f64> for Expression {
     fn from(value: f64) -> Expression {
-        Expression { instructions: vec![Instruction::Number(value)] }
+        Expression::new(vec![Instruction::Number(value)])
     }
 }
 

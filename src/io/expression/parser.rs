@@ -70,7 +70,7 @@ impl<'t> Parser<'t> {
     pub(super) fn whole(&mut self) -> Result<Expression, ExpressionError> {
         self.operations = 0;
         self.expression(1)?;
-        Ok(Expression { instructions: std::mem::take(&mut self.instructions) })
+        Ok(Expression::new(std::mem::take(&mut self.instructions)))
     }
 
     /// Returns whether the token and this symbol have nothing between them.
