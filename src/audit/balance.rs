@@ -492,3 +492,69 @@ fn solve<S: Enclosing>(unit: [Wrench<S>; 3], total: Wrench<S>) -> [S; 3] {
         determinant(with) / whole
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certificate::Piece;
+    use crate::checks::Rejection;
+    use crate::kernel::{Material, Plane};
+
+    /// A square of two triangles under a pressure all round, on one side that of contact, which holds it along x alone: where its
+    /// direction turns it has one size. On the side below acts a further traction. With other units of length and of stress.
+    fn square(traction: [[f64; 2]; 2], [size, stress]: [f64; 2]) -> Certificate {
+        let edge = |start, end, role| Edge { ends: [start, end], role };
+        let below = traction.map(|[x, y]| [x * stress, (1.0 + y) * stress]);
+        let along = Some([[-1.0, 0.0], [-1.0, 2.0_f64.powi(-60)]]);
+        let law = Law::default();
+        let contact = Role::Contact { pressure: [-stress; 2], gap: [0.0; 2], along, law };
+        let piece = |vertices, edges| Piece {
+            vertices,
+            edges,
+            material: Material::lame(stress, stress, Plane::Strain),
+            body: [[0.0; 2]; 3],
+            oscillation: 0.0,
+        };
+        Certificate {
+            vertices: [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+                .map(|x| x.map(|c| size * c))
+                .into(),
+            displacement: vec![[0.0; 2]; 4],
+            prescribed: vec![[None; 2]; 4],
+            pieces: vec![piece([0, 1, 2], [0, 1, 2]), piece([0, 2, 3], [3, 4, 1])],
+            edges: vec![
+                edge(1, 2, Role::Pressed([stress; 2])),
+                edge(2, 0, Role::Inner([[size * stress, -size * stress]; 2])),
+                edge(0, 1, Role::Loaded(below)),
+                edge(2, 3, Role::Pressed([stress; 2])),
+                edge(3, 0, contact),
+            ],
+            ..Certificate::default()
+        }
+    }
+
+    #[test]
+    fn what_stops_a_motion_takes_the_same_share_of_the_forces_in_all_units() {
+        let small = 2.0_f64.powi(-34);
+        // Along y a force of small beside eight of 1; and a moment of small / 6, at the arm of half a side that contact has.
+        let (push, turn) = ([[0.0, small]; 2], [[0.0, -small], [0.0, small]]);
+        for (traction, share) in [(push, small / 8.0), (turn, small / 24.0)] {
+            for size in [1.0, 1024.0, 2.0_f64.powi(-10)] {
+                for stress in [1.0, 2.0_f64.powi(30)] {
+                    let found = square(traction, [size, stress]).prove().unwrap().stop;
+                    // The small traction itself counts among the forces, and what rounding leaves is 1e-15 of them.
+                    assert!(
+                        (found / share - 1.0).abs() <= 1e-2,
+                        "{found} {share}: {size} {stress}"
+                    );
+                    // Controls: a thousand times as much is a load, and none takes none.
+                    let loaded = traction.map(|t| t.map(|t| 1e3 * t));
+                    let loaded = square(loaded, [size, stress]).prove();
+                    assert!(matches!(loaded, Err(Rejection::Unbalanced(_))), "{loaded:?}");
+                    let free = square([[0.0; 2]; 2], [size, stress]).prove().unwrap().stop;
+                    assert!(free <= 1e-14, "{free}");
+                }
+            }
+        }
+    }
+}

@@ -42,6 +42,15 @@ pub(super) fn across(
     (nodes..2 * nodes).map(|i| jumps(motions, parts, space, piece, i)).collect()
 }
 
+/// int s N_a of an affine bound s with these values at the ends of a piece, N_a of degree 1 or 2.
+fn of_bound([s, t]: [f64; 2], length: f64, nodes: usize) -> Vec<f64> {
+    let sixth = length / 6.0;
+    match nodes {
+        2 => vec![sixth * (2.0 * s + t), sixth * (s + 2.0 * t)],
+        _ => vec![sixth * s, sixth * t, 2.0 * sixth * (s + t)],
+    }
+}
+
 impl Grip {
     /// Friction on the part that has these motions; nothing where there is none. `normal` are the rows c_i of its pieces.
     pub(super) fn new(
@@ -62,12 +71,7 @@ impl Grip {
             let rows = across(motions, parts, space, piece);
             match bound {
                 Bound::Tresca([s, t]) | Bound::Given([s, t, _]) => {
-                    // int s N_a, N_a of degree 1 or 2.
-                    let sixth = piece.length / 6.0;
-                    let weights = match rows.len() {
-                        2 => vec![sixth * (2.0 * s + t), sixth * (s + 2.0 * t)],
-                        _ => vec![sixth * s, sixth * t, 2.0 * sixth * (s + t)],
-                    };
+                    let weights = of_bound([s, t], piece.length, rows.len());
                     let sum = |k: usize| rows.iter().zip(&weights).map(|(r, w)| w * r[k]).sum();
                     grip.add((0..motions.len()).map(sum).collect());
                 }
@@ -174,5 +178,37 @@ impl Grip {
                 left(&changed).map(|motion| (motion, false))
             })
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Degree;
+    use crate::model::quadrature::gauss;
+
+    #[test]
+    fn friction_grips_at_the_nodes_of_a_piece_by_the_integrals_of_its_bound() {
+        for degree in [Degree::One, Degree::Two] {
+            for [s, t] in [[1.0, 1.0], [3.0, 0.5], [0.0, 2.0], [0.25, 0.0]] {
+                let nodes = degree.nodes_per_edge();
+                // Three points are exact for a cubic.
+                let integral = |a: usize| -> f64 {
+                    let at = |&(x, weight): &(f64, f64)| {
+                        weight * ((1.0 - x) * s + x * t) * degree.edge_values(x)[a]
+                    };
+                    0.75 * gauss(3).iter().map(at).sum::<f64>()
+                };
+                let found = of_bound([s, t], 0.75, nodes);
+                assert_eq!(found.len(), nodes);
+                for (a, found) in found.iter().enumerate() {
+                    // A dozen roundings of numbers up to 3.
+                    assert!((found - integral(a)).abs() <= 1e-14, "{degree:?} {s} {t}: {found}");
+                }
+                // Control: the bound of the other direction is noticed where it is another one.
+                let turned = of_bound([t, s], 0.75, nodes);
+                assert_eq!((turned[0] - integral(0)).abs() > 1e-3, s != t, "{turned:?}");
+            }
+        }
     }
 }

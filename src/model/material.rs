@@ -310,6 +310,50 @@ pub(crate) fn largest_entry(material: &Material<f64>) -> f64 {
 mod tests {
     use super::*;
 
+    /// The stiffness of a law of revolution on strains (rr, zz, hoop, rz by the root of 2), by its stresses.
+    fn matrix_of(material: &Material<f64>) -> Vec<Vec<f64>> {
+        let half = 0.5_f64.sqrt();
+        let row = |k: usize| {
+            let unit = |i: usize| f64::from(u8::from(i == k));
+            let gradient = Matrix2::new(unit(0), 2.0 * half * unit(3), 0.0, unit(1));
+            let (stress, hoop) = material.stress_of_revolution(gradient, unit(2));
+            let [xx, yy, xy] = stress.components();
+            vec![xx, yy, hoop, xy / half]
+        };
+        (0..4).map(row).collect()
+    }
+
+    /// A law is positive, so that the singular values of its matrix are its eigenvalues.
+    fn least_of(material: &Material<f64>) -> f64 {
+        singular_vectors(&matrix_of(material), 4)[3].0
+    }
+
+    #[test]
+    fn the_least_eigenvalue_of_revolution_is_below_that_of_each_law_however_its_hoops_are_coupled()
+    {
+        let plane = [[3.0, 1.0, 0.0, 3.0, 0.0, 1.0], [5.0, 1.5, 0.3, 2.0, -0.2, 0.7]];
+        let coupled =
+            [[0.0; 3], [0.25, 0.25, 0.0], [1.5, -0.5, 0.0], [-2.0, 1.0, 0.75], [3.0, 3.0, 1.0]];
+        let mut too_large = 0;
+        for (c, across) in plane.into_iter().flat_map(|c| coupled.map(|across| (c, across))) {
+            for young in [0.01, 1.0, 2.5, 40.0] {
+                let material = Material::tensor(c, Some(across)).of_revolution(young);
+                let (found, least) = (least_eigenvalue(&material), least_of(&material));
+                // The form of two numbers has a smaller eigenvalue within a factor of 2 of its determinant over its trace.
+                let [a, b, h] = across.map(|a| a * a);
+                let form = [least_in_plane(&material), young, 1.0 + a + b + h / 2.0];
+                let [trace, determinant] = [form[0] * form[2] + form[1], form[0] * form[1]];
+                let smaller =
+                    2.0 * determinant / (trace + (trace * trace - 4.0 * determinant).sqrt());
+                assert!(found <= least * (1.0 + 1e-12), "{found} {least}: {material:?}");
+                assert!((0.5..=1.0).contains(&(found / smaller)), "{found} {smaller}");
+                // Control: without what couples the hoops.
+                too_large += usize::from(determinant / (form[0] + form[1]) > least);
+            }
+        }
+        assert!(too_large > 5, "control: {too_large}");
+    }
+
     #[test]
     fn the_least_eigenvalue_of_a_body_of_revolution_is_that_of_the_law_in_three_dimensions() {
         let of = |lambda, plane| least_eigenvalue(&Material::lame(lambda, 1.0, plane));

@@ -204,8 +204,22 @@ fn forces_have_the_names_of_their_boundaries() {
     let mut forces = certified.quantities.evidence;
     assert!(forces.names.len() > 1);
     forces.names.reverse();
-    let found = compare(case_of(LOADED, &[]).problem, &certified.certificate, &forces);
-    assert!(found.unwrap_err().to_string().contains("boundary that it is said to be on"));
+    let certificate = &certified.certificate;
+    let differs = |forces: &Evidence| {
+        let found = compare(case_of(LOADED, &[]).problem, certificate, forces);
+        found.is_err_and(|e| e.to_string().contains("boundary that it is said to be on"))
+    };
+    assert!(differs(&forces));
+    forces.names.reverse();
+    assert!(!differs(&forces), "control");
+    // Each edge on each boundary that it is not on; inside the body there is none.
+    for e in (0..certificate.edges.len()).step_by(3) {
+        for k in (0..forces.names.len()).filter(|&k| forces.of[e] != Some(k)) {
+            let mut wrong = forces.clone();
+            wrong.of[e] = Some(k);
+            assert!(differs(&wrong), "edge {e}, {}", forces.names[k]);
+        }
+    }
 }
 
 #[test]

@@ -120,6 +120,32 @@ fn motion_too_large_for_the_linearised_gap_is_remarked_with_both_distances() {
     expect(false, &pushed(0.8, plane), &words, "plane");
 }
 
+/// The block of `pushed`, of whose top only an eighth to the right of its middle may touch a circle around a point below that.
+fn beside_a_circle(by: f64, side: Side) -> Vec<String> {
+    let mesh = Rectangle { width: 26.0, height: 2.0, nx: 104, ny: 8, diagonal: Diagonal::Right };
+    let near = |[x, y]: [f64; 2]| y == 2.0 && (13.0..=13.25).contains(&x);
+    let mesh = mesh.mesh().unwrap().with_boundary("near", near).unwrap();
+    let (center, radius) = match side {
+        Side::Inside => ([13.0, 1.0], 1.05),
+        Side::Outside => ([13.0, 3.0], 0.95),
+    };
+    let problem = Problem::of(mesh, Material::young_poisson(2800.0, 0.38, Plane::Stress))
+        .with("left", Condition::displacement(move |_| by, |_| 0.0))
+        .with("near", Condition::obstacle("edge", Obstacle::Circle { center, radius, side }));
+    of_problem(&problem, &Method::default())
+}
+
+#[test]
+fn a_motion_into_an_obstacle_that_the_linearised_gap_does_not_see_is_remarked_without_pressure() {
+    // (12.45, 2) is 0.0913 beyond the radius of 1.05 around (13, 1), and the tangent at (13.25, 2) is 0.213 away.
+    let words = ["'near' at (13.25, 2) moves by 0.8", "'edge' is then -0.0913, not 0.213"];
+    // To the left the linearised gap opens, and the circle is nearer than its tangent.
+    expect(true, &beside_a_circle(-0.8, Side::Inside), &words, "into the circle");
+    expect(false, &beside_a_circle(-0.01, Side::Inside), &words, "a little");
+    // Off a circle that bends away both distances differ as much, and nothing is inside.
+    expect(false, &beside_a_circle(0.8, Side::Outside), &["'near' at"], "off the circle");
+}
+
 /// The disk of the folder `cases`, its contact line cut to |x| <= `half`.
 fn short_line(half: f64) -> Problem {
     let mut problem = case("disk.toml", &[]).problem;

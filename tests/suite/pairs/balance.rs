@@ -1,9 +1,14 @@
 //! Forces and moments of the two sides cancel, and the stress that is subtracted is at most kappa times the energy.
 
 use approx::assert_abs_diff_eq;
+use signorini::contact::Friction;
+use signorini::kernel::{Ball, PreciseBall};
 use signorini::linear::factor::Factor;
 use signorini::linear::matrix;
 use signorini::linear::matrix::{Neighbours, Numbering};
+use signorini::proof::balls::Lines;
+use signorini::proof::korn::{Hold, Term};
+use signorini::proof::pressed::Pressed;
 
 use super::*;
 use crate::bodies::number_from;
@@ -40,16 +45,80 @@ fn drawn(seed: u64, law: Law) -> Problem {
 
 const LAWS: [Law; 3] = [Law::Contact, Law::Sliding, Law::Bonded];
 
+type Motion = fn([f64; 2]) -> [f64; 2];
+
+const MOTIONS: [Motion; 3] = [|_| [1.0, 0.0], |_| [0.0, 1.0], |[x, y]| [-y, x]];
+
+/// Whether a triangle is one of the upper body, whose vertices follow those of the lower one.
+fn is_above(mesh: &Mesh, t: usize) -> bool {
+    let ends = mesh.edges_of("upper.bottom").unwrap().iter().flat_map(|&edge| mesh.ends(edge));
+    let first = ends.min().unwrap();
+    mesh.triangles()[t].iter().all(|&v| v >= first)
+}
+
+/// What a hold says of a motion of the lower body and one of the upper body.
+fn held(hold: &Hold, mesh: &Mesh, motions: [Motion; 2]) -> f64 {
+    let middle = |ball: Ball| (ball.lower() + ball.upper()) / 2.0;
+    let of = |Term { triangle, at, along }: &Term| {
+        let [x, y] = motions[usize::from(is_above(mesh, *triangle))](at.map(middle));
+        middle(along[0]) * x + middle(along[1]) * y
+    };
+    hold.terms.iter().map(of).sum()
+}
+
+#[test]
+fn what_holds_one_body_to_another_is_the_motion_of_one_less_that_of_the_other() {
+    // Glue holds both components, and so does friction where it sticks.
+    let rough = Friction::tresca(|_| 1.0);
+    let laws = [
+        (Law::Contact, None, 1),
+        (Law::Sliding, None, 1),
+        (Law::Bonded, None, 2),
+        (Law::Contact, Some(rough), 2),
+    ];
+    for (law, friction, components) in laws {
+        for (seed, degree) in (1..=3).flat_map(|seed| DEGREES.map(|degree| (seed, degree))) {
+            let mut problem = drawn(seed, law);
+            problem.pairs[0].friction = friction.clone();
+            let d = discretize(&problem, &with_kappa(degree, 0.5)).unwrap();
+            // The upper body is moved onto the lower one.
+            let mesh = d.space.mesh();
+            let mut u = vec![[PreciseBall::from(0); 2]; d.space.nodes().len()];
+            for (t, nodes) in d.space.elements().enumerate().filter(|(t, _)| is_above(mesh, *t)) {
+                assert!(t > 0, "the lower body comes first");
+                nodes.iter().for_each(|&node| u[node][1] = PreciseBall::from(-0.1));
+            }
+            let lines = Lines::new(&d);
+            let holds = Pressed::at(&d, &lines, &u, 0.0).holds(&d, &lines);
+            assert_eq!(holds.len(), 2 * components * d.contact.len(), "{seed} {law:?}");
+            let rest: Motion = |_| [0.0; 2];
+            for hold in &holds {
+                let of_lower = MOTIONS.map(|motion| held(hold, mesh, [motion, rest]));
+                let of_upper = MOTIONS.map(|motion| held(hold, mesh, [rest, motion]));
+                let sums = [0, 1, 2].map(|k| of_lower[k] + of_upper[k]);
+                // Sums of a dozen numbers of size 1. The points of a curved interface that face each other are apart along its
+                // normal, by less than a hundredth: there a rotation has a jump across.
+                let room = [1e-13, 1e-13, if components == 1 { 1e-13 } else { 0.01 }];
+                let vanish = sums.iter().zip(room).all(|(sum, room)| sum.abs() <= room);
+                assert!(vanish, "{seed} {law:?}: {sums:?}");
+                // Along a mean of unit vectors, which turn by a tenth at most.
+                assert_abs_diff_eq!(of_lower[0].hypot(of_lower[1]), 1.0, epsilon = 0.01);
+                // Control: the sum of both motions is no jump.
+                let [x, y] = [0, 1].map(|k| of_lower[k] - of_upper[k]);
+                assert!(x.hypot(y) > 1.9, "{x} {y}");
+            }
+        }
+    }
+}
+
 #[test]
 fn rigid_motions_of_both_bodies_have_no_jump_so_forces_and_moments_cancel() {
     for seed in 1..=20 {
         let problem = drawn(seed, LAWS[seed as usize % 3]);
         for degree in DEGREES {
             let d = discretize(&problem, &with_kappa(degree, 0.5)).unwrap();
-            let motions: [fn([f64; 2]) -> [f64; 2]; 3] =
-                [|_| [1.0, 0.0], |_| [0.0, 1.0], |[x, y]| [-y, x]];
             let mut noticed = false;
-            for motion in motions {
+            for motion in MOTIONS {
                 let field: Vec<[f64; 2]> = d.space.nodes().iter().map(|&x| motion(x)).collect();
                 for piece in &d.contact {
                     let along = degree.nodes_per_edge();
