@@ -599,4 +599,21 @@ mod tests {
         let alone = support::<f64>([3.0, 4.0], [2.0, -1.0], [0.0; 2], || f64::NAN);
         assert_eq!(alone.map(<[f64; 2]>::from), [[6.0, 8.0], [-3.0, -4.0]]);
     }
+
+    #[test]
+    fn a_number_between_equal_ones_is_known_where_both_are() {
+        let certificate = Certificate {
+            vertices: vec![[0.0; 2]; 2],
+            cuts: vec![Cut { ends: [0, 1], at: 0.25 }],
+            ..Certificate::default()
+        };
+        // The doubles are equal along x; what stands for them is not.
+        let (all, doubles) = ([[1.0, 2.0], [3.0, 6.0]], [[7.0, 5.0], [7.0, 4.0]]);
+        for known in [[true, true], [true, false], [false, true], [false, false]] {
+            let all = all.map(Vector2::from).to_vec();
+            let found = certificate.with_cuts::<f64>(all, &doubles, |end| known[end]);
+            let x = if known == [true, true] { 1.0 } else { 1.5 };
+            assert_eq!(found[2], Vector2::new(x, 3.0), "{known:?}");
+        }
+    }
 }

@@ -314,6 +314,9 @@ impl<S: Enclosing> Forces<'_, S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::balanced::Balanced;
+    use crate::forces::Mean;
+    use crate::kernel::{Material, Plane};
 
     #[test]
     fn doubles_are_off_by_the_largest_radius_of_them() {
@@ -336,5 +339,103 @@ mod tests {
         let found = work_of(Ball::around(0.0, 0.5), at_ends);
         // Both together are 2, the mean of the gap.
         assert!((found.upper() - 1.0).abs() < 1e-12 && (found.lower() + 1.0).abs() < 1e-12);
+    }
+
+    /// A square of two triangles under a pressure of 1 all round, on its left side that of contact, which holds it along x alone:
+    /// where its direction turns it has one size. On the lower edge, which belongs to the first triangle, is a further traction.
+    fn free(traction: [[f64; 2]; 2]) -> Certificate {
+        let edge = |start, end, role| Edge { ends: [start, end], role };
+        let below = traction.map(|[x, y]| [x, 1.0 + y]);
+        let along = Some([[-1.0, 0.0], [-1.0, 2.0_f64.powi(-60)]]);
+        let law = Law::default();
+        let contact = Role::Contact { pressure: [-1.0; 2], gap: [0.0; 2], along, law };
+        let piece = |vertices, edges| Piece {
+            vertices,
+            edges,
+            material: Material::lame(1.0, 1.0, Plane::Strain),
+            body: [[0.0; 2]; 3],
+            oscillation: 0.0,
+        };
+        Certificate {
+            vertices: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
+            displacement: vec![[0.0; 2]; 4],
+            prescribed: vec![[None; 2]; 4],
+            pieces: vec![piece([0, 1, 2], [0, 1, 2]), piece([0, 2, 3], [3, 4, 1])],
+            edges: vec![
+                edge(1, 2, Role::Pressed([1.0; 2])),
+                edge(2, 0, Role::Inner([[1.0, -1.0]; 2])),
+                edge(0, 1, Role::Loaded(below)),
+                edge(2, 3, Role::Pressed([1.0; 2])),
+                edge(3, 0, contact),
+            ],
+            ..Certificate::default()
+        }
+    }
+
+    #[test]
+    fn with_its_supports_every_triangle_of_a_body_that_is_free_is_in_equilibrium() {
+        let small = 2.0_f64.powi(-40);
+        // Along x, where contact takes the force and leaves its moment, along y, and a moment of small / 6.
+        let along = |start: [f64; 2], end: [f64; 2]| [start, end].map(|f| f.map(|f| f * small));
+        for traction in [
+            along([1.0, 0.0], [1.0, 0.0]),
+            along([0.0, 1.0], [0.0, 1.0]),
+            along([0.0, -1.0], [0.0, 1.0]),
+        ] {
+            let certificate = free(traction);
+            let topology = certificate.topology().unwrap();
+            let mut state = certificate.balanced::<f64>(topology).unwrap();
+            let of = |state: &Balanced<f64>, t: usize| {
+                let loads = state.loads(&certificate.pieces[t], t);
+                let Wrench { force, moment, .. } =
+                    loads.resultant(&state.triangles[t]).about(Vector2::new(0.5, 0.0));
+                [force[0], force[1], moment].map(|f| f / small)
+            };
+            // Forces of 1 are rounded at 2^-53, 2^-13 of `small`.
+            let balances = |found: [f64; 3]| found.iter().all(|found| found.abs() < 1e-2);
+            for t in 0..2 {
+                assert!(balances(of(&state, t)), "{t}: {:?}", of(&state, t));
+            }
+            // Control: without the supports.
+            state.balance.stops.clear();
+            assert!(of(&state, 0).iter().any(|f| f.abs() > 0.1), "{:?}", of(&state, 0));
+        }
+    }
+
+    #[test]
+    fn a_support_acts_on_its_own_triangle_as_a_force_on_its_first_edge_does() {
+        let certificate = free([[0.0; 2]; 2]);
+        let state = certificate.balanced::<Ball>(certificate.topology().unwrap()).unwrap();
+        let of = [None; 5];
+        let forces = Forces::new(&certificate, &state, &of, Mean { square: 0.0, root: 0.0 });
+        let force = [[0.5, -1.0], [0.25, 2.0]].map(Vector2::from);
+        let with = |root: Option<usize>, on: Option<usize>| {
+            let stop = |root| Stop { root, force: force.map(|f| f.map(Ball::point)), share: 0.0 };
+            let mut pair = Pair {
+                w: Shape { points: vec![Vector2::zeros(); 4], bulges: None },
+                forces: vec![[Vector2::zeros(); 2]; 5],
+                off: vec![0.0; 5],
+                stops: root.map(stop).into_iter().collect(),
+            };
+            if let Some(edge) = on {
+                pair.forces[edge] = force;
+            }
+            [0, 1].map(|t| {
+                let (apart, beside) = forces.apart((t, &Frame::new(&state.triangles[t])), &pair);
+                let material = certificate.pieces[t].material();
+                (apart.energy(&material, state.triangles[t].double_area()), beside.upper())
+            })
+        };
+        for root in 0..2 {
+            let supported = with(Some(root), None);
+            let pulled = with(None, Some(certificate.pieces[root].edges[0]));
+            for t in 0..2 {
+                let ((found, beside), (expected, _)) = (supported[t], pulled[t]);
+                assert_eq!(found, expected, "{root}, {t}");
+                // What is rounded there, and nothing elsewhere.
+                assert_eq!(found.lower() > 0.1, t == root, "{root}, {t}: {found:?}");
+                assert_eq!(beside > 0.0, t == root, "{root}, {t}: {beside}");
+            }
+        }
     }
 }

@@ -649,4 +649,24 @@ mod tests {
         }
         assert_eq!(PLACES, 1e-9);
     }
+
+    #[test]
+    fn a_message_names_the_role_of_an_edge() {
+        let (no, one) = ([[0.0; 2]; 2], [[0.0, 0.0], [0.0, 1.0]]);
+        let contact =
+            Role::Contact { pressure: [0.0; 2], gap: [0.0; 2], along: None, law: Law::Contact };
+        let supported = Role::Supported { along: [0.6, 0.8], force: [0.0; 2], traction: [0.0; 2] };
+        for (role, expected) in [
+            (Role::Inner(no), "an inner edge"),
+            (Role::Held([true, false], no), "one where components are held"),
+            (supported, "one where a direction is held"),
+            (Role::Loaded(no), "one where nothing acts"),
+            (Role::Loaded(one), "one where a traction acts"),
+            (Role::Pressed([0.0; 2]), "one where a pressure acts"),
+            (contact, "one of contact"),
+            (Role::Facing, "one that faces another of contact"),
+        ] {
+            assert_eq!(kind(&role), expected);
+        }
+    }
 }

@@ -379,4 +379,33 @@ mod tests {
         assert!(error.contains("the rule for contact edges"), "{error}");
         assert_eq!(by(vec![(0.5, 1.0)]), Ok(()));
     }
+
+    #[test]
+    fn what_forces_are_added_up_of_has_the_same_magnitudes_in_a_body_that_is_turned_half_way_round()
+    {
+        let corners = [[0.0, 0.0], [3.0, 0.5], [2.5, 2.0], [-0.5, 1.5]];
+        let u = [[0.5, 0.25], [-1.0, 0.75], [0.25, -2.0], [1.5, 1.0]];
+        let opposite = |points: [[f64; 2]; 4]| points.map(|x| x.map(|c| -c));
+        let forces = |corners, u: [[f64; 2]; 4]| {
+            let problem = square(corners, Plane::Strain)
+                .with("right", Condition::clamped())
+                .with("top", Condition::traction(|_| -1.0, |_| 2.0));
+            let d = discretized(&problem);
+            [d.residual(&u), d.linear_residual(&u), d.internal_forces(&u)]
+        };
+        let straight = forces(corners, u);
+        let turned = forces(opposite(corners), opposite(u));
+        for (k, (a, b)) in straight.iter().zip(&turned).enumerate() {
+            assert_eq!(a.magnitudes, b.magnitudes, "{k}");
+            // None is less than what it is the magnitude of, and contact adds to that.
+            let pairs = || a.values.as_flattened().iter().zip(a.magnitudes.as_flattened());
+            assert!(pairs().all(|(value, most)| value.abs() <= most * (1.0 + 1e-14)), "{k}");
+        }
+        // Controls: values change their sign but for the load's, and a larger displacement has larger magnitudes.
+        assert_ne!(straight[2].values, turned[2].values);
+        assert_ne!(
+            straight[2].magnitudes,
+            forces(corners, u.map(|u| u.map(|c| 2.0 * c)))[2].magnitudes
+        );
+    }
 }

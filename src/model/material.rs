@@ -373,4 +373,23 @@ mod tests {
         let least = least_eigenvalue(&tensor);
         assert!((1.0..=2.0).contains(&least), "{least}");
     }
+
+    #[test]
+    fn the_axes_of_a_material_are_at_its_angle_whatever_that_is() {
+        for k in -33..=33 {
+            let degrees = 22.5 * f64::from(k) + 1.0;
+            let (sine, cosine) = sine_and_cosine(degrees);
+            let (expected_sine, expected_cosine) = degrees.to_radians().sin_cos();
+            // The angle in radians, at most 13, is rounded at 2^-50, and more than one degree from every quarter turn.
+            assert!((sine - expected_sine).abs() <= 1e-14, "{degrees}: {sine}");
+            assert!((cosine - expected_cosine).abs() <= 1e-14, "{degrees}: {cosine}");
+        }
+        let of_quarters = [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)];
+        for k in -9..=9_i32 {
+            let expected = of_quarters[k.rem_euclid(4) as usize];
+            assert_eq!(sine_and_cosine(90.0 * f64::from(k)), expected, "{k}");
+        }
+        // Control: doubles themselves are not exact there.
+        assert_ne!(180.0_f64.to_radians().sin(), 0.0);
+    }
 }

@@ -5,9 +5,11 @@
 use std::path::{Path, PathBuf};
 
 use approx::abs_diff_eq;
-use signorini::io::{Case, gmsh};
-use signorini::model::{Diagonal, Mesh, Rectangle};
+use signorini::io::{Case, FileError, gmsh};
+use signorini::model::{Diagonal, Mesh, MeshError, Rectangle};
 use signorini::solve::solve;
+
+use crate::common::{constant, function};
 
 /// How the boundaries of a mesh are named.
 #[derive(Clone, Copy)]
@@ -334,4 +336,69 @@ fn an_edge_that_is_listed_twice_is_one_edge_of_its_boundary() {
         [once, again].map(|edges| mesh(edges).edges_of("all round").unwrap().to_vec());
     assert_eq!(once.len(), 3);
     assert_eq!(once, again);
+}
+
+/// A mesh and functions of the program that calls: `[mesh]` and expressions of a case file in another way.
+#[test]
+fn a_case_on_a_given_mesh_and_functions_is_that_of_the_file_that_says_the_same() {
+    const CASE: &str = "material = { young = 1, poisson = 0 }\n[boundary.left]\ndisplacement = [0, 0]\n\
+         [boundary.bottom]\ncontact = {}\n[boundary.top]\ntraction = [X, Y]\n";
+    let text = |x: &str, y: &str| CASE.replace('X', x).replace('Y', y);
+    let file = Path::new("case");
+    let square = Rectangle { width: 2.0, height: 1.0, nx: 3, ny: 2, diagonal: Diagonal::Right };
+    let of_table = "mesh.rectangle = { width = 2, height = 1, nx = 3, ny = 2 }\n";
+    let functions = [function(|[x, y]| x - 3.0 * y), constant(0.25)];
+    let on_mesh = |text: &str| Case::on_mesh(file, text, square.mesh().unwrap(), &functions);
+    let solved = |case: Case| {
+        assert_eq!(case.problem.mesh.triangles(), square.mesh().unwrap().triangles());
+        solve(&case.problem, &case.method, &case.settings).unwrap().0.displacement
+    };
+    let said = |case: Result<Case, _>| case.err().map(|error: FileError| error.error.to_string());
+
+    let expected = of_table.to_owned() + &text("\"x - 3*y\"", "0.25");
+    let expected = solved(Case::parse(file, &expected, &[]).unwrap());
+    let given = text("\"@0\"", "\"@1\"");
+    let is_expected = |case: Case| {
+        let pairs = std::iter::zip(solved(case), &expected);
+        // Displacements of 16, and an expression that is a polynomial is integrated by another rule than a function.
+        pairs.flat_map(|(u, v)| [u[0] - v[0], u[1] - v[1]]).all(|apart| apart.abs() < 1e-11)
+    };
+    assert!(is_expected(on_mesh(&given).unwrap()));
+    // Control: the functions exchanged.
+    assert!(!is_expected(on_mesh(&text("\"@1\"", "\"@0\"")).unwrap()));
+
+    let beside = "[mesh]: found a mesh beside the one that is given; expected one of the two";
+    assert_eq!(said(on_mesh(&(of_table.to_owned() + &given))).as_deref(), Some(beside));
+    let missing = said(Case::parse(file, &text("0", "0"), &[])).unwrap();
+    assert!(missing.contains("[mesh]") && missing.contains("rectangle"), "{missing}");
+    // A function that is not there, or none at all, is an expression, and none of these begins so.
+    for wrong in ["@2", "@", "@-1", "@x"] {
+        let error = said(on_mesh(&text(&format!("\"{wrong}\""), "0"))).unwrap();
+        assert!(error.contains(&format!("\"{wrong}\"")), "{error}");
+    }
+
+    let pair = "[[pair]]\nboundaries = [\"bottom\", \"top\"]\nclearance = \"@1\"\n";
+    let pairs = Case::pairs(file, &(text("0", "0") + pair), &functions).unwrap();
+    let [pair] = &pairs[..] else { panic!("{} pairs", pairs.len()) };
+    assert_eq!(pair.boundaries, ["bottom", "top"]);
+    assert_eq!(pair.clearance.as_ref().map(|clearance| clearance.at([0.0; 2])), Some(0.25));
+}
+
+#[test]
+fn two_vertices_at_one_place_are_refused_with_their_numbers_and_the_place() {
+    let of = |apart: [f64; 2]| {
+        let vertices = [[0.0, 0.0], [0.5, -2.0], [1.0, 0.0], [2.0, 0.5], apart, [2.0, 3.0]];
+        let triangles = vec![[0, 1, 2], [4, 3, 5]];
+        Mesh::new(vertices.to_vec(), triangles, std::iter::empty::<(String, Vec<[usize; 2]>)>())
+    };
+    for (place, vertices) in [([0.5, -2.0], [1, 4]), ([1.0, -0.0], [2, 4])] {
+        let Err(MeshError::Duplicate { vertices: found, x, y }) = of(place) else {
+            panic!("{place:?}: expected two vertices at one place")
+        };
+        assert_eq!((found, [x, y]), (vertices, place));
+        // A zero has no sign in a message.
+        assert!(y.is_sign_positive() || y == -2.0, "{y}");
+    }
+    // Control: beside it is another vertex.
+    assert!(!matches!(of([0.5, -2.0 + 1e-12]), Err(MeshError::Duplicate { .. })));
 }
