@@ -494,15 +494,15 @@ fn solve<S: Enclosing>(unit: [Wrench<S>; 3], total: Wrench<S>) -> [S; 3] {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::certificate::Piece;
     use crate::checks::Rejection;
     use crate::kernel::{Material, Plane};
 
-    /// A square of two triangles under a pressure all round, on one side that of contact, which holds it along x alone: where its
-    /// direction turns it has one size. On the side below acts a further traction. With other units of length and of stress.
-    fn square(traction: [[f64; 2]; 2], [size, stress]: [f64; 2]) -> Certificate {
+    /// A square of two triangles under a pressure all round, on its left side that of contact, which holds it along x alone: where its
+    /// direction turns it has one size. On the side below, of the first triangle, acts a further traction. In units of length and stress.
+    pub(crate) fn square(traction: [[f64; 2]; 2], [size, stress]: [f64; 2]) -> Certificate {
         let edge = |start, end, role| Edge { ends: [start, end], role };
         let below = traction.map(|[x, y]| [x * stress, (1.0 + y) * stress]);
         let along = Some([[-1.0, 0.0], [-1.0, 2.0_f64.powi(-60)]]);

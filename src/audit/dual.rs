@@ -314,9 +314,9 @@ impl<S: Enclosing> Forces<'_, S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::balance::tests::square;
     use crate::balanced::Balanced;
     use crate::forces::Mean;
-    use crate::kernel::{Material, Plane};
 
     #[test]
     fn doubles_are_off_by_the_largest_radius_of_them() {
@@ -341,37 +341,6 @@ mod tests {
         assert!((found.upper() - 1.0).abs() < 1e-12 && (found.lower() + 1.0).abs() < 1e-12);
     }
 
-    /// A square of two triangles under a pressure of 1 all round, on its left side that of contact, which holds it along x alone:
-    /// where its direction turns it has one size. On the lower edge, which belongs to the first triangle, is a further traction.
-    fn free(traction: [[f64; 2]; 2]) -> Certificate {
-        let edge = |start, end, role| Edge { ends: [start, end], role };
-        let below = traction.map(|[x, y]| [x, 1.0 + y]);
-        let along = Some([[-1.0, 0.0], [-1.0, 2.0_f64.powi(-60)]]);
-        let law = Law::default();
-        let contact = Role::Contact { pressure: [-1.0; 2], gap: [0.0; 2], along, law };
-        let piece = |vertices, edges| Piece {
-            vertices,
-            edges,
-            material: Material::lame(1.0, 1.0, Plane::Strain),
-            body: [[0.0; 2]; 3],
-            oscillation: 0.0,
-        };
-        Certificate {
-            vertices: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
-            displacement: vec![[0.0; 2]; 4],
-            prescribed: vec![[None; 2]; 4],
-            pieces: vec![piece([0, 1, 2], [0, 1, 2]), piece([0, 2, 3], [3, 4, 1])],
-            edges: vec![
-                edge(1, 2, Role::Pressed([1.0; 2])),
-                edge(2, 0, Role::Inner([[1.0, -1.0]; 2])),
-                edge(0, 1, Role::Loaded(below)),
-                edge(2, 3, Role::Pressed([1.0; 2])),
-                edge(3, 0, contact),
-            ],
-            ..Certificate::default()
-        }
-    }
-
     #[test]
     fn with_its_supports_every_triangle_of_a_body_that_is_free_is_in_equilibrium() {
         let small = 2.0_f64.powi(-40);
@@ -382,7 +351,7 @@ mod tests {
             along([0.0, 1.0], [0.0, 1.0]),
             along([0.0, -1.0], [0.0, 1.0]),
         ] {
-            let certificate = free(traction);
+            let certificate = square(traction, [1.0; 2]);
             let topology = certificate.topology().unwrap();
             let mut state = certificate.balanced::<f64>(topology).unwrap();
             let of = |state: &Balanced<f64>, t: usize| {
@@ -404,7 +373,7 @@ mod tests {
 
     #[test]
     fn a_support_acts_on_its_own_triangle_as_a_force_on_its_first_edge_does() {
-        let certificate = free([[0.0; 2]; 2]);
+        let certificate = square([[0.0; 2]; 2], [1.0; 2]);
         let state = certificate.balanced::<Ball>(certificate.topology().unwrap()).unwrap();
         let of = [None; 5];
         let forces = Forces::new(&certificate, &state, &of, Mean { square: 0.0, root: 0.0 });
