@@ -7,15 +7,18 @@
 //! (whose error is 2^8 times larger), plus rounding: some 30 roundoffs of the largest value in the body over the step.
 
 use std::f64::consts::PI;
+use std::fs;
+use std::path::Path;
 use std::sync::Arc;
 
 use approx::{abs_diff_eq, assert_relative_eq};
 
-use crate::common::Random;
 use crate::common::exact::{corner, on_square, on_trapezoid, singular, smooth};
+use crate::common::{Random, root};
 use signorini::exact::errors::POINTS;
 use signorini::exact::{Corner, Patch, Singular, Smooth};
 use signorini::exact::{Errors, Exact};
+use signorini::io::Case;
 use signorini::kernel::{Material, Plane};
 use signorini::model::Degree;
 use signorini::model::Space;
@@ -404,5 +407,67 @@ fn control_errors_by_a_rule_that_ignores_where_the_solution_is_not_smooth_do_mov
         ladder.solution = Arc::new(Hidden(Arc::clone(&ladder.solution)));
         let half = difference_of_rules(&ladder, [POINTS / 2, POINTS]);
         assert!(half > 1e-4, "{:?}: {half:e}", ladder.solution);
+    }
+}
+
+#[test]
+fn a_parameter_is_refused_at_its_limit_and_taken_beside_it() {
+    let (above_zero, inside) = ("a number above 0", "a number above 0 and below 1");
+    let angle = "an angle between pi/2 and pi";
+    // What of [exact] stands in place of that of the case, with the key X.
+    let patch = |keys: &str| format!("solution = \"patch\"\n{keys}\n");
+    let smooth = |key: &str| {
+        let keys = [("c", "0.5"), ("k", "4"), ("m", "3"), ("ap", "16"), ("aq", "8")];
+        let value =
+            |(k, value): (&str, &str)| format!("{k} = {}\n", if k == key { "X" } else { value });
+        format!("solution = \"smooth\"\n{}", keys.map(value).concat())
+    };
+    for (exact, key, limit, beside, expected) in [
+        (smooth("c"), "c", 0.0, 1e-3, inside),
+        (smooth("c"), "c", 1.0, 0.999, inside),
+        (smooth("k"), "k", 2.5, 2.501, "a number above 2.5"),
+        (smooth("m"), "m", 1.5, 1.501, "a number above 1.5"),
+        (smooth("ap"), "ap", 0.0, 1e-3, above_zero),
+        (smooth("aq"), "aq", 0.0, 1e-3, above_zero),
+        ("solution = \"singular\"\nc = X\namplitude = 1\n".to_owned(), "c", 0.0, 1e-3, inside),
+        ("solution = \"singular\"\nc = X\namplitude = 1\n".to_owned(), "c", 1.0, 0.999, inside),
+        (
+            "solution = \"singular\"\nc = 0.5\namplitude = X\n".to_owned(),
+            "amplitude",
+            0.0,
+            1e-3,
+            above_zero,
+        ),
+        (
+            "solution = \"corner\"\nomega = X\n".to_owned(),
+            "omega",
+            PI / 2.0,
+            PI / 2.0 + 1e-3,
+            angle,
+        ),
+        ("solution = \"corner\"\nomega = X\n".to_owned(), "omega", PI, PI - 1e-3, angle),
+        (patch("which = \"d1\"\np = X"), "p", 0.0, 1e-3, above_zero),
+        (patch("which = \"d2\"\np = 1\nd = X"), "d", 0.0, 1e-3, above_zero),
+        (patch("which = \"d3\"\np = X\nw = 0.1\ng0 = 0"), "p", 0.0, 1e-3, above_zero),
+        (patch("which = \"d5\"\nd = X"), "d", 0.0, 1e-3, above_zero),
+    ] {
+        let said = |value: f64| {
+            let text = fs::read_to_string(root().join("cases/smooth.toml")).unwrap();
+            let (start, rest) = text.split_once("[exact]\n").unwrap();
+            let (_, end) = rest.split_once("\n[boundary]").unwrap();
+            let exact = exact.replace('X', &format!("{value:?}"));
+            let text = format!("{start}[exact]\n{exact}\n[boundary]{end}");
+            let case = Case::parse(Path::new("case"), &text, &[]);
+            case.err().map_or(String::new(), |error| error.error.to_string())
+        };
+        let refusal = format!("[exact] {key} = ");
+        let found = said(limit);
+        assert!(
+            found.starts_with(&refusal) && found.ends_with(&format!("; expected {expected}")),
+            "{found}"
+        );
+        // The mesh of the case may be none for the solution, but the parameter is one.
+        let found = said(beside);
+        assert!(!found.contains(&refusal), "{exact}: {found}");
     }
 }
