@@ -504,4 +504,20 @@ mod tests {
             assert_ne!(answer(at), refused, "{at}");
         }
     }
+
+    #[test]
+    fn a_point_is_held_all_round_by_directions_that_are_neither_one_nor_opposite() {
+        let of = |directions: &[[f64; 2]]| {
+            let mut all = Directions::default();
+            directions.iter().for_each(|&d| all.add(d));
+            all
+        };
+        for again in [[3.0, 4.0], [-3.0, -4.0], [6.0, 8.0]] {
+            let held = of(&[[3.0, 4.0], again]);
+            assert!(held.has([-1.5, -2.0]) && !held.has([1.0, 0.0]) && !held.has([4.0, 3.0]));
+        }
+        // Controls: another direction holds it all round, and none does not.
+        assert!(of(&[[3.0, 4.0], [-3.0, -4.0], [4.0, 3.0]]).has([1.0, 0.0]));
+        assert!(!of(&[]).has([1.0, 0.0]));
+    }
 }

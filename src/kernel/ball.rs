@@ -393,6 +393,19 @@ where
 mod tests {
     use super::*;
 
+    #[test]
+    fn the_least_magnitude_of_a_double_double_is_below_its_own() {
+        let small = 2.0_f64.powi(-60);
+        for (head, tail) in [(1.0, -small), (1.0, small), (-1.0, small), (-3.0, -small)] {
+            let x = DoubleDouble::from(head) + DoubleDouble::from(tail);
+            assert_eq!((Centre::head(x), Centre::tail(x)), (head, tail));
+            let least = Centre::least(x);
+            assert!(least < head.abs() && least >= head.abs() * (1.0 - 2.0 * f64::EPSILON));
+        }
+        // Control: a double has its own magnitude.
+        assert_eq!(Centre::least(DoubleDouble::from(-3.0)), 3.0);
+    }
+
     fn contains<C: Centre>(ball: MidRad<C>, value: f64) -> bool {
         ball.lower() <= value && value <= ball.upper()
     }

@@ -686,6 +686,25 @@ mod tests {
     use crate::model::{Condition, Degree, Diagonal, Problem, Rectangle};
 
     #[test]
+    fn one_solution_is_known_of_where_the_reason_is_about_the_proof_alone() {
+        let (kappa, count, unknowns) = (1.5, 3000, 1 << 20);
+        for (why, is_unique) in [
+            (Unproved::HeldByContact, false),
+            (Unproved::NotReached, true),
+            (Unproved::NotCoercive { kappa }, false),
+            (Unproved::NotHeld, true),
+            (Unproved::NoFactor, true),
+            (Unproved::NoKappa, false),
+            (Unproved::NotIsolated, false),
+            (Unproved::TooManyFunctionals { count, unknowns }, false),
+            (Unproved::OutOfRange, true),
+            (Unproved::OutOfMemory, true),
+        ] {
+            assert_eq!(why.is_unique(), is_unique, "{why}");
+        }
+    }
+
+    #[test]
     fn the_only_solution_near_the_reported_one_is_near_the_one_that_is_known_of_too() {
         let mesh = Rectangle { width: 1.0, height: 1.0, nx: 2, ny: 2, diagonal: Diagonal::Right };
         let problem = Problem::of(mesh.mesh().unwrap(), Material::lame(1.0, 1.0, Plane::Strain))

@@ -298,6 +298,31 @@ fn the_cases_have_certificates_and_say_what_they_prove() {
 }
 
 #[test]
+fn a_gap_along_a_direction_that_turns_is_that_of_the_problem_that_is_bounded() {
+    let round = polygon(24, 2).with_boundary("upper", |[_, y]| y > 0.2).unwrap();
+    let round = round.with_boundary("lower", |[_, y]| y < 0.2).unwrap();
+    let straight = unit_square(3).mesh().unwrap().with_boundary("upper", |[_, y]| y == 1.0);
+    let straight = straight.unwrap().with_boundary("lower", |[_, y]| y == 0.0).unwrap();
+    for (mesh, turns) in [(round, true), (straight, false)] {
+        let supports = [
+            ("upper", Condition::Displacement(["0", "0"].map(|zero| Some(expression(zero))))),
+            ("lower", Condition::Contact { gap: expression("0.01*exp(x)") }),
+        ];
+        let loads = ["0", "-1"].map(expression);
+        let problem = Problem::new(mesh, unit_material(), loads, conditions(supports));
+        for degree in DEGREES {
+            let method = method(degree, EXACT);
+            let (solution, _) = solve(&problem, &method, &Settings::default()).unwrap();
+            let said = certify(&problem, &solution).unwrap().reason.unwrap_or_default();
+            // The straight side is the control: there v lacks something of the gap.
+            assert_eq!(said.contains("the gap of 'lower'"), !turns, "{degree:?}: {said}");
+            let bounded = "has on 'lower' a direction and a gap that are affine and quadratic";
+            assert_eq!(said.contains(bounded), turns, "{degree:?}: {said}");
+        }
+    }
+}
+
+#[test]
 fn the_normal_as_a_direction_is_the_normal() {
     let (problem, solution) = block(8);
     let mut certificate = certify(&problem, &solution).unwrap().certificate;
