@@ -27,12 +27,12 @@ const ROUNDING: f64 = 1e-11;
 /// Places on an edge that differ by this part of the edge are the same.
 const PLACES: f64 = 1e-9;
 
-/// Whether a stretch of an edge, from one place to another, lies in one.
+/// Returns whether a stretch of an edge, from one place to another, lies in one.
 fn is_in([s, t]: [f64; 2], [low, high]: [f64; 2]) -> bool {
     s >= low - PLACES && t <= high + PLACES
 }
 
-/// Whether a stretch of an edge has no more than an end in common with another.
+/// Returns whether a stretch of an edge has no more than an end in common with another.
 fn is_off([s, t]: [f64; 2], [low, high]: [f64; 2]) -> bool {
     t <= low + PLACES || s >= high - PLACES
 }

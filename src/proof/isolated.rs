@@ -36,7 +36,7 @@ use crate::solve::coulomb::coefficient;
 pub(super) const MOST_FUNCTIONALS: usize = 2_000;
 pub(super) const MOST_ENTRIES: usize = 200_000_000;
 
-/// Whether matrices of so many functionals, and their columns, are too large.
+/// Returns whether matrices of so many functionals, and their columns, are too large.
 fn are_too_many(functionals: usize, unknowns: usize) -> bool {
     functionals > MOST_FUNCTIONALS || functionals * unknowns > MOST_ENTRIES
 }
@@ -745,7 +745,7 @@ pub(super) struct Rest<'a> {
     pub(crate) size: f64,
 }
 
-/// Whether a map that brings two points of a ball nearer by the factor `q` and moves its centre by `step` stays in the ball, whose
+/// Returns whether a map that brings two points of a ball nearer by the factor `q` and moves its centre by `step` stays in the ball, whose
 /// radius is `r`: then one point there, and no other, stays where it is.
 fn contracts(step: f64, q: f64, r: f64) -> bool {
     up(step + up(q * r)) <= r && q < 1.0

@@ -426,7 +426,7 @@ impl Route for Coulomb<'_, '_, '_> {
 /// The progress of Newton's method.
 #[derive(Default)]
 struct Way {
-    /// Whether the way is the first one, which comes from afar.
+    /// The way is the first one, which comes from afar.
     is_first: bool,
     precisely: bool,
     /// The steps that are taken, their largest change of the residual, and the softest of them.
