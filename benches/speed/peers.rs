@@ -1,4 +1,4 @@
-//! Other codes on the same problem: the scripts of reference/peers, interleaved with our own runs.
+//! Other codes on the same problem: the scripts of reference/peers, in turns with our own runs.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -99,6 +99,11 @@ const OURS: &str = "signorini";
 /// Beyond this many seconds for a contact solve, one run is enough.
 const SLOW: f64 = 3.0;
 
+/// Up to this many seconds there are [`MORE`] times as many runs: a brief solve is easily disturbed.
+const BRIEF: f64 = 0.12;
+
+const MORE: usize = 4;
+
 /// All energies are the same up to this, relative: on the graded square the others get no nearer than 1e-9.
 const AGREEMENT: f64 = 1e-8;
 
@@ -139,28 +144,32 @@ fn on_body(body: &str, degree: usize, files: [PathBuf; 2], repetitions: usize) -
     let about = posed(body);
     let (mut ours, gamma0) = run_ours(body, degree, &about);
     let peers = if degree == 1 { &PEERS[..] } else { &PEERS[..QUADRATIC] };
+    let energy = ours.energy;
     let again = |peer| {
         let run = run(peer, degree, &about, &files, gamma0)?;
-        let difference = (run.energy / ours.energy - 1.0).abs();
+        let difference = (run.energy / energy - 1.0).abs();
         // A NaN is no agreement.
         if !(difference <= AGREEMENT) {
-            let [theirs, ours] = [run.energy, ours.energy];
-            return Err(format!("a(u, u) = {theirs}, and {ours} by {OURS}"));
+            let theirs = run.energy;
+            return Err(format!("a(u, u) = {theirs}, and {energy} by {OURS}"));
         }
         Ok(run)
     };
     let mut others: Vec<Result<Rival, String>> = peers.iter().map(again).collect();
-    for _ in 1..repetitions {
+    let turns = |contact: f64| match (contact <= BRIEF, contact <= SLOW) {
+        (true, _) => MORE * repetitions,
+        (_, true) => repetitions,
+        _ => 1,
+    };
+    for turn in 1..turns(ours.proved()) {
         for (peer, rival) in peers.iter().zip(&mut others) {
             if let Ok(rival) = rival
-                && rival.contact <= SLOW
+                && turn < turns(rival.contact)
                 && let Ok(run) = again(peer)
             {
                 rival.take(run);
             }
         }
-    }
-    for _ in 1..repetitions {
         ours.take(run_ours(body, degree, &about).0);
     }
     for (peer, rival) in peers.iter().zip(&others) {

@@ -12,7 +12,7 @@ use crate::command::{signorini, with_files};
 use crate::common::root;
 
 /// The cases of `tests/recorded/cases.txt` whose text is kept; with the picture of those after which a `*` stands.
-const KEPT: [&str; 57] = [
+const KEPT: [&str; 59] = [
     "block-p1*",
     "coulomb-p1*",
     "steps-p1",
@@ -45,6 +45,8 @@ const KEPT: [&str; 57] = [
     "loose",
     "loose-pair",
     "disagree",
+    "disagree-left",
+    "disagree-oblique",
     "incoercive",
     "no-promise",
     "all-conditions",

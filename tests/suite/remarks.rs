@@ -2,6 +2,7 @@
 
 use signorini::io::Case;
 use signorini::kernel::{Material, Plane};
+use signorini::model::pairs::Pair;
 use signorini::model::{Condition, Diagonal, Mesh, Obstacle, Problem, Rectangle, Side};
 use signorini::solve::{Method, Settings, SolveError, solve};
 
@@ -170,18 +171,22 @@ fn a_contact_line_that_ends_before_contact_does_is_remarked_with_the_vertex_insi
     // The same without an obstacle: a gap goes on where the boundary goes on straight.
     let mesh = Rectangle { width: 2.0, height: 1.0, nx: 32, ny: 16, diagonal: Diagonal::Crossed };
     let mesh = mesh.mesh().unwrap();
-    let part = |most: f64| {
+    let part = |most: f64, beyond: f64| {
         let mut edges = named_edges(&mesh);
         let x = |v: usize| mesh.vertices()[v][0];
         edges.get_mut("bottom").unwrap().retain(|e| e.iter().all(|&v| x(v) <= most));
         let mesh = Mesh::new(mesh.vertices().to_vec(), mesh.triangles().to_vec(), edges).unwrap();
         Problem::of(mesh, Material::young_poisson(1.0, 0.3, Plane::Strain))
             .with("top", Condition::displacement(|_| 0.0, |_| -0.01))
-            .with("bottom", Condition::contact(|_| 0.0))
+            .with("bottom", Condition::contact(move |[x, _]| if x > 1.0 { beyond } else { 0.0 }))
     };
     let words = ["on the boundary beside 'bottom', ends 0.0"];
-    expect(true, &of_problem(&part(1.0), &Method::default()), &words, "half the side");
-    expect(false, &of_problem(&part(2.0), &Method::default()), &words, "the whole side");
+    let remarks = |most: f64, beyond: f64| of_problem(&part(most, beyond), &Method::default());
+    expect(true, &remarks(1.0, 0.0), &words, "half the side");
+    expect(false, &remarks(2.0, 0.0), &words, "the whole side");
+    // What was inside before the body moved is not what the motion does.
+    expect(false, &remarks(1.0, -0.02), &words, "inside before");
+    expect(true, &remarks(1.0, -1e-13), &words, "inside before by rounding");
 }
 
 #[test]
@@ -216,6 +221,13 @@ fn a_support_that_holds_a_corner_inside_the_obstacle_is_refused_with_the_place()
         assert!(matches!(error, SolveError::Data(_)), "{error}");
         assert!(error.to_string().starts_with(words), "{settings:?}: {error}");
     }
+    // Of several supports the one that holds the corner is named.
+    let settings = ["boundary.left={normal=0}", "boundary.right.displacement=[\"free\",-0.02]"];
+    let text = pushed.replace("boundary.left.displacement = [0, -0.01]", "");
+    let case = case_of(&text, &settings);
+    let error = solve(&case.problem, &case.method, &case.settings).map(|_| ()).unwrap_err();
+    let words = "'right' holds (1, 0) by 0.02 inside the obstacle of 'bottom'";
+    assert!(error.to_string().starts_with(words), "{error}");
     // It touches exactly; it is off; its component along the floor's normal is free.
     for settings in [
         &["boundary.left.displacement=[0,0]"][..],
@@ -265,13 +277,13 @@ fn linear_triangles_that_lock_are_remarked() {
     tensor([500.0, 1.0, 0.0, 5.0, 0.0, 1.0], false);
 }
 
-/// Two blocks, one above the other; the lower one alone if `count` is 1.
+/// One to three blocks, one above the other; of three the lower two are a pair.
 fn blocks(count: usize) -> Problem {
     let one = Rectangle { width: 1.0, height: 1.0, nx: 4, ny: 4, diagonal: Diagonal::Right };
     let one = one.mesh().unwrap();
     let n = one.vertices().len();
     let (mut vertices, mut triangles, mut named) = (Vec::new(), Vec::new(), Vec::new());
-    for (i, body) in ["low", "high"].into_iter().enumerate().take(count) {
+    for (i, body) in ["low", "high", "higher"].into_iter().enumerate().take(count) {
         vertices.extend(one.vertices().iter().map(|[x, y]| [*x, y + 1.01 * i as f64]));
         triangles.extend(one.triangles().iter().map(|t| t.map(|v| v + i * n)));
         for (name, edges) in named_edges(&one) {
@@ -285,10 +297,18 @@ fn blocks(count: usize) -> Problem {
         1 => problem
             .with("low top", Condition::displacement(|_| 0.0, |_| -0.001))
             .with("low bottom", Condition::contact(|_| 0.0)),
-        _ => problem
+        2 => problem
             .with("low bottom", Condition::clamped())
             .with("high top", Condition::displacement(|_| 0.0, |_| -0.001))
             .with("high bottom", Condition::contact(|_| 0.0)),
+        _ => Problem {
+            pairs: vec![Pair::new("low top", "high bottom")],
+            ..problem
+                .with("low bottom", Condition::clamped())
+                .with("high top", Condition::displacement(|_| 0.0, |_| -0.02))
+                .with("higher top", Condition::displacement(|_| 0.0, |_| -0.001))
+                .with("higher bottom", Condition::contact(|_| 0.0))
+        },
     }
 }
 
@@ -300,6 +320,9 @@ fn separate_bodies_are_remarked_and_the_one_that_carries_nothing_is_named() {
     ];
     expect(true, &of_problem(&blocks(2), &Method::default()), &words, "two");
     expect(false, &of_problem(&blocks(1), &Method::default()), &["separate bodies"], "one");
+    let three = of_problem(&blocks(3), &Method::default());
+    expect(true, &three, &words[..1], "two of three are a pair");
+    expect(false, &three, &["carries nothing"], "two of three are a pair");
 }
 
 #[test]
