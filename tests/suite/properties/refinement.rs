@@ -171,6 +171,25 @@ fn ends(factor: f64) -> Outcome {
     })
 }
 
+/// The relative error that is reported is the size of the last correction: `scale` times as much is no less than the error, which
+/// falls to less than half from pass to pass, and no more than what the error was before it and is.
+fn error_is_told(scale: f64) -> Outcome {
+    on_bodies(|problem, degree| {
+        let d = discretize(problem, &Method { degree, ..Method::default() }).map_err(text)?;
+        for (fall, tolerance) in [(0.01, 1e-3), (0.1, 1e-6), (0.4, 1e-5)] {
+            let settings = Settings { tolerance, proof: f64::INFINITY, ..Settings::default() };
+            let shares: Vec<f64> = (0..20).map(|k| f64::powi(fall, k)).collect();
+            let Told { outcome, error, .. } = passes(&d, &shares, &settings)?;
+            // The correction is relative to the displacement before it, which is up to a fifth smaller.
+            let (told, most) = (scale * outcome.forward_error, 1.25 * (1.0 + 1.0 / fall) * error);
+            if !(error <= told && told <= most) {
+                return Err(format!("{told:e} reported of an error of {error:e}"));
+            }
+        }
+        Ok(())
+    })
+}
+
 /// From pass to pass the error is multiplied by this.
 const FALLS: [f64; 4] = [0.01, 0.1, 0.4, -1.0];
 
@@ -445,6 +464,7 @@ fn condition_is_told(scale: f64) -> Outcome {
 properties! {
     the_residual_of_the_verdict_is_that_of_8_relative_to_the_forces: residual_is_told(1.0);
         not residual_is_told(0.9);
+    the_error_that_is_reported_is_the_last_correction: error_is_told(1.0); not error_is_told(1e-6);
     a_solve_without_a_proof_ends_at_its_tolerance: ends(1.0); not ends(1e-16);
     nothing_is_proved_that_is_further_away_than_asked_for: proved(false); not proved(true);
     loads_contact_and_reactions_balance: balanced(BALANCED, 1.0); not balanced(0.0, 0.0);
