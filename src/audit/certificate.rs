@@ -616,4 +616,30 @@ mod tests {
             assert_eq!(found[2], Vector2::new(x, 3.0), "{known:?}");
         }
     }
+
+    #[test]
+    fn tied_displacements_jump_by_what_is_given_and_keep_what_is_held_or_lies_across() {
+        let (own, other, gap) = (Vector2::new(2.0, -1.0), Vector2::new(0.5, 7.0), 0.25);
+        for d in [[3.0, 4.0], [-4.0, 3.0], [0.5, -2.0], [1.0, 0.0], [-1.0, 0.0], [0.0, -1.0]] {
+            let (along, is_along_axis) = (exactly::<f64>(d), axis(d).is_some());
+            for given in [[false; 2], [true, false], [false, true]] {
+                let tied = Law::Sliding.tie((own, given), other, d, [gap, 0.0]);
+                let what = format!("{d:?} {given:?}: {tied}");
+                assert!(((tied - other).dot(&along) - gap).abs() < 1e-14, "{what}");
+                // Along an axis the other component is kept, whichever is held.
+                let kept = if is_along_axis { [0, 1].map(|c| d[c] == 0.0) } else { given };
+                for c in (0..2).filter(|&c| kept[c]) {
+                    assert_eq!(tied[c], own[c], "{what}");
+                }
+                let moved = tied - own;
+                let is_nearest = (along[0] * moved[1] - along[1] * moved[0]).abs() < 1e-14;
+                assert_eq!(is_nearest, is_along_axis || given == [false; 2], "{what}");
+            }
+        }
+        let bonded = Law::Bonded { shear: [0.0; 2], offset: [0.0; 2] };
+        for (jump, expected) in [([gap, -3.0], [0.75, 4.0]), ([0.0, 0.0], [0.5, 7.0])] {
+            let tied = bonded.tie((own, [false; 2]), other, [1.0, 0.0], jump);
+            assert_eq!(<[f64; 2]>::from(tied), expected);
+        }
+    }
 }
