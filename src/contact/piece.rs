@@ -826,7 +826,7 @@ impl Piece {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
@@ -834,8 +834,8 @@ mod tests {
     use crate::model::Problem;
 
     /// Two bodies of one cell each, with this r at the left and right sides of each; the right side of the first faces the left one
-    /// of the second.
-    fn beside(sides: [[f64; 2]; 2], material: Material<f64>, reach: f64) -> Problem {
+    /// of the second, and their far sides are the outer ones.
+    pub(crate) fn beside(sides: [[f64; 2]; 2], material: Material<f64>, reach: f64) -> Problem {
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
         for [left, right] in sides {
             let k = vertices.len();
@@ -843,8 +843,9 @@ mod tests {
             triangles.extend([[k, k + 1, k + 2], [k, k + 2, k + 3]]);
         }
         let pair = Pair::new("right", "left").with_reach(reach).with_clearance(|_| 0.0);
-        let named = [("right", [1, 2]), ("left", [7, 4])];
-        let named = named.map(|(name, edge)| (name.to_owned(), vec![edge]));
+        let named =
+            [("right", vec![[1, 2]]), ("left", vec![[7, 4]]), ("outer", vec![[3, 0], [5, 6]])];
+        let named = named.map(|(name, edges)| (name.to_owned(), edges));
         let mesh = Mesh::with_pairs(vertices, triangles, named, std::slice::from_ref(&pair));
         Problem::of(mesh.unwrap(), material).with_pair(pair)
     }

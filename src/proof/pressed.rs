@@ -453,6 +453,8 @@ fn stress_factor(line: &Piece<PreciseBall>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::law::Law;
+    use crate::contact::piece::tests::beside;
     use crate::kernel::{Material, Plane};
     use crate::model::{Condition, Diagonal, Problem, Rectangle};
 
@@ -503,6 +505,41 @@ mod tests {
             for c in 0..2 {
                 let expected = start[c] + (end[c] - start[c]) * s;
                 assert!((found[c] - expected).abs() <= f64::EPSILON, "{s}: {found:?} {expected}");
+            }
+        }
+    }
+
+    /// The relative difference of the springs of a piece that is pressed all along, between two bodies with this r where they meet, from
+    /// the second derivatives of its energy.
+    fn off_the_energy((plane, r): (Plane, f64), law: Law, degree: Degree, radii: bool) -> f64 {
+        let sides = [[r - 1.0, r], [r, r + 1.0]];
+        let problem = beside(sides, Material::lame(1.3, 0.7, plane), 0.1);
+        let mut problem = problem.with("outer", Condition::clamped());
+        problem.pairs[0].law = law;
+        let rule = EdgeRule::Exact;
+        let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, rule).unwrap();
+        let lines = Lines::new(&d);
+        // Both are shortened towards where they meet.
+        let u: Vec<[f64; 2]> = d.space.nodes().iter().map(|&[x, _]| [r - x, 0.0]).collect();
+        let in_balls: Vec<[PreciseBall; 2]> = u.iter().map(|u| u.map(PreciseBall::from)).collect();
+        let springs = Pressed::at(&d, &lines, &in_balls, 0.0).springs(&lines);
+        let mut piece = d.contact[0].clone();
+        piece.radii = piece.radii.filter(|_| radii);
+        let energy = piece.contribution(&d.rule, &piece.p(&u)).tangent;
+        let size = |of: &DMatrix<f64>| of.iter().map(|h| h * h).sum::<f64>().sqrt();
+        size(&(&springs[0] - &energy)) / size(&energy)
+    }
+
+    #[test]
+    fn springs_are_the_second_derivatives_of_the_energy() {
+        for degree in [Degree::One, Degree::Two] {
+            for law in [Law::Contact, Law::Sliding, Law::Bonded] {
+                for at in [(Plane::Strain, 1.0), (Plane::Axisymmetric, 1.5)] {
+                    let off = off_the_energy(at, law, degree, true);
+                    assert!(off < 1e-9, "{at:?} {law:?} {degree:?}: {off}");
+                }
+                let off = off_the_energy((Plane::Axisymmetric, 1.5), law, degree, false);
+                assert!(off > 0.1, "control: without the weight r {law:?} {degree:?}: {off}");
             }
         }
     }

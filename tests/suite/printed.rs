@@ -12,7 +12,7 @@ use crate::command::{signorini, with_files};
 use crate::common::root;
 
 /// The cases of `tests/recorded/cases.txt` whose text is kept; with the picture of those after which a `*` stands.
-const KEPT: [&str; 70] = [
+const KEPT: [&str; 73] = [
     "block-p1*",
     "coulomb-p1*",
     "steps-p1",
@@ -31,6 +31,9 @@ const KEPT: [&str; 70] = [
     "adapt-force",
     "check",
     "check-pair",
+    "steps-left",
+    "steps-right",
+    "ramp-along",
     "sweep",
     "sweep-short",
     "sweep-short-failed",
