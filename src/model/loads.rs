@@ -335,22 +335,24 @@ fn each_body_force(
     mut add: impl FnMut(Force, [f64; 2]),
 ) -> Result<(), DataError> {
     let mut wrong = None;
-    let mut act = |nodes: &[usize], x: [f64; 2], weight: f64, shapes: &Shapes| match checked(
-        f.at(x),
-        x,
-        &what,
-    ) {
+    let value = |x: [f64; 2]| checked(f.at(x), x, &what);
+    let mut act = |nodes: &[usize], x: [f64; 2], f, weight: f64, shapes: &Shapes| match f {
         Ok(f) => add(Force { c, value: weight * f, nodes, shapes }, x),
         Err(error) => wrong = wrong.take().or(Some(error)),
     };
     match rule {
         BodyRule::Corners => {
             let shapes = [0, 1, 2].map(|k| Shapes::for_corner(space.degree(), k));
+            let mesh = space.mesh();
+            // Once at each vertex, at which some six triangles have a corner.
+            let mut values: Vec<Option<f64>> = vec![None; mesh.vertices().len()];
             for t in triangles {
-                let triangle = space.mesh().triangle(t);
-                let weight = triangle.double_area().abs() / 6.0;
-                for (&x, shapes) in triangle.vertices.iter().zip(&shapes) {
-                    act(space.nodes_of(t), x.into(), weight, shapes);
+                let weight = mesh.triangle(t).double_area().abs() / 6.0;
+                for (&v, shapes) in mesh.triangles()[t].iter().zip(&shapes) {
+                    let x = mesh.vertices()[v];
+                    let f = values[v].map_or_else(|| value(x), Ok);
+                    values[v] = f.as_ref().ok().copied();
+                    act(space.nodes_of(t), x, f, weight, shapes);
                 }
             }
         }
@@ -362,8 +364,8 @@ fn each_body_force(
                 let (nodes, mut expected) = (space.nodes_of(t), known.iter());
                 let triangle = space.mesh().triangle(t);
                 rule.on_triangle(&triangle, |l, x, weight| match expected.next() {
-                    Some((at, shapes)) if *at == l => act(nodes, x, weight, shapes),
-                    _ => act(nodes, x, weight, &shapes_at(l)),
+                    Some((at, shapes)) if *at == l => act(nodes, x, value(x), weight, shapes),
+                    _ => act(nodes, x, value(x), weight, &shapes_at(l)),
                 });
             }
         }
