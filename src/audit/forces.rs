@@ -452,14 +452,22 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         }
     }
 
-    /// The displacement of a lifting on the triangles of the certificate.
-    pub fn shape(&self, w: &Lifting, target: ForceTarget) -> Result<Shape<S>, WrongLifting> {
-        let certificate = self.certificate;
-        let (vertices, cuts) = (certificate.vertices.len(), certificate.cuts.len());
+    /// w has a value for each vertex and, if it is quadratic, for each cut and each edge.
+    fn check_lengths(&self, w: &Lifting) -> Result<(), WrongLifting> {
         let same = |found: usize, expected: usize| {
             if found == expected { Ok(()) } else { Err(WrongLifting::Length { found, expected }) }
         };
-        same(w.vertices.len(), vertices)?;
+        same(w.vertices.len(), self.certificate.vertices.len())?;
+        let Some([at_cuts, beyond]) = &w.beyond else { return Ok(()) };
+        same(at_cuts.len(), self.certificate.cuts.len())?;
+        same(beyond.len(), self.certificate.edges.len())
+    }
+
+    /// The displacement of a lifting on the triangles of the certificate.
+    pub fn shape(&self, w: &Lifting, target: ForceTarget) -> Result<Shape<S>, WrongLifting> {
+        self.check_lengths(w)?;
+        let certificate = self.certificate;
+        let vertices = certificate.vertices.len();
         let mut points: Vec<Vector2<S>> = w.vertices.iter().map(|&w| exactly(w)).collect();
         let frames = &certificate.frames;
         for (e, edge) in certificate.edges.iter().enumerate() {
@@ -475,8 +483,6 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         points = certificate.with_cuts(points, &w.vertices, |p| !frames.contains_key(&p));
         let mut bulges = None;
         if let Some([at_cuts, beyond]) = &w.beyond {
-            same(at_cuts.len(), cuts)?;
-            same(beyond.len(), certificate.edges.len())?;
             for (point, &beyond) in points[vertices..].iter_mut().zip(at_cuts) {
                 *point += exactly::<S>(beyond);
             }
@@ -578,6 +584,7 @@ impl<'a, S: Enclosing> Forces<'a, S> {
 
     /// Verifies w on Gamma_D.
     fn check_supports(&self, w: &Lifting, target: ForceTarget) -> Result<(), WrongLifting> {
+        self.check_lengths(w)?;
         let certificate = self.certificate;
         for (edge, Edge { ends, role }) in certificate.edges.iter().enumerate() {
             let (held, oblique) = match *role {

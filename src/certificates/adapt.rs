@@ -63,11 +63,22 @@ pub struct AdaptedLevel {
     pub newton_steps: usize,
     /// |u - v|_a is at most this.
     pub bound: f64,
-    /// The bound over |v|_a.
+    /// The bound over |v|_a; NaN or infinite of a body at rest, and then left out of files.
+    #[cfg_attr(feature = "files", serde(default = "unknown", skip_serializing_if = "is_unknown"))]
     pub relative: f64,
     /// Half the width of what the force lies between over its middle, if a force is the target.
     #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
     pub force: Option<f64>,
+}
+
+#[cfg(feature = "files")]
+fn unknown() -> f64 {
+    f64::NAN
+}
+
+#[cfg(feature = "files")]
+fn is_unknown(x: &f64) -> bool {
+    !x.is_finite()
 }
 
 /// The level with the smallest bound, with all others.

@@ -544,7 +544,8 @@ fn adapted(adapt: &Adaptation) -> String {
         Some(_) => {
             level.force.map_or("not bounded".to_owned(), |within| format!("±{}", percent(within)))
         }
-        None => percent(level.relative),
+        None if level.relative.is_finite() => percent(level.relative),
+        None => short(level.bound),
     };
     let bounds: Vec<String> = adapt.levels.iter().map(reached).collect();
     let verdict = match &adapt.reason {
@@ -555,12 +556,11 @@ fn adapted(adapt: &Adaptation) -> String {
         Some(boundary) => format!("force of {} within ±", quote::cut(boundary)),
         None => "target ".to_owned(),
     };
-    format!(
-        "{target}{} {verdict}; {}: {}",
-        percent(adapt.target),
-        count(adapt.levels.len(), "level"),
-        bounds.join(" ")
-    )
+    let levels = match &*bounds {
+        [] => String::new(),
+        bounds => format!("; {}: {}", count(bounds.len(), "level"), bounds.join(" ")),
+    };
+    format!("{target}{} {verdict}{levels}", percent(adapt.target))
 }
 
 /// Says how far the solution can be from the true one: as it is, and pushed out of the obstacle, where that is another number.

@@ -78,13 +78,6 @@ impl Materials {
         self.of_triangle.get(t).copied().unwrap_or(0)
     }
 
-    /// Replaces every material by `f` of it.
-    #[must_use]
-    pub fn map(&self, f: impl FnMut(&Material<f64>) -> Material<f64>) -> Self {
-        let distinct = self.distinct.iter().map(f).collect();
-        Materials { distinct, of_triangle: self.of_triangle.clone() }
-    }
-
     /// The materials on parts of these triangles: part i is one of triangle `origin[i]`.
     #[must_use]
     pub(crate) fn on_parts(&self, origin: &[usize]) -> Self {

@@ -6,7 +6,7 @@ use crate::common::exact::{corner, on_square, on_trapezoid, singular};
 use crate::common::*;
 use approx::abs_diff_eq;
 use signorini::certificates::adapt::AdaptError;
-use signorini::certificates::{Adapted, Target, adapt, certify};
+use signorini::certificates::{Adapted, Asked, Target, adapt, adapt_to, certify};
 use signorini::io::Case;
 use signorini::io::run;
 use signorini::kernel::{Material, Plane};
@@ -219,6 +219,21 @@ fn a_body_at_rest_has_no_energy_to_compare_with() {
         adapt(problem, &Method::default(), &Settings::default(), target, &|_| {}).unwrap();
     assert_eq!(adapted.unmet.unwrap(), "the body is at rest, its energy is 0");
     assert_eq!(adapted.solution.quantities.energy, 0.0);
+}
+
+#[test]
+fn a_force_where_no_contact_is_ends_the_refinement_at_once() {
+    let problem = Problem::of(unit_square(4).mesh().unwrap(), unit_material())
+        .with("top", Condition::displacement(|_| 0.0, |_| -0.1))
+        .with("bottom", Condition::contact(|_| 0.0));
+    let how = (&Method::default(), &Settings::default());
+    let target = Target { relative: 0.9, max_unknowns: 1000 };
+    let unmet = |boundary| {
+        let goal = (target, Some(boundary));
+        adapt_to(problem.clone(), how, goal, &Asked::default(), &|_| {}).unwrap().1.unmet
+    };
+    assert_eq!(unmet("left").unwrap(), "there is no contact on 'left'");
+    assert_eq!(unmet("bottom"), None, "control");
 }
 
 fn of_the_file(settings: &[&str]) -> Case {

@@ -39,6 +39,7 @@ mod quantities;
 mod recorded;
 mod recovered;
 mod reference;
+mod refused;
 mod remarks;
 mod reported;
 mod revolution;

@@ -12,7 +12,7 @@ use crate::command::{signorini, with_files};
 use crate::common::root;
 
 /// The cases of `tests/recorded/cases.txt` whose text is kept; with the picture of those after which a `*` stands.
-const KEPT: [&str; 73] = [
+const KEPT: [&str; 96] = [
     "block-p1*",
     "coulomb-p1*",
     "steps-p1",
@@ -86,6 +86,29 @@ const KEPT: [&str; 73] = [
     "gamma-twice",
     "exact-of-surfaces",
     "long-title*",
+    "beside-p1",
+    "beside-p2",
+    "coulomb-proof",
+    "adapt-none",
+    "adapt-rest",
+    "adapt-rest-force",
+    "adapt-bent",
+    "post",
+    "gauss-one",
+    "gauss-five",
+    "exact-pair",
+    "exact-round",
+    "exact-wood",
+    "radius-of-plane",
+    "friction-of-revolution",
+    "no-obstacle",
+    "broken-load",
+    "sweep-part",
+    "steps-lost",
+    "adapt-table",
+    "engine-within",
+    "steps-proof",
+    "steps-first",
 ];
 
 /// The labels of lines of which the words are kept and no numbers, which differ from processor to processor.

@@ -976,6 +976,20 @@ fn a_tied_point_is_where_it_is_prescribed() {
     }
 }
 
+#[test]
+fn glued_bodies_that_are_held_apart_have_no_certificate() {
+    let answer = |u: f64| {
+        let wall = Condition::displacement(move |[_, y]| u * (1.0 + y), |_| 0.0);
+        let problem = held_beside_glue().with("lower.left", wall);
+        let solution = proved(&problem, &method(Degree::One));
+        certify(&problem, &solution).map_err(|error| error.to_string()).err()
+    };
+    let found = answer(0.01).unwrap();
+    let words = "at (0, 0) two bodies that may not open have prescribed displacements that differ";
+    assert!(found.ends_with(words), "{found}");
+    assert_eq!(answer(0.0), None, "control");
+}
+
 /// Two bodies that slide and do not open along y = 0.3 x (1 - x), pulled up: their walls hold what is across them, so that at both ends of the
 /// interface a component is prescribed on both bodies, along neither the direction of contact nor across.
 fn humped(cells: [usize; 2]) -> Problem {
