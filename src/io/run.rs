@@ -8,7 +8,7 @@ use super::result::Adaptation;
 use crate::certificates::adapt::{AdaptError, Stage};
 use crate::certificates::{CertifyError, Continuous, adapt, certify_with};
 use crate::results::Solution;
-use crate::solve::{Course, SolveError, Times, solve_along};
+use crate::solve::{Course, Kept, SolveError, Times, solve_along};
 
 /// A case that is solved.
 #[derive(Debug)]
@@ -52,11 +52,27 @@ impl From<AdaptError> for Failure {
     }
 }
 
-/// Solves `case`, from the `start` if there is one and the mesh stays as it is; an adapted mesh takes the place of its own.
+/// What a run leaves for the next one.
+#[derive(Default)]
+pub struct Earlier {
+    /// Where the next one starts.
+    pub start: Option<Solution>,
+    /// What still holds if loads and gaps alone are others.
+    pub kept: Kept,
+}
+
+impl Earlier {
+    fn leads<'a>(&'a self, course: Course<'a>) -> Course<'a> {
+        let course = course.keeping(&self.kept);
+        self.start.as_ref().map_or(course, |start| course.from_displacement(&start.displacement))
+    }
+}
+
+/// Solves `case`, with what an `earlier` run has left if the mesh stays as it is; an adapted mesh takes the place of its own.
 /// `watcher` is told of each stage.
 pub fn solve(
     mut case: Case,
-    start: Option<&Solution>,
+    earlier: Option<&Earlier>,
     watcher: &dyn Fn(Stage),
 ) -> Result<(Case, Solved), Failure> {
     if !case.steps.is_empty() {
@@ -67,7 +83,7 @@ pub fn solve(
     let Some((target, force)) = case.adapt.clone() else {
         let of_solve = |phase| watcher(Stage::Solve(phase));
         let course = Course::default().watched_by(&of_solve);
-        let course = start.map_or(course, |start| course.from_displacement(&start.displacement));
+        let course = earlier.map_or(course, |earlier| earlier.leads(course));
         let solved = solve_along(&case.problem, &case.method, &case.settings, course)
             .map_err(|error| error.of_thickness(case.thickness))?;
         let mut solved = Solved::from(solved);

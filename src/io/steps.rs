@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::case::Case;
 use super::input::Failure;
 use super::outputs::{self, Extra, Series};
-use super::run;
+use super::run::{self, Earlier};
 use super::sweep::{Names, Sweep, clear, of_run};
 use crate::certificates::adapt::Stage;
 
@@ -35,12 +35,13 @@ pub(crate) fn run(
     let mut table =
         Sweep { title, keys, values, results: Vec::new(), with_files: true, names: NAMES };
     let mut last: Option<Vec<Vec<f64>>> = None;
-    let mut series = Series::default();
+    let (mut series, earlier) = (Series::default(), Earlier::default());
     for (i, mut case) in steps.into_iter().enumerate() {
         if let Some(slip) = last.take() {
             case.problem.slip = slip;
         }
-        let (case, mut solved) = match run::solve(case, None, &|stage| watcher(i + 1, stage)) {
+        let watcher = |stage| watcher(i + 1, stage);
+        let (case, mut solved) = match run::solve(case, Some(&earlier), &watcher) {
             Ok(solved) => solved,
             Err(error) => {
                 table.results.push(Err(error));

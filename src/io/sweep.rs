@@ -19,10 +19,9 @@ use super::outputs::{self, Extra, Series};
 use super::picture::Scene;
 use super::picture::plot::{COLOURS, Figure, Panel, Style, figure};
 use super::result::Results;
-use super::run;
+use super::run::{self, Earlier};
 use super::summary;
 use crate::quote;
-use crate::results::Solution;
 use crate::results::answers::label;
 
 /// The most runs of a sweep: more are a mistake of the person who asks for them.
@@ -196,7 +195,7 @@ pub(crate) fn run(
     let mut sweep =
         Sweep { title, keys, values, results: Vec::new(), with_files: files, names: NAMES };
     let all = sweep.values.clone();
-    let one = |i: usize, last: &mut Option<Solution>| {
+    let one = |i: usize, last: &mut Earlier| {
         let folder = files.then(|| of_run(folder, i));
         solve(read(&all[i])?, folder.as_deref(), last)
     };
@@ -217,7 +216,7 @@ pub(crate) fn run(
 fn each_in_order<T: Send>(
     runs: usize,
     jobs: usize,
-    one: &(impl Fn(usize, &mut Option<Solution>) -> Result<T, Failure> + Sync),
+    one: &(impl Fn(usize, &mut Earlier) -> Result<T, Failure> + Sync),
     mut take: impl FnMut(T) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let in_a_row = runs.div_ceil(jobs.clamp(1, runs.max(1)));
@@ -227,7 +226,7 @@ fn each_in_order<T: Send>(
         for first in (0..runs).step_by(in_a_row) {
             let sender = sender.clone();
             let work = move || {
-                let mut last = None;
+                let mut last = Earlier::default();
                 for i in first..runs.min(first + in_a_row) {
                     let ended = stopped.load(Ordering::Relaxed)
                         || sender.send((i, one(i, &mut last))).is_err();
@@ -289,9 +288,9 @@ fn combinations(axes: &[ParameterAxis]) -> Vec<Vec<String>> {
 /// The results of a run or why there are none, and the content of its picture if it has files.
 type Ended = (Result<Results, Failure>, Option<Scene>);
 
-/// Solves from the `last` solution, and leaves its own there.
-fn solve(case: Case, folder: Option<&Path>, last: &mut Option<Solution>) -> Result<Ended, Failure> {
-    let (case, mut solved) = match run::solve(case, last.as_ref(), &|_| {}) {
+/// Solves from what the `last` run has left, and leaves its own there.
+fn solve(case: Case, folder: Option<&Path>, last: &mut Earlier) -> Result<Ended, Failure> {
+    let (case, mut solved) = match run::solve(case, Some(last), &|_| {}) {
         Ok(solved) => solved,
         Err(error) => return Ok((Err(error), None)),
     };
@@ -304,7 +303,7 @@ fn solve(case: Case, folder: Option<&Path>, last: &mut Option<Solution>) -> Resu
         }
         None => (outputs::results(&case, &solved, Duration::ZERO, Extra::default())?, None),
     };
-    *last = Some(solved.solution);
+    last.start = Some(solved.solution);
     Ok((Ok(results), scene))
 }
 

@@ -192,7 +192,7 @@ impl Neighbours {
 }
 
 /// The lower triangle of a sparse symmetric matrix, column by column, rows in increasing order, the diagonal first.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LowerTriangle<S = f64> {
     /// Where each column starts, and where the last one ends.
     pub starts: Arc<Vec<usize>>,

@@ -20,8 +20,7 @@ pub(super) const AT_ONCE: usize = 32;
 
 /// A, with |t|_A* <= the sum of `crude` times |t_i|.
 pub(super) struct Enclosed<'a> {
-    /// The middles of its entries.
-    middle: LowerTriangle<PreciseBall>,
+    a: &'a LowerTriangle<PreciseBall>,
     crude: &'a [f64],
     /// Bounds beside |t_i| of what a product with a vector is off by, in the dual norm: of each entry of the vector, and of each of what the
     /// product is subtracted from.
@@ -31,22 +30,22 @@ pub(super) struct Enclosed<'a> {
 }
 
 impl<'a> Enclosed<'a> {
-    pub(super) fn new(a: LowerTriangle<PreciseBall>, crude: &'a [f64]) -> Self {
+    pub(super) fn new(a: &'a LowerTriangle<PreciseBall>, crude: &'a [f64]) -> Self {
         let count = crude.len();
         let mut terms = vec![4_usize; count];
-        each_entry(&a, |i, _, _| terms[i] += 1);
+        each_entry(a, |i, _, _| terms[i] += 1);
         let most = terms.into_iter().max().unwrap_or(0) as f64;
         // With n terms and u half of f64::EPSILON, the tails' sum is off by 2 (n + 2)^2 u^2 of the magnitudes, and 2 (n + 4)^2 u^2 are to spare
         // for the sums z.
         let rounding = most * most * f64::EPSILON * f64::EPSILON;
         let mut of_factor = vec![0.0; count];
-        each_entry(&a, |i, j, a| {
+        each_entry(a, |i, j, a| {
             of_factor[j] += crude[i] * (a.radius() + rounding * a.magnitude());
         });
         let safe = |of: f64| of * (1.0 + 1e-9) + f64::MIN_POSITIVE;
         let of_factor = of_factor.into_iter().map(safe).collect();
         let underflow = f64::MIN_POSITIVE * (count as f64 + most * crude.iter().sum::<f64>());
-        Enclosed { middle: a, crude, of_factor, rounding, underflow }
+        Enclosed { a, crude, of_factor, rounding, underflow }
     }
 
     /// Columns z near A^-1 b for functionals b, and bounds of |b - A z|_A*, which are `share` of |b|_A* at most, or as small as they get;
@@ -73,7 +72,7 @@ impl<'a> Enclosed<'a> {
                 c.iter_mut().zip(&goes_on).filter(|(_, on)| !**on).for_each(|(c, _)| *c = 0.0);
             }
             factor.solve_columns(&mut c, count);
-            left.subtract_product(&self.middle, &c, count);
+            left.subtract_product(self.a, &c, count);
             let mut moved = vec![0.0; count];
             let rows = z.z.chunks_exact_mut(count).zip(c.chunks_exact(count));
             for ((z, c), by) in rows.zip(&self.of_factor) {
@@ -265,7 +264,7 @@ mod tests {
             let n = system.numbering.count;
             let a = system.tangent_in_balls(lines.iter(), &springs(lines, 0.0)).unwrap();
             let crude: Vec<f64> = (0..n).map(|i| 1.0 + (i % 7) as f64).collect();
-            let of = Enclosed::new(a, &crude);
+            let of = Enclosed::new(&a, &crude);
             let number = |k: usize| (1.7 * k as f64).sin();
             let numbers: Vec<f64> = (0..2 * n).map(number).collect();
             let zero = vec![0.0; 2 * n];
@@ -298,14 +297,14 @@ mod tests {
                 left.iter().zip(&crude).map(|(t, c)| c * t.least_magnitude()).sum()
             };
             // Corrected as far as that leads on.
-            let z = Enclosed::new(a.clone(), &crude).columns(&factor, &all, 0.0);
+            let z = Enclosed::new(&a, &crude).columns(&factor, &all, 0.0);
             for column in 0..all.len() {
                 let (left, rest) = (left(&exact, &z, column), z.rests[column]);
                 assert!(left <= rest && rest < 1e-20, "{left} {rest}");
             }
             let by = |a: PreciseBall| 1e-6 * a.head().abs();
             a.values.iter_mut().for_each(|a| *a = a.widened(by(*a)));
-            let z = Enclosed::new(a, &crude).columns(&factor, &all, 1.0);
+            let z = Enclosed::new(&a, &crude).columns(&factor, &all, 1.0);
             for column in 0..all.len() {
                 // All that the entries of a matrix can be off adds up.
                 let farthest = |share: f64| {

@@ -169,7 +169,7 @@ pub struct Verifier<'s, 'd, 'p> {
     /// For what is pressed: the bounds at the nodes, and the factor, once it is needed.
     held: Option<HeldByContact>,
     /// Bounds of A for the proof with Coulomb's friction.
-    known: Option<isolated::Known>,
+    known: Option<Arc<isolated::Known>>,
     /// The sum of the magnitudes of the residual where it was last evaluated.
     pub(crate) unbalanced: f64,
     /// The residual where it was last evaluated, rounded to doubles at last; empty if that was in other unknowns.
@@ -407,13 +407,17 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
             let springs = (!pressed.is_nowhere()).then_some(springs.as_slice());
             let known = &mut self.known;
             let mut isolate = |share| {
-                let new = || isolated::Known::new(&body, lines, springs, share);
+                let new = |kept| isolated::Known::new(&body, lines, springs, share, kept);
                 let known = match (springs, &mut *known) {
-                    (Some(_), without) => (&new()?, without.as_ref()),
-                    (None, Some(known)) if known.share <= share => (&*known, None),
-                    (None, known) => (&*known.insert(new()?), None),
+                    (Some(_), without) => (new(None)?, without.as_deref()),
+                    (None, Some(known)) if known.share <= share => (known.clone(), None),
+                    (None, known) => {
+                        let new = new(system.course.kept())?;
+                        system.course.keep(&new);
+                        (known.insert(new).clone(), None)
+                    }
                 };
-                isolated::isolate(known, lines, &at.u, system, &rest)
+                isolated::isolate((&known.0, known.1), lines, &at.u, system, &rest)
             };
             let [share, least] = isolated::SHARES;
             isolated = Some(match isolate(share) {

@@ -11,6 +11,8 @@
 //!
 //! If step + q(R) R <= R and q(R) < 1, there is exactly one solution within R in the norm of A, and it is within step / (1 - q(R)).
 
+use std::sync::Arc;
+
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use nalgebra::DMatrix;
@@ -25,6 +27,7 @@ use crate::kernel::Response;
 use crate::kernel::ball::{PreciseBall, larger, up};
 use crate::linear::dense::norm;
 use crate::linear::factor::Factor;
+use crate::linear::matrix::LowerTriangle;
 use crate::linear::system::System;
 use crate::memory;
 use crate::model::Degree;
@@ -70,6 +73,17 @@ pub(super) struct Body<'a, 'd, 'p> {
     pub(crate) crude: &'a [f64],
 }
 
+/// What bounds of A are of: neither loads nor gaps nor a displacement is in them.
+#[derive(PartialEq)]
+struct Data {
+    /// A, with springs or without.
+    matrix: LowerTriangle<PreciseBall>,
+    /// B, row by row.
+    functionals: Vec<Functional>,
+    /// The law of each piece, and the integrals of N_a N_b / gamma.
+    friction: Vec<(Law, DMatrix<f64>)>,
+}
+
 /// The matrix G, enclosed.
 struct Compliance {
     /// Its middle.
@@ -96,12 +110,11 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl Body<'_, '_, '_> {
-    /// G = B A^-1 B^T: with z_j near A^-1 b_j and e_j = b_j - A z_j, the entry b_i . z_j is off by |b_i|_A* |e_j|_A* at most. The second
-    /// is `share` of |b_j|_A*, or as small as it gets.
-    fn compliance(&self, pieces: &Lines, share: f64) -> Result<Compliance, Unproved> {
+    /// A with the springs, and the functionals, in balls.
+    fn data(&self, pieces: &Lines) -> Result<Data, Unproved> {
         let (system, count) = (self.system, self.system.functionals());
         let nodes = system.d.space.nodes().len();
-        let mut rows: Vec<Functional> = Vec::with_capacity(count);
+        let mut functionals: Vec<Functional> = Vec::with_capacity(count);
         let zero = PreciseBall::from(0);
         for piece in pieces.iter() {
             for i in 0..piece.p0.len() {
@@ -110,7 +123,7 @@ impl Body<'_, '_, '_> {
                 let mut forces = vec![[zero; 2]; nodes];
                 piece.add_contact(&unit, &mut forces);
                 let row = free(system, &forces).into_iter().enumerate();
-                rows.push(row.filter(|(_, b)| b.magnitude() != 0.0).collect());
+                functionals.push(row.filter(|(_, b)| b.magnitude() != 0.0).collect());
             }
         }
         let (entries, n) = (system.matrix.values.len(), system.numbering.count);
@@ -118,7 +131,16 @@ impl Body<'_, '_, '_> {
         memory::check(bytes as u64).map_err(|_| Unproved::OutOfMemory)?;
         let springs = self.pressed.springs_in_balls(pieces);
         let matrix = system.tangent_in_balls(pieces.iter(), &springs);
-        let matrix = Enclosed::new(matrix.map_err(|_| Unproved::OutOfMemory)?, self.crude);
+        let matrix = matrix.map_err(|_| Unproved::OutOfMemory)?;
+        let friction = |piece: &Piece<PreciseBall>| (piece.geometry.law, mass(system.d, piece));
+        Ok(Data { matrix, functionals, friction: pieces.iter().map(friction).collect() })
+    }
+
+    /// G = B A^-1 B^T: with z_j near A^-1 b_j and e_j = b_j - A z_j, the entry b_i . z_j is off by |b_i|_A* |e_j|_A* at most. The second
+    /// is `share` of |b_j|_A*, or as small as it gets.
+    fn compliance(&self, of: &Data, share: f64) -> Result<Compliance, Unproved> {
+        let (rows, count) = (&of.functionals, of.functionals.len());
+        let matrix = Enclosed::new(&of.matrix, self.crude);
         let mut g = Mat::zeros(count, count);
         let mut radii: Mat<f64> = Mat::zeros(count, count);
         let (mut sizes, mut rests) = (vec![0.0; count], vec![0.0; count]);
@@ -689,7 +711,8 @@ fn magnitudes(matrix: &Mat<f64>) -> Mat<f64> {
 }
 
 /// The data that do not depend on the displacement.
-pub(super) struct Known {
+pub(crate) struct Known {
+    of: Data,
     compliance: Compliance,
     root: Root,
     /// The springs of A_S; none for A.
@@ -701,22 +724,29 @@ pub(super) struct Known {
 }
 
 impl Known {
-    /// For these pieces of the body, with these springs or without, and with what may be left of the columns of the compliance.
+    /// For these pieces of the body, with these springs or without, and with what may be left of the columns of the compliance: the
+    /// one that is `at_hand`, without springs, if it is of the same.
     ///
     /// # Errors
     /// Why nothing is proved.
-    pub(crate) fn new(
+    pub(super) fn new(
         body: &Body,
         pieces: &Lines,
         springs: Option<&[DMatrix<f64>]>,
         share: f64,
-    ) -> Result<Self, Unproved> {
+        at_hand: Option<Arc<Known>>,
+    ) -> Result<Arc<Self>, Unproved> {
         let (system, count) = (body.system, body.system.functionals());
         let unknowns = system.numbering.count;
         if are_too_many(count, unknowns) {
             return Err(Unproved::TooManyFunctionals { count, unknowns });
         }
-        let compliance = body.compliance(pieces, share)?;
+        let of = body.data(pieces)?;
+        let is_known = |known: &Arc<Known>| known.share <= share && known.of == of;
+        if let Some(known) = at_hand.filter(is_known) {
+            return Ok(known);
+        }
+        let compliance = body.compliance(&of, share)?;
         let root = Root::new(&compliance).ok_or(Unproved::NotIsolated)?;
         let springs = springs.map(<[_]>::to_vec);
         let (everywhere, limits) = match springs {
@@ -728,7 +758,7 @@ impl Known {
                 (is_below || is_unique(system.d, pieces, &root), limits)
             }
         };
-        Ok(Known { compliance, root, springs, share, everywhere, limits })
+        Ok(Arc::new(Known { of, compliance, root, springs, share, everywhere, limits }))
     }
 }
 

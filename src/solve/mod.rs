@@ -24,7 +24,7 @@ pub mod route;
 mod setup;
 pub(crate) mod times;
 
-pub use self::course::{Course, Phase};
+pub use self::course::{Course, Kept, Phase};
 pub use self::error::{SolveError, history};
 pub use self::method::{
     ContactQuadrature, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
