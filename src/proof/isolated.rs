@@ -1282,6 +1282,53 @@ mod tests {
         assert!(least_control < 0.75, "control: less without what MU P_n does, {least_control}");
     }
 
+    /// Lambda, the largest eigenvalue of `W_t G_tt`, and the square of c, that of `N^-1 G_nt T^-1 G_tn`, from the integrals of `N_a N_b`.
+    fn of_the_theorems(d: &Discretization, pieces: &Lines, g: &Mat<f64>) -> [f64; 2] {
+        let integral: &[[f64; 3]] = match d.space.degree() {
+            Degree::One => &[[1.0 / 3.0, 1.0 / 6.0, 0.0], [1.0 / 6.0, 1.0 / 3.0, 0.0]],
+            Degree::Two => &[[4.0, -1.0, 2.0], [-1.0, 4.0, 2.0], [2.0, 2.0, 16.0]]
+                .map(|row| row.map(|x| x / 30.0)),
+        };
+        let nodes = integral.len();
+        let n = nodes * d.contact.len();
+        let of = |k: usize, i: usize| d.contact[i / nodes].start + k * nodes + i % nodes;
+        let block = |k: usize, l: usize| Mat::from_fn(n, n, |i, j| g[(of(k, i), of(l, j))]);
+        let w = Mat::from_fn(n, n, |i, j| match i / nodes == j / nodes {
+            true => pieces[i / nodes].weight().head() * integral[i % nodes][j % nodes],
+            false => 0.0,
+        });
+        let identity = Mat::<f64>::identity(n, n);
+        let inverse = |m: &Mat<f64>| m.llt(Side::Lower).unwrap().solve(&identity);
+        let [normal, across] = [0, 1].map(|k| inverse(&(block(k, k) + inverse(&w))));
+        let largest = |m: Mat<f64>| {
+            power(n, |x| (0..n).map(|i| (0..n).map(|j| m[(i, j)] * x[j]).sum()).collect())
+        };
+        [largest(&w * block(1, 1)), largest(normal * block(0, 1) * across * block(1, 0))]
+    }
+
+    #[test]
+    fn the_limits_of_the_coefficient_are_those_of_both_theorems_and_no_larger() {
+        let (problem, mut next) = (on_a_floor(), draws(0.37));
+        for degree in [Degree::One, Degree::Two] {
+            let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, EdgeRule::Exact);
+            let d = d.unwrap();
+            let (lines, count) = (Lines::new(&d), d.contact.iter().map(|e| e.p0.len()).sum());
+            for size in [0.1, 0.3, 1.0] {
+                let z = Mat::from_fn(count + 2, count, |_, _| size * next());
+                let compliance = compliance(&z);
+                let found = limits(&d, &lines, &compliance, &Root::new(&compliance).unwrap());
+                let [lambda, square] = of_the_theorems(&d, &lines, &compliance.g);
+                let second = (1.0 - square) / (2.0 * square.sqrt());
+                let exact = [2.0 / lambda.sqrt(), second / (1.0 + lambda).sqrt()];
+                for (found, exact) in found.into_iter().zip(exact) {
+                    assert!(found <= exact && found >= 0.95 * exact, "{degree:?}: {found} {exact}");
+                }
+                let control = second / lambda.sqrt();
+                assert!(size > 0.1 || found[1] < 0.9 * control, "control: {} {control}", found[1]);
+            }
+        }
+    }
+
     #[test]
     fn where_no_region_is_sure_all_terms_are_possible_and_where_one_is_its_own() {
         let contact = |is: &[Region]| possible(Law::Contact, |region| is.contains(&region));
