@@ -1,5 +1,7 @@
 //! What refuses a certificate, a force or a case says why, each in its own words: one change for each reason.
 
+use std::collections::BTreeSet;
+
 use signorini::certificates::binding::compare;
 use signorini::certificates::forces::{Evidence, Lifting};
 use signorini::certificates::format::{self, hash, read_header};
@@ -153,6 +155,32 @@ fn what_the_theorem_does_not_allow_is_refused_in_words_of_its_own() {
         });
         let words = "an end without a prescribed value";
         assert_eq!(framed, format!("edge {}: {words}", first(&held, fixed)));
+    }
+}
+
+#[test]
+fn a_point_that_is_tied_has_no_other_direction_and_no_other_value() {
+    let words = "is tied to another place than what is prescribed";
+    for law in ["sliding", "bonded"] {
+        let text = format!("{BLOCKS}law = \"{law}\"\n");
+        let certificate = &certified(&text, "method.degree=2").1.certificate;
+        assert_eq!(after(certificate, |_| {}), "accepted", "control");
+        let ties = |edge: &Edge| matches!(edge.role, Role::Contact { .. });
+        let tied = certificate.edges.iter().filter(|edge| ties(edge)).flat_map(|edge| edge.ends);
+        let vertices = certificate.vertices.len();
+        let tied: BTreeSet<usize> = tied.filter(|&point| point < vertices).collect();
+        assert!(tied.len() > 2);
+        for point in tied {
+            // A value across the direction, which no support asks for.
+            let framed = after(certificate, |c| {
+                c.prescribed[point] = [Some(0.0), None];
+                c.frames.insert(point, [0.6, 0.8]);
+            });
+            assert_eq!(framed, format!("point {point}: {words}"), "{law}");
+            // A value along it that is not that of the other body.
+            let held = after(certificate, |c| c.prescribed[point] = [None, Some(1e-3)]);
+            assert_eq!(held, format!("point {point}: {words}"), "{law}");
+        }
     }
 }
 
