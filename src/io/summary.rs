@@ -769,6 +769,90 @@ mod tests {
     }
 
     #[test]
+    fn what_is_proved_of_the_discrete_solution_is_rounded_to_the_safe_side() {
+        let of = |unique: bool, radius: Option<f64>, relative: Option<f64>| DiscreteCertificate {
+            unique,
+            radius,
+            relative,
+            reason: radius.is_none().then(|| "no factor".to_owned()),
+            ..Default::default()
+        };
+        let alone = |within: Option<f64>| DiscreteCertificate {
+            isolated: Some(IsolatedSolution { within, unique_below: None, limits: None }),
+            ..of(false, Some(1.0), Some(3e-12))
+        };
+        let still = DiscreteCertificate { hardly_strains: true, ..of(true, Some(2e-9), None) };
+        let (size, in_norm) = ("within 1e-11 of it", "(relative, in the energy norm)");
+        let (one, slides) = ("the discrete equations have", "one solution but for sliding");
+        let coulomb = "with Coulomb's friction, exactly one solution of the discrete equations";
+        let rounding = "rounding included";
+        for (certificate, expected) in [
+            (
+                alone(Some(2e-6)),
+                format!(
+                    "{coulomb} within 1e-6 of this one {in_norm}; this is {size} {in_norm}, {rounding}"
+                ),
+            ),
+            (alone(None), format!("{coulomb} near this one; this is {size} {in_norm}, {rounding}")),
+            (
+                of(true, Some(1.0), Some(3e-12)),
+                format!("{one} exactly one solution; this is {size} {in_norm}, {rounding}"),
+            ),
+            (
+                of(false, Some(1.0), Some(3e-12)),
+                format!("{one} {slides}; this is {size} {in_norm}, {rounding}"),
+            ),
+            (
+                of(true, Some(2e-9), None),
+                format!(
+                    "{one} exactly one solution; this is within 2e-9 of it (in the energy norm), {rounding}"
+                ),
+            ),
+            (
+                still,
+                format!(
+                    "{one} exactly one solution; this is within 2e-9 of it (in the energy norm); the body hardly strains, {rounding}"
+                ),
+            ),
+            (
+                of(true, None, None),
+                format!(
+                    "{one} exactly one solution; how far this one is from it is not known: no factor"
+                ),
+            ),
+            (of(false, None, None), "nothing: no factor".to_owned()),
+        ] {
+            assert_eq!(enclosed(&certificate), expected);
+        }
+        let digits = |relative: f64| solved_exactly(&of(true, Some(1.0), Some(relative)));
+        for (relative, expected) in [
+            (3e-12, "exactly for this mesh, to 11 digits, rounding included"),
+            (0.099, "exactly for this mesh, to 1 digit, rounding included"),
+            (0.11, "for this mesh, to less than a digit, rounding included"),
+            (1e-30, "exactly for this mesh, to 15 digits, rounding included"),
+            (0.0, "exactly for this mesh, rounding included"),
+        ] {
+            assert_eq!(digits(relative), expected);
+        }
+        let others = "; with Coulomb's friction there may be others, far from this one";
+        for (certificate, expected) in [
+            (alone(None), format!("exactly for this mesh, to 11 digits, {rounding}{others}")),
+            (
+                of(false, Some(1.0), Some(3e-12)),
+                format!("exactly for this mesh, but for sliding, to 11 digits, {rounding}"),
+            ),
+            (of(true, Some(1.0), None), format!("for this mesh, to less than a digit, {rounding}")),
+            (of(true, Some(1e-200), None), format!("exactly for this mesh, {rounding}")),
+            (
+                of(true, None, None),
+                "for this mesh, how exactly is not proved: no factor".to_owned(),
+            ),
+        ] {
+            assert_eq!(solved_exactly(&certificate), expected);
+        }
+    }
+
+    #[test]
     fn an_audit_shows_forces_of_the_whole_thickness() {
         let text = "mesh.rectangle = { width = 1, height = 1, nx = 2, ny = 2 }\n\
                     material = { lambda = 1, mu = 1 }\n[boundary]\n\

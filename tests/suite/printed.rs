@@ -12,7 +12,7 @@ use crate::command::{signorini, with_files};
 use crate::common::root;
 
 /// The cases of `tests/recorded/cases.txt` whose text is kept; with the picture of those after which a `*` stands.
-const KEPT: [&str; 96] = [
+const KEPT: [&str; 101] = [
     "block-p1*",
     "coulomb-p1*",
     "steps-p1",
@@ -109,6 +109,11 @@ const KEPT: [&str; 96] = [
     "engine-within",
     "steps-proof",
     "steps-first",
+    "friction-across",
+    "three-places",
+    "two-places",
+    "locks",
+    "fibres",
 ];
 
 /// The labels of lines of which the words are kept and no numbers, which differ from processor to processor.
