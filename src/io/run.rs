@@ -52,12 +52,12 @@ impl From<AdaptError> for Failure {
     }
 }
 
-/// What a run leaves for the next one.
+/// The data that a run leaves for the next one.
 #[derive(Default)]
 pub struct Earlier {
     /// Where the next one starts.
     pub start: Option<Solution>,
-    /// What still holds if loads and gaps alone are others.
+    /// Bounds that still hold if loads and gaps alone are others.
     pub kept: Kept,
 }
 

@@ -73,13 +73,15 @@ pub(super) struct Body<'a, 'd, 'p> {
     pub(crate) crude: &'a [f64],
 }
 
-/// What bounds of A are of: neither loads nor gaps nor a displacement is in them.
+/// The data of bounds of A: neither loads nor gaps nor a displacement is among them.
 #[derive(PartialEq)]
 struct Data {
     /// A, with springs or without.
     matrix: LowerTriangle<PreciseBall>,
     /// B, row by row.
     functionals: Vec<Functional>,
+    /// |t|_A* <= the sum of these times |t_i|.
+    crude: Vec<f64>,
     /// The law of each piece, and the integrals of N_a N_b / gamma.
     friction: Vec<(Law, DMatrix<f64>)>,
 }
@@ -133,14 +135,15 @@ impl Body<'_, '_, '_> {
         let matrix = system.tangent_in_balls(pieces.iter(), &springs);
         let matrix = matrix.map_err(|_| Unproved::OutOfMemory)?;
         let friction = |piece: &Piece<PreciseBall>| (piece.geometry.law, mass(system.d, piece));
-        Ok(Data { matrix, functionals, friction: pieces.iter().map(friction).collect() })
+        let friction = pieces.iter().map(friction).collect();
+        Ok(Data { matrix, functionals, crude: self.crude.to_vec(), friction })
     }
 
     /// G = B A^-1 B^T: with z_j near A^-1 b_j and e_j = b_j - A z_j, the entry b_i . z_j is off by |b_i|_A* |e_j|_A* at most. The second
     /// is `share` of |b_j|_A*, or as small as it gets.
     fn compliance(&self, of: &Data, share: f64) -> Result<Compliance, Unproved> {
         let (rows, count) = (&of.functionals, of.functionals.len());
-        let matrix = Enclosed::new(&of.matrix, self.crude);
+        let matrix = Enclosed::new(&of.matrix, &of.crude);
         let mut g = Mat::zeros(count, count);
         let mut radii: Mat<f64> = Mat::zeros(count, count);
         let (mut sizes, mut rests) = (vec![0.0; count], vec![0.0; count]);

@@ -36,8 +36,8 @@ pub enum Phase {
     Evaluate,
 }
 
-/// What one solve leaves for the next: bounds of the matrix that a proof with Coulomb's friction needs. They are taken where matrix and
-/// functionals are the same to the last bit, as where loads alone change.
+/// The bounds of the matrix that a proof with Coulomb's friction leaves for the next one. They are taken where all that they are
+/// computed from is the same to the last bit, as where loads alone change.
 #[derive(Default)]
 pub struct Kept(RefCell<Option<Arc<Known>>>);
 
