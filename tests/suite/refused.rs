@@ -158,6 +158,25 @@ fn what_the_theorem_does_not_allow_is_refused_in_words_of_its_own() {
     }
 }
 
+/// Each cut is moved by itself: the edges beside it face the right place at their other ends.
+#[test]
+fn a_cut_that_is_moved_faces_another_place_than_in_the_case() {
+    let (problem, Continuous { certificate, .. }) = certified(BLOCKS, "method.degree=2");
+    let of_case = |certificate: &_| compare(problem.clone(), certificate, &Evidence::default());
+    assert!(of_case(&certificate).is_ok(), "control");
+    let ends = certificate.facing.keys().flat_map(|&edge| certificate.edges[edge].ends);
+    let on_pair: BTreeSet<usize> =
+        ends.filter_map(|end| end.checked_sub(certificate.vertices.len())).collect();
+    assert!(on_pair.len() >= 8);
+    for k in on_pair {
+        let mut moved = certificate.clone();
+        moved.cuts[k].at += 0.01;
+        let found = of_case(&moved).map_err(|error| error.to_string());
+        let words = ["does not face what it faces", "is in contact in part, or with several"];
+        assert!(found.is_err_and(|error| words.iter().any(|words| error.contains(words))), "{k}");
+    }
+}
+
 #[test]
 fn a_point_that_is_tied_has_no_other_direction_and_no_other_value() {
     let words = "is tied to another place than what is prescribed";
