@@ -455,6 +455,7 @@ mod tests {
     use super::*;
     use crate::contact::law::Law;
     use crate::contact::piece::tests::beside;
+    use crate::kernel::edge_integral::edge_mass;
     use crate::kernel::{Material, Plane};
     use crate::model::{Condition, Diagonal, Problem, Rectangle};
 
@@ -491,6 +492,28 @@ mod tests {
         }
         let (_, [of_pressure, of_stress]) = holds(Plane::Axisymmetric, [0.5, 1.0]);
         assert!(of_pressure < of_stress, "control: the pressure alone says less");
+    }
+
+    #[test]
+    fn p0_changes_by_no_more_than_the_largest_stress_and_displacement_of_its_norms() {
+        for plane in [Plane::Strain, Plane::Axisymmetric] {
+            let (problem, rule) = (block(plane), EdgeRule::Exact);
+            let d = Discretization::new(&problem, Degree::One, |c| c.limit() / 2.0, rule).unwrap();
+            let lines = Lines::new(&d);
+            let line = &lines[0];
+            // The integrals of N_a N_b, with the weight r: an affine function of norm 1 is up to the root of an entry of the inverse.
+            let [[a, b], [_, c]] = edge_mass(line.radii.map_or([1.0; 2], |r| r.map(|r| r.head())));
+            let ends = [c, a].map(|other| (other / (a * c - b * b)).sqrt());
+            let largest = ends[0].max(ends[1]) * (line.gamma / line.length).head().sqrt();
+            let found = change(line, 0.0, 1.0);
+            assert!(found >= largest && found <= 1.01 * SAFETY * largest, "{plane:?}: {found}");
+            assert!(0.75 * found < largest, "control");
+            // The sum of |N_a| of degree 2 is largest at a quarter of the edge.
+            let shapes = Degree::Two.edge_values(0.25);
+            let most: f64 = shapes.iter().map(|x: &f64| x.abs()).sum();
+            assert_eq!(most, 1.25);
+            assert!((most..1.01 * SAFETY * most).contains(&change(line, 1.0, 0.0)));
+        }
     }
 
     #[test]
