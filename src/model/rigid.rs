@@ -473,4 +473,27 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn parts_move_as_one_body_if_they_shift_and_turn_alike() {
+        let part = |part: usize, turn: f64, shift: [f64; 2]| FreeMotion {
+            part,
+            centre: [part as f64, 0.0],
+            shift,
+            turn,
+            half: 0.5,
+            place: None,
+            others: Vec::new(),
+        };
+        let are_one = |own: FreeMotion, other: FreeMotion| {
+            FreeMotion { others: vec![other], ..own }.is_of_one_body()
+        };
+        // About the centre of the first part, 1 away from that of the second.
+        assert!(are_one(part(0, 0.5, [0.0; 2]), part(1, 0.5, [0.0, 0.5])));
+        assert!(are_one(part(0, 0.0, [0.3, -0.4]), part(1, 0.0, [0.3, -0.4])));
+        assert!(!are_one(part(0, 0.5, [0.0; 2]), part(1, -0.5, [0.0, 0.5])), "the other way");
+        assert!(!are_one(part(0, 0.5, [0.0; 2]), part(1, 0.4, [0.0, 0.5])), "less");
+        assert!(!are_one(part(0, 0.5, [0.0; 2]), part(1, 0.5, [0.0, -0.5])), "to the other side");
+        assert!(!are_one(part(0, 0.0, [0.3, -0.4]), part(1, 0.0, [0.3, 0.4])));
+    }
 }
