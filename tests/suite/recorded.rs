@@ -1,4 +1,4 @@
-//! What the command printed and wrote of 197 small cases (`tests/recorded/cases.txt`) when that was recorded: no number changes
+//! What the command printed and wrote of small cases (`tests/recorded/cases.txt`) when that was recorded: no number changes
 //! unnoticed. Which numbers are right, other tests say.
 //!
 //! `SIGNORINI_RECORD=1 cargo test --test suite recorded` records anew; the change is then read in `tests/recorded/numbers.txt`. Each line
