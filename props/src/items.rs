@@ -109,7 +109,7 @@ pub const ITEMS: &[Item] = &[
         "meshes of more than eight triangles"),
     item("Remark 2.3", "(8) holds formally for u", &[PRESSURE, P, P0, POSITIVE_PART], "H2, H5, H6"),
     item("(8)", "the method: A_gamma(u^h, v^h) + int (1/gamma)[P(u^h)]+ P0(v^h) = L(v^h) for all v^h in V^h", &[LINEAR, FORCES, PRODUCT, PIECE_P, PIECE_P0, INTEGRALS, GAUSS, POSITIVE_PART, REACTIONS, BIG_A, CONTACT, TRACES, DEFINED_PART, BODIES, PROBLEMS],
-        "loads and gaps of degree above 2; P2 without quadrature error, but in doubles (`assembled.rs`, `edges.rs` in `props/tests/program`); meshes of more than eight triangles, but beside other programs. The first exact check has n = (5/13, -12/13), the solver's doubles for |E|, h_T, the gap (within 1e-9) and lambda of plane stress, the sum of contact terms of `reactions`, none for P2 without a rule")
+        "loads and gaps of degree above 2; P2 without quadrature error, but in doubles (`assembled.rs`, `edges.rs` in `props/tests/program`); meshes of more than eight triangles, but beside other programs. The first exact check has n = (5/13, -12/13), the solver's doubles for |E|, h_T, the gap (within 1e-9) and lambda of plane stress, the sum of contact terms of `reactions`")
         .beside(&[RESIDUAL]),
     item("P_gamma, A_gamma", "v_n - gamma sigma_n(v); a(u, v) - int gamma sigma_n(u) sigma_n(v)", &[P, P0, PRESSURE, POSITIVE_PART, ("src/kernel/contact_edge.rs", "pub fn new<"), ("src/kernel/contact_edge.rs", "pub fn stress_product("), LINEAR, FORCES, PRODUCT, PIECE_P, PIECE_P0, INTEGRALS, GAUSS, BIG_A, TRACES, POINT, PROBLEMS],
         "as (7)"),
@@ -129,9 +129,9 @@ pub const ITEMS: &[Item] = &[
         "H4; an A that is not isotropic")
         .beside(&[("src/kernel/element.rs", "pub fn stiffness<")]),
     item("Theorem 3.3", "(8) has one solution for small gamma0", &[POSITIVE_PART, LINEAR, FORCES, PRODUCT, PIECE_P, PIECE_P0, INTEGRALS, GAUSS, REACTIONS, B, BODIES, SOLVED],
-        "(11), H5; P1 with a cut edge (6 draws), whose solution is irrational: a point of Newton's method stands for it (the solver's u~ is within 2^-40 |u~|_a of either); that a(., .) is positive definite on V^h, but on the meshes of row 10; that a strongly convex function on R^N has one minimiser: in place of Brezis (`docs/theory.md`, 3.2)"),
+        "(11), H5; P1 with a cut edge (6 draws), whose solution is irrational: an iterate of Newton's method is taken for it (the solver's u~ is within 2^-40 |u~|_a of either); that a(., .) is positive definite on V^h, but on the meshes of row 10; that a strongly convex function on R^N has one minimiser: in place of Brezis (`docs/theory.md`, 3.2)"),
     item("(12)", "B^h is strongly monotone", &[LINEAR, FORCES, PRODUCT, PIECE_P, PIECE_P0, INTEGRALS, GAUSS, POSITIVE_PART, B, A, BIG_A, CONTACT, DEFINED_PART, REACTIONS, BODIES, PROBLEMS, TRAPEZOID],
-        "H1, (11); H5: bodies (P2 by a rule of two points) have the definitions written out, which its first exact check compares with the solver's loops"),
+        "H1, (11), H5; bodies (P2 by a rule of two points) take the definitions, which the first exact check compares with the loops; attained to 1 % for v^h = 0, no contact"),
     item("Theorem 3.4", "for small gamma0, |u - u^h|_1 + |gamma^1/2 (sigma_n(u) + [P(u^h)]+/gamma)| <= C inf over v^h of (|u - v^h|_1 + |gamma^-1/2 (u_n - v_n^h)| + |gamma^1/2 sigma_n(u - v^h)|)", &[PRESSURE, P, P0, POSITIVE_PART, THREE_POINTS],
         "(8), (11), H2, H4, H5, H6; the printed form, but by (13): proof and Rocq have [9.1] of `docs/theory.md`, squared, in |.|_a, with P0(u - v^h) for u_n - v_n^h, from [9.4]")
         .beside(&[("study/src/a_priori.rs", "pub fn plain_squared<"), ("props/tests/program/a_priori.rs", "pub fn plain_bound_is_that_of_theorem_3_4<")]),

@@ -61,7 +61,7 @@ pub(crate) fn discretized<'a, const N: usize>(
     Discretization::new(problem, degree, |c| draw.kappa * c.limit(), draw.rule()).ok()
 }
 
-/// The solver's loops over rationals, with the doubles of its discretization for data, are their definitions: A(u, v) - L(v), P(u) at
+/// The solver's loops over rationals, with the doubles of its discretization for data, are their definitions: A(u, v) - L(v), P0(u) at
 /// the ends of the contact edges, and where they need no root the left side of (8) and its derivative along a field. Nothing is
 /// rounded: the normal is a unit vector of rational numbers, another one than the edge has, for none of the sums depends on that.
 pub(super) fn loops<const N: usize>(draw: &Draw, mistake: Mistake) -> Verdict {
