@@ -24,7 +24,17 @@ pub fn add_internal_forces<S: Scalar + From<f64>>(
     u: &[[S; 2]],
     forces: &mut [[S; 2]],
 ) {
-    each_stress(space, materials, exactly, u, |point| {
+    add_forces_of(space, materials, |_| true, (u, forces));
+}
+
+/// Adds to a(u, v) what the triangles with nodes that are `taken` have in it.
+fn add_forces_of<S: Scalar + From<f64>>(
+    space: &Space,
+    materials: &Materials,
+    taken: impl Fn(&[usize]) -> bool,
+    (u, forces): (&[[S; 2]], &mut [[S; 2]]),
+) {
+    each_stress(space, materials, (taken, exactly), u, |point| {
         point.each_force(|node, force, _| {
             forces[node][0] += force[0];
             forces[node][1] += force[1];
@@ -38,17 +48,32 @@ pub fn linear_residual<S: Scalar + From<f64>>(
     pieces: &[Piece<S>],
     u: &[[S; 2]],
 ) -> Vec<[S; 2]> {
+    residual_of(d, pieces, |_| true, u)
+}
+
+/// [`linear_residual`] without the stresses of the triangles whose nodes are not `taken`.
+fn residual_of<S: Scalar + From<f64>>(
+    d: &Discretization,
+    pieces: &[Piece<S>],
+    taken: impl Fn(&[usize]) -> bool,
+    u: &[[S; 2]],
+) -> Vec<[S; 2]> {
     let minus = |l: f64| -<S as From<f64>>::from(l);
     let mut forces: Vec<[S; 2]> = d.load.iter().map(|l| l.map(minus)).collect();
-    add_internal_forces(&d.space, &d.problem.material, u, &mut forces);
+    add_forces_of(&d.space, &d.problem.material, taken, (u, &mut forces));
     pieces.iter().for_each(|piece| piece.add_stresses(u, &mut forces));
     forces
 }
 
-/// A(u, v) - L(v) for every basis function v, and the values of P(u) at the nodes of each piece, by double-doubles.
-pub fn evaluate(d: &Discretization, u: &[[DoubleDouble; 2]]) -> (Vec<[f64; 2]>, Vec<DoubleDouble>) {
+/// A(u, v) - L(v), right for the basis functions of the nodes that are `asked` for, and the values of P(u) at the nodes of each piece,
+/// by double-doubles.
+pub fn evaluate(
+    d: &Discretization,
+    u: &[[DoubleDouble; 2]],
+    asked: impl Fn(usize) -> bool,
+) -> (Vec<[f64; 2]>, Vec<DoubleDouble>) {
     let pieces: Vec<Piece<DoubleDouble>> = d.contact.iter().map(|e| exact_piece(d, e)).collect();
-    let forces = linear_residual(d, &pieces, u);
+    let forces = residual_of(d, &pieces, |nodes| nodes.iter().any(|&node| asked(node)), u);
     let p = pieces.iter().flat_map(|piece| piece.p(u)).collect();
     (forces.into_iter().map(|f| f.map(DoubleDouble::head)).collect(), p)
 }

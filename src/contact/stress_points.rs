@@ -94,25 +94,25 @@ impl<S: Scalar> StressPoint<'_, S> {
     }
 }
 
-/// Calls `f` with the stresses of a displacement. Triangles that move as a whole (in a body of revolution: along its axis) are
-/// skipped, for most of a lift is zero.
+/// Calls `f` with the stresses of a displacement on the triangles with nodes that are `taken`. Triangles that move as a whole (in a body
+/// of revolution: along its axis) are skipped, for most of a lift is zero.
 #[inline]
 pub(super) fn each_stress<S: Scalar + From<f64>>(
     space: &Space,
     materials: &Materials,
-    in_numbers: impl Fn(Triangle<f64>) -> Triangle<S>,
+    (taken, in_numbers): (impl Fn(&[usize]) -> bool, impl Fn(Triangle<f64>) -> Triangle<S>),
     u: &(impl Nodal<S> + ?Sized),
     f: impl FnMut(&StressPoint<S>),
 ) {
     with_element!(space.degree(), E => {
-        each_stress_of::<E, _, _, _>(space, materials, in_numbers, u, f);
+        each_stress_of::<E, _, _, _>(space, materials, (taken, in_numbers), u, f);
     });
 }
 
 fn each_stress_of<E, const N: usize, const M: usize, S>(
     space: &Space,
     materials: &Materials,
-    in_numbers: impl Fn(Triangle<f64>) -> Triangle<S>,
+    (taken, in_numbers): (impl Fn(&[usize]) -> bool, impl Fn(Triangle<f64>) -> Triangle<S>),
     u: &(impl Nodal<S> + ?Sized),
     mut f: impl FnMut(&StressPoint<S>),
 ) where
@@ -125,6 +125,9 @@ fn each_stress_of<E, const N: usize, const M: usize, S>(
     let (zero, thirty) = (<S as From<i32>>::from(0), <S as From<i32>>::from(30));
     let shares = axial::shares::<E, N, M>();
     for (t, (doubles, nodes)) in space.triangles::<N>().enumerate() {
+        if !taken(nodes) {
+            continue;
+        }
         let nodal = nodes.map(|node| u.difference(node, nodes[0]));
         let material = materials.of(t);
         let radii = material.radii(&doubles);

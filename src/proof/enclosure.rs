@@ -134,6 +134,9 @@ impl Unproved {
     }
 }
 
+/// The share of the radius that is asked for at which a bound is not sharpened: a further one takes a solve with the factor.
+const ENOUGH: f64 = 0.1;
+
 /// Where not all of S stays pressed on the ball of the bound, what would on one that is so many times larger is taken: less holds the
 /// body less, and the bound grows.
 const LESS_PRESSED: f64 = 2.0;
@@ -236,7 +239,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         }
     }
 
-    /// A radius of a hundredth of `proof`, relative, need not be smaller.
+    /// A radius of a tenth of `proof`, relative, need not be smaller.
     #[must_use]
     pub(crate) fn for_proof(self, proof: f64) -> Self {
         Verifier { proof, ..self }
@@ -381,7 +384,7 @@ impl<'s, 'd, 'p> Verifier<'s, 'd, 'p> {
         let if_strained = system.norm_if_strained(u);
         let size = if norm > NEGLIGIBLE * if_strained { norm } else { if_strained };
         let known = (at.moved.max(self.proof * size) * coercivity.sqrt()).max(up_to);
-        let negligible = SLIGHT * known;
+        let negligible = ENOUGH * known;
         let first = weighted(r, &crude);
         let coulomb = d.has_coulomb();
         let mut dual = Dual { norm: first, z: Vec::new(), left: first };

@@ -117,8 +117,8 @@ pub struct MethodReport {
     pub predicted_operations: f64,
     /// The condition number of the matrix, estimated from below.
     pub condition: f64,
-    /// The last correction of the displacement in the energy norm, relative to the displacement: an estimate of the error
-    /// that rounding and iteration leave; infinite, and left out of result.json, where the steps ended before there was one.
+    /// The last correction of the displacement in the energy norm, relative to the displacement, times the share to which a pass takes an
+    /// error down where a proof follows: an estimate of the error that rounding and iteration leave; infinite, and left out of result.json, where the steps ended before there was one.
     #[cfg_attr(
         feature = "files",
         serde(default = "no_estimate", skip_serializing_if = "is_no_estimate")

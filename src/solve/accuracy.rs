@@ -3,8 +3,9 @@
 //! residuals are evaluated in double-doubles, and the passes go on; at last the residual of the proof corrects, in which the forces of
 //! stiff springs cancel beyond the digits of a double. docs/theory.md, 5.6.
 //!
-//! The correction of a pass estimates the error before it, up to an error smaller by the same factor again. So passes end when
-//! nothing is left to correct; the verdict is the proof's.
+//! The correction of a pass estimates the error before it. The first pass starts from the lift, so what the second corrects, relative to
+//! the displacement, is the share to which a pass takes an error down. So passes end when that share of the last correction is nothing;
+//! the verdict is the proof's.
 
 use super::iterate::{Evaluation, Iterate, NOISE};
 use super::newton::Until;
@@ -75,7 +76,8 @@ pub struct Outcome {
     pub residual: f64,
     /// Where the exact solution is, or why nothing is proved of it.
     pub enclosure: Result<Enclosure, Unproved>,
-    /// |du|_A / |u|_a of the last correction, and that of what rounding the displacement to doubles takes away: an estimate.
+    /// |du|_A / |u|_a of the last correction, times the share to which a pass takes an error down where that is known, and that of what
+    /// rounding the displacement to doubles takes away: an estimate.
     pub forward_error: f64,
     /// The condition number of the matrix, from below: Rayleigh quotients of what was solved for.
     pub condition: f64,
@@ -155,26 +157,31 @@ pub fn refine(
     refinement.pass(route)?;
     // The first pass starts from the lift, so its step says nothing about the error.
     refinement.correction = f64::INFINITY;
-    for _ in 1..MOST_PASSES {
+    for pass in 1..MOST_PASSES {
         if refinement.is_out_of_steps() {
             break;
         }
         let before = refinement.correction;
         refinement.pass(route)?;
+        if pass == 1 && !settings.proof.is_infinite() {
+            refinement.contraction = refinement.correction.min(1.0);
+        }
         let is_done = refinement.is_done();
-        if !is_done && refinement.correction < before / 2.0 {
+        if !is_done && refinement.correction < before / 2.0 && !refinement.is_exhausted() {
             continue;
         }
         if is_done && settings.proof.is_infinite() {
             break;
         }
-        verifier.use_factor(route.factored());
-        let is_near = refinement.verify(verifier);
-        if refinement.at.precisely && !is_near {
-            refinement.correct(route, verifier);
-        }
-        if refinement.at.precisely || (is_done && is_near) {
-            break;
+        if is_done || refinement.at.precisely {
+            verifier.use_factor(route.factored());
+            let is_near = refinement.verify(verifier);
+            if refinement.at.precisely && !is_near {
+                refinement.correct(route, verifier);
+            }
+            if refinement.at.precisely || is_near {
+                break;
+            }
         }
         // Doubles are not enough.
         refinement.at = refinement.iterate.evaluate(system, true);
@@ -195,6 +202,8 @@ struct IterativeRefinement<'a, 'd, 'p> {
     residuals: Vec<f64>,
     /// The size of the last correction beside the displacement.
     correction: f64,
+    /// The share to which a pass takes the error down; 1 as long as that is not known, and where no proof tells whether it is right.
+    contraction: f64,
     softness: f64,
     enclosure: Result<Enclosure, Unproved>,
 }
@@ -212,6 +221,7 @@ impl<'a, 'd, 'p> IterativeRefinement<'a, 'd, 'p> {
             at,
             residuals: Vec::new(),
             correction: f64::INFINITY,
+            contraction: 1.0,
             softness: 0.0,
             enclosure: Err(Unproved::NotReached),
         }
@@ -223,11 +233,22 @@ impl<'a, 'd, 'p> IterativeRefinement<'a, 'd, 'p> {
     }
 
     /// Returns whether nothing is left to correct in the numbers at hand: of the residual, of the imbalance of the forces on the
-    /// body, in parts of them, and of the last correction, relative.
+    /// body, in parts of them, and of the displacement, relative.
     fn is_done(&self) -> bool {
         self.residual.norm <= self.settings.tolerance
             && self.residual.unbalanced <= NEGLIGIBLE
-            && self.correction <= NEGLIGIBLE
+            && self.is_corrected()
+    }
+
+    /// Returns whether the error after the last pass is nothing beside the displacement, as far as its correction tells.
+    fn is_corrected(&self) -> bool {
+        self.contraction * self.correction <= NEGLIGIBLE
+    }
+
+    /// Returns whether another pass in doubles would find nothing to correct: rounding may be all that is left of the residual.
+    fn is_exhausted(&self) -> bool {
+        let is_noise = self.residual.norm <= self.at.noise / self.reference;
+        !self.at.precisely && self.is_corrected() && is_noise
     }
 
     fn pass(&mut self, route: &mut dyn Route) -> Result<(), SolveError> {
@@ -310,7 +331,7 @@ impl<'a, 'd, 'p> IterativeRefinement<'a, 'd, 'p> {
             residuals: self.residuals,
             residual: self.residual.norm,
             enclosure,
-            forward_error: self.correction + rounding,
+            forward_error: self.contraction * self.correction + rounding,
             condition: (system.largest() * self.softness).max(1.0),
             factorizations,
         }

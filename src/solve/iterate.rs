@@ -11,6 +11,7 @@ use crate::contact::stress_points::Nodal;
 use crate::contact::{EdgeRule, residual};
 use crate::held::solvability::{Play, Slides};
 use crate::kernel::DoubleDouble;
+use crate::linear::dense::norm;
 use crate::linear::system::System;
 
 /// The residual, in units of roundoff times its magnitudes, at which Newton's method ends. With 0 one body in five goes on to
@@ -23,6 +24,34 @@ const FEW_DIGITS: f64 = 1e4;
 /// Returns whether P presses with a value that is small beside the magnitudes it was added up from.
 pub(super) fn has_few_digits((p, size): (&DoubleDouble, &f64)) -> bool {
     p.head() > 0.0 && p.head() < FEW_DIGITS * f64::EPSILON * size
+}
+
+/// The nodes at which the forces of the body are added up from magnitudes so large that their rounding is too much.
+struct Blurred<'a> {
+    magnitudes: &'a [[f64; 2]],
+    most: f64,
+}
+
+/// The rounding in doubles that all nodes may have together at which forces are not evaluated in double-doubles, in roundings of all
+/// forces: on squares of quadratic elements they have as many.
+const FEW_ROUNDINGS: f64 = 1e4;
+
+impl<'a> Blurred<'a> {
+    fn of(forces: &[[f64; 2]], magnitudes: &'a [[f64; 2]]) -> Self {
+        let all = norm(forces.as_flattened());
+        let most = FEW_ROUNDINGS * all / (forces.as_flattened().len() as f64).sqrt();
+        Blurred { magnitudes, most }
+    }
+
+    fn is(&self, node: usize) -> bool {
+        !self.magnitudes[node].iter().all(|m| *m <= self.most)
+    }
+
+    /// The magnitudes at the other nodes.
+    fn others(&self) -> Vec<[f64; 2]> {
+        let of = |(node, m): (usize, &[f64; 2])| if self.is(node) { [0.0; 2] } else { *m };
+        self.magnitudes.iter().enumerate().map(of).collect()
+    }
 }
 
 /// A displacement.
@@ -107,17 +136,21 @@ impl Iterate {
             p
         };
         let (heads, tails) = (self.rounded(), self.remainder());
+        let Functional { values: mut forces, magnitudes, energy } =
+            d.linear_residual_by(&Parts { heads: &heads, tails: &tails });
         if precisely {
-            let (forces, p) = residual::evaluate(d, &self.u);
+            let blurred = Blurred::of(&forces, &magnitudes);
+            let (precise, p) = residual::evaluate(d, &self.u, |node| blurred.is(node));
+            let asked = precise.into_iter().enumerate().filter(|(node, _)| blurred.is(*node));
+            asked.for_each(|(node, precise)| forces[node] = precise);
             let p = idle(p);
             // The forces of contact are added to these in doubles, and the loads are doubles.
-            let noise = NOISE * f64::EPSILON * d.free_norm(&forces).max(d.free_norm(&d.load));
+            let rounded = d.free_norm(&forces).max(d.free_norm(&d.load));
+            let noise = NOISE * f64::EPSILON * (rounded + d.free_norm(&blurred.others()));
             let p_magnitudes = p.iter().map(|p| p.head().abs()).collect();
-            let (linear, energy) = (system.numbering.gather(&forces), d.strain_energy(&heads));
+            let linear = system.numbering.gather(&forces);
             return Evaluation { forces, linear, p, p_magnitudes, energy, noise, precisely };
         }
-        let Functional { values: forces, magnitudes, energy } =
-            d.linear_residual_by(&Parts { heads: &heads, tails: &tails });
         let mut p = Vec::with_capacity(system.functionals());
         let mut p_magnitudes = Vec::with_capacity(system.functionals());
         for piece in &d.contact {
