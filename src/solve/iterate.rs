@@ -33,8 +33,8 @@ struct Blurred<'a> {
 }
 
 /// The rounding in doubles that all nodes may have together at which forces are not evaluated in double-doubles, in roundings of all
-/// forces: on squares of quadratic elements they have as many.
-const FEW_ROUNDINGS: f64 = 1e4;
+/// forces: on squares they have some thousands.
+const FEW_ROUNDINGS: f64 = 1e3;
 
 impl<'a> Blurred<'a> {
     fn of(forces: &[[f64; 2]], magnitudes: &'a [[f64; 2]]) -> Self {
