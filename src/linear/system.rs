@@ -30,7 +30,7 @@ pub struct System<'d, 'p> {
     /// A
     pub matrix: LowerTriangle,
     /// The structure of the factor of A and of every tangent.
-    pub structure: Arc<Structure>,
+    pub(crate) structure: Arc<Structure>,
     pub(crate) course: Course<'d>,
     /// The entries of B.
     functionals: Arc<[Entry]>,

@@ -211,7 +211,7 @@ fn korn_on(degree: Degree, problem: &Problem, by: f64) -> Result<f64, String> {
     let system = System::new(&d).map_err(text)?;
     let neighbours = Neighbours::new(&d.space);
     let stiffness = matrix::assemble_stiffness(&d, &system.numbering, &neighbours).map_err(text)?;
-    let factor = Factor::with(&system.structure, &stiffness).map_err(text)?;
+    let factor = Factor::new(&stiffness).map_err(text)?;
     let korn = Korn::new(&d.space, &problem.material, &d.constraints, &[]).ok_or("not held")?;
     let mut least = f64::INFINITY;
     for (numbers, constant) in system.numbering.of.iter().zip(&korn.nodes) {
