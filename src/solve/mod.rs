@@ -25,7 +25,7 @@ mod setup;
 pub(crate) mod times;
 
 pub use self::course::{Course, Kept, Phase};
-pub use self::error::{SolveError, history};
+pub use self::error::SolveError;
 pub use self::method::{
     ContactQuadrature, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
 };
