@@ -50,7 +50,7 @@ pub struct Discretization<'a> {
     /// The rigid motions that supports leave free, part by part.
     pub(crate) motions: Vec<FreeMotion>,
     /// Where there are any and contact holds the body: those that it does not stop.
-    pub slides: Option<Slides>,
+    pub(crate) slides: Option<Slides>,
 }
 
 /// A functional of a displacement u at every basis function, and for each value the sum of the magnitudes of the products that
@@ -195,7 +195,7 @@ impl<'a> Discretization<'a> {
     }
 
     /// Returns whether piece `e` of Gamma_C presses in no solution, because the loads drive the body away from it or not towards it.
-    pub(crate) fn is_idle(&self, e: usize) -> bool {
+    pub fn is_idle(&self, e: usize) -> bool {
         self.slides.as_ref().is_some_and(|slides| slides.is_idle(e))
     }
 

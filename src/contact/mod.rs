@@ -17,4 +17,4 @@ pub use friction::Friction;
 pub use law::{EdgeRule, Law};
 pub use piece::Piece;
 
-pub use crate::model::pairs::{Pair, PairError, PairPiece, PairSide};
+pub use crate::model::pairs::{Pair, PairError};

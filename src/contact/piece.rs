@@ -127,7 +127,7 @@ impl PieceGeometry {
     }
 
     /// n~ at the nodes.
-    pub fn directions(&self) -> impl Iterator<Item = Vector2<f64>> + '_ {
+    pub(crate) fn directions(&self) -> impl Iterator<Item = Vector2<f64>> + '_ {
         self.nodes.iter().map(|node| node.direction)
     }
 }

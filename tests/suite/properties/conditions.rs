@@ -16,7 +16,9 @@ use signorini::model::Degree;
 use signorini::model::{Condition, DataError, Diagonal, Mesh, Problem, Rectangle};
 use signorini::results::{RouteName, Solution};
 use signorini::solve::Times;
-use signorini::solve::{ContactQuadrature, Method, Settings, SolveError, discretize, route, solve};
+use signorini::solve::{
+    ContactQuadrature, Method, Settings, SolveError, check, discretize, route, solve,
+};
 
 use super::{Outcome, field, for_all, properties, text};
 use crate::common::{DEGREES, case, constant, moved_to, turned};
@@ -193,8 +195,8 @@ fn held(prescribed: [bool; 2], force: [f64; 2]) -> Result<Option<usize>, String>
     }
     let material = Material::lame(1.0, 1.0, Plane::Strain);
     let problem = Problem::new(block(0.0)?, material, force.map(constant), conditions);
-    match discretize(&problem, &Method::default()) {
-        Ok(d) => Ok(Some(d.slides.map_or(0, |slides| slides.basis.len()))),
+    match check(&problem, &Method::default()) {
+        Ok(outline) => Ok(Some(outline.slides)),
         Err(SolveError::Data(DataError::RigidMotion { .. })) => Ok(None),
         Err(other) => Err(other.to_string()),
     }

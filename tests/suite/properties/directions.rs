@@ -77,7 +77,7 @@ fn facets(edge: &Piece) -> Vec<Vector2<f64>> {
 }
 
 fn given(edge: &Piece) -> Vec<Vector2<f64>> {
-    edge.geometry.directions().collect()
+    edge.geometry.nodes.iter().map(|node| node.direction).collect()
 }
 
 /// C_h by its definition, an edge counted `factor` of the cosine times; and (11) with kappa for random fields.
