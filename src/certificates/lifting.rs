@@ -15,7 +15,7 @@ use super::field::Field;
 use super::forces::{ForceTarget, Lifting, Motion};
 use super::parts::{Boundary, OnLine, ProblemParts};
 use super::sweeps::improve;
-use crate::contact::law::Law;
+use crate::contact::Law;
 use crate::contact::residual::add_internal_forces;
 use crate::contact::{EdgeRule, Pair, Piece};
 use crate::linear::dense::inner;

@@ -7,8 +7,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::contact_line::{Coercivity, ContactLine, Gamma};
-use super::friction::Bound;
-use super::law::{EdgeRule, Law};
+use super::law::EdgeRule;
 use super::piece::{Piece, PieceGeometry};
 use super::stress_points::{Nodal, StressPoint, each_stress};
 use crate::held::solvability;
@@ -18,6 +17,8 @@ use crate::linear::dense::inner;
 use crate::model::constraints::{Constraints, in_frame};
 use crate::model::data::DataError;
 use crate::model::element::Degree;
+use crate::model::law::Bound;
+use crate::model::law::Law;
 use crate::model::loads::LoadVector;
 use crate::model::problem::Problem;
 use crate::model::revolution;

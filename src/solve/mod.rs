@@ -15,7 +15,7 @@ pub mod assembled;
 pub mod body;
 pub mod condensed;
 pub(crate) mod coulomb;
-pub mod course;
+mod course;
 mod error;
 pub mod iterate;
 mod method;

@@ -19,7 +19,7 @@
 //! most stays the same). When the residual at s is
 //! small beside the one that stiffer springs bring, the springs get stiffer by a factor: the contact zone of stiff springs is
 //! narrow, and a minimiser is found from near only. At s = 1 this is Newton's method on J_h, from a good start. Going to the
-//! body without contact counts as a step where it takes one. A start that is given ([`super::course`]) needs no soft
+//! body without contact counts as a step where it takes one. A start that is given ([`Course`](super::Course)) needs no soft
 //! springs.
 //!
 //! **The end** is the rounding level of the residual, or of the decrease along a step, or what [`Until`] says.
