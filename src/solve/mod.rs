@@ -12,7 +12,7 @@
 
 pub mod accuracy;
 pub mod assembled;
-pub mod body;
+pub(crate) mod body;
 pub mod condensed;
 pub(crate) mod coulomb;
 mod course;
