@@ -69,7 +69,7 @@ pub fn table_of_limits(n: usize, repetitions: usize, own: &[Measured]) -> String
             let (least, factor) = least_factor(&matrix, repetitions);
             let rate = operations(&matrix) / least.as_secs_f64();
             let unknowns = size.unknowns() as f64;
-            let factor = 8.0 * factor.structure().stored_entries() as f64 / unknowns;
+            let factor = 8.0 * factor.stored_entries() as f64 / unknowns;
             let memory = squares(own, degree)
                 .find(|m| m.unknowns == size.unknowns())
                 .map(|m| m.memory / unknowns);

@@ -242,7 +242,7 @@ pub fn matrix(
     neighbours: &Neighbours,
     order: &[usize],
 ) -> (Numbering, LowerTriangle) {
-    let numbering = Numbering::new(order, d.constraints.values());
+    let numbering = Numbering::under(order, &d.constraints);
     let matrix = matrix::assemble(d, &numbering, neighbours).expect("the pattern is that of d");
     (numbering, matrix)
 }

@@ -15,8 +15,8 @@ use pyo3::types::{PyBytes, PyDict};
 use signorini::contact::Pair;
 use signorini::io::Case;
 use signorini::io::outputs::{self, Extra};
-use signorini::io::picture::{Scene, draw};
-use signorini::io::raw_mesh::{Kind, Made, Node, RawMesh};
+use signorini::io::picture::picture_of;
+use signorini::io::raw_mesh::{Block, Made, of_blocks};
 use signorini::io::result::{Results, result_json};
 use signorini::io::summary;
 use signorini::io::{Failure, run};
@@ -175,7 +175,7 @@ fn interruptible<T: Send + 'static>(
 const STACK: usize = 8 << 20;
 
 /// The cells of a block of a mesh: Gmsh's number of their kind, their nodes, and on which entity each lies.
-type Block = (i32, Vec<u8>, Vec<u8>);
+type Cells = (i32, Vec<u8>, Vec<u8>);
 
 /// The names of entities by their numbers.
 type EntityNames = Vec<(i32, Vec<String>)>;
@@ -186,34 +186,24 @@ type EntityNames = Vec<(i32, Vec<String>)>;
 fn plane_mesh<'py>(
     py: Python<'py>,
     nodes: &[u8],
-    blocks: Vec<Block>,
+    blocks: Vec<Cells>,
     names: [EntityNames; 3],
     pairs: Vec<[String; 2]>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let pairs: Vec<Pair> =
         pairs.into_iter().map(|[first, second]| Pair::new(first, second)).collect();
-    let mut raw = RawMesh {
-        numbers: "points and cells are counted from 0, the cells block after block",
-        ..RawMesh::default()
-    };
     let (numbers, _) = nodes.as_chunks::<8>();
     let (places, _) = numbers.as_chunks::<3>();
-    let node =
-        |(tag, place): (usize, &[[u8; 8]; 3])| Node { tag, place: place.map(f64::from_ne_bytes) };
-    raw.nodes = places.iter().enumerate().map(node).collect();
-    let mut tag = 0;
-    for (number, cells, entities) in blocks {
-        let kind =
-            Kind::of_gmsh(number).map_err(|found| wrong(format!("cell {tag} is {found}")))?;
-        let nodes = indices::<1>(&cells, &format!("the block that begins with cell {tag}"))?;
-        let entities = entities.as_chunks::<4>().0;
-        for (nodes, entity) in nodes.as_flattened().chunks(kind.nodes).zip(entities) {
-            raw.elements.add(kind, tag, nodes, i32::from_ne_bytes(*entity));
-            tag += 1;
-        }
-    }
-    raw.names = names.map(|of_dimension| of_dimension.into_iter().collect());
-    let Made { mesh, remarks } = raw.made(None, &pairs).map_err(|error| unsolved(&error))?;
+    let places = places.iter().map(|place| place.map(f64::from_ne_bytes)).collect();
+    let block = |(b, (kind, cells, entities)): (usize, Cells)| {
+        let nodes = indices::<1>(&cells, &format!("block {b} of cells"))?;
+        let entities = entities.as_chunks::<4>().0.iter().copied().map(i32::from_ne_bytes);
+        Ok((kind, nodes.into_flattened(), entities.collect()))
+    };
+    let blocks: PyResult<Vec<Block>> = blocks.into_iter().enumerate().map(block).collect();
+    let names = names.map(|of_dimension| of_dimension.into_iter().collect());
+    let Made { mesh, remarks } =
+        of_blocks(places, &blocks?, names, &pairs).map_err(|error| unsolved(&error))?;
     let dict = PyDict::new(py);
     let points = mesh.vertices().iter().flatten().flat_map(|c| c.to_ne_bytes());
     dict.set_item("points", PyBytes::new(py, &points.collect::<Vec<u8>>()))?;
@@ -302,9 +292,8 @@ impl Solved {
 
     /// The text of picture.svg.
     fn picture(&self, py: Python<'_>) -> PyResult<String> {
-        let scene = || Scene::of(&self.case, &self.solved.solution, &self.results);
-        let drawn = py.detach(|| draw(&[scene()])).map_err(no_results)?;
-        Ok(drawn.concat())
+        py.detach(|| picture_of(&self.case, &self.solved.solution, &self.results))
+            .map_err(no_results)
     }
 
     /// Writes the files that the command writes, and returns their paths.

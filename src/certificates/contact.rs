@@ -19,7 +19,7 @@ use nalgebra::Vector2;
 use super::certificate::{self, turned};
 use super::field::Field;
 use super::parts::is_curved;
-use crate::contact::law::Law;
+use crate::contact::Law;
 use crate::contact::piece::Stretch;
 use crate::contact::{EdgeRule, Piece};
 use crate::kernel::edge_integral::positive_interval;

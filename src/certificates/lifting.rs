@@ -15,7 +15,7 @@ use super::field::Field;
 use super::forces::{ForceTarget, Lifting, Motion};
 use super::parts::{Boundary, OnLine, ProblemParts};
 use super::sweeps::improve;
-use crate::contact::law::Law;
+use crate::contact::Law;
 use crate::contact::residual::add_internal_forces;
 use crate::contact::{EdgeRule, Pair, Piece};
 use crate::linear::dense::inner;
@@ -264,7 +264,7 @@ impl<'a> Lifter<'a> {
         }
         let neighbours = Neighbours::across(&space, &parts.tied);
         let order = nested_dissection(space.nodes(), &neighbours);
-        let numbering = Numbering::in_frames(&order, &prescribed, frames);
+        let numbering = Numbering::new(&order, &prescribed, frames);
         let mut matrix = LowerTriangle::zero(&numbering, &neighbours);
         let mut assembled = matrix.add_stiffness(&space, &parts.problem.material, &numbering);
         for piece in &parts.tied {

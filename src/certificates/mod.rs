@@ -59,7 +59,7 @@ pub use signorini_audit::{dual, forces, proof};
 
 use self::proof::{Piece, Role};
 pub use self::quantities::ProvedQuantities;
-use crate::contact::law::Law;
+use crate::contact::Law;
 use crate::kernel::{Ball, Scalar, Triangle};
 use crate::memory;
 use crate::model::law::Bound;

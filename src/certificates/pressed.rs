@@ -65,7 +65,7 @@ pub(super) fn displacement(
     }
     let neighbours = Neighbours::new(&space);
     let order = nested_dissection(space.nodes(), &neighbours);
-    let numbering = Numbering::in_frames(&order, &prescribed, constraints.frames().clone());
+    let numbering = Numbering::new(&order, &prescribed, constraints.frames().clone());
     let mut matrix = LowerTriangle::zero(&numbering, &neighbours);
     let assembled = matrix.add_stiffness(&space, &parts.problem.material, &numbering);
     let factor = assembled.map_err(SolveError::from).and_then(|()| Factor::new(&matrix));

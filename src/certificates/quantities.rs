@@ -33,7 +33,7 @@ use super::forces::{
 use super::lifting::Lifter;
 use super::parts::{Boundary, ProblemParts};
 use super::proof::Proof;
-use crate::contact::law::Law;
+use crate::contact::Law;
 use crate::kernel::{Ball, Enclosing};
 use crate::linear::dense::least_squares;
 use crate::model::Degree;
@@ -53,7 +53,7 @@ pub struct ProvedQuantities {
     pub evidence: Evidence,
     /// The roots of what triangles of the mesh contribute to the width of the intervals by dual pairs; empty where there are
     /// none.
-    pub indicators: Vec<f64>,
+    pub(crate) indicators: Vec<f64>,
 }
 
 /// A number of the true solution, between two others.

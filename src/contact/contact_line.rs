@@ -7,8 +7,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use super::friction::{Bound, Friction};
-use super::law::Law;
 use super::piece::{Piece, PieceGeometry, PieceNode, SideData, Stretch};
 use crate::kernel::Scalar;
 use crate::kernel::contact_edge::traction_stiffness;
@@ -16,6 +14,8 @@ use crate::model::boundary_normals::{SmoothBoundary, SmoothPoint};
 use crate::model::data::{DataError, finite};
 use crate::model::element::Degree;
 use crate::model::function::SharedFunction;
+use crate::model::law::Law;
+use crate::model::law::{Bound, Friction};
 use crate::model::mesh::{BoundaryEdge, ROUNDED};
 use crate::model::obstacle::Closest;
 use crate::model::pairs::{self, Pair, PairPiece, PairSide};

@@ -7,8 +7,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::contact_line::{Coercivity, ContactLine, Gamma};
-use super::friction::Bound;
-use super::law::{EdgeRule, Law};
+use super::law::EdgeRule;
 use super::piece::{Piece, PieceGeometry};
 use super::stress_points::{Nodal, StressPoint, each_stress};
 use crate::held::solvability;
@@ -18,6 +17,8 @@ use crate::linear::dense::inner;
 use crate::model::constraints::{Constraints, in_frame};
 use crate::model::data::DataError;
 use crate::model::element::Degree;
+use crate::model::law::Bound;
+use crate::model::law::Law;
 use crate::model::loads::LoadVector;
 use crate::model::problem::Problem;
 use crate::model::revolution;
@@ -50,7 +51,7 @@ pub struct Discretization<'a> {
     /// The rigid motions that supports leave free, part by part.
     pub(crate) motions: Vec<FreeMotion>,
     /// Where there are any and contact holds the body: those that it does not stop.
-    pub slides: Option<Slides>,
+    pub(crate) slides: Option<Slides>,
 }
 
 /// A functional of a displacement u at every basis function, and for each value the sum of the magnitudes of the products that
@@ -195,7 +196,7 @@ impl<'a> Discretization<'a> {
     }
 
     /// Returns whether piece `e` of Gamma_C presses in no solution, because the loads drive the body away from it or not towards it.
-    pub(crate) fn is_idle(&self, e: usize) -> bool {
+    pub fn is_idle(&self, e: usize) -> bool {
         self.slides.as_ref().is_some_and(|slides| slides.is_idle(e))
     }
 

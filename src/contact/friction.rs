@@ -13,7 +13,7 @@ use crate::kernel::friction::{
 };
 use crate::kernel::{DoubleDouble, Element, PreciseBall};
 use crate::model::element::{Degree, with_element};
-pub use crate::model::law::{Bound, Friction};
+use crate::model::law::Bound;
 
 /// The integrals across the direction of contact.
 pub(crate) struct Across {

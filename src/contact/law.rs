@@ -6,7 +6,7 @@ use super::friction;
 use crate::kernel::edge_integral::{self, ExactEdge};
 use crate::kernel::{DoubleDouble, EdgeIntegrals, Element, Response};
 use crate::model::element::{Degree, with_element};
-pub use crate::model::law::Law;
+use crate::model::law::Law;
 use crate::model::quadrature;
 
 impl Law {

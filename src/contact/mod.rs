@@ -3,9 +3,9 @@
 
 pub mod contact_line;
 pub mod discretization;
-pub mod friction;
+pub(crate) mod friction;
 mod hoop;
-pub mod law;
+pub(crate) mod law;
 pub mod moments;
 pub mod piece;
 pub mod residual;
@@ -13,8 +13,8 @@ pub(crate) mod stress_points;
 
 pub use contact_line::ContactLine;
 pub use discretization::Discretization;
-pub use friction::Friction;
-pub use law::{EdgeRule, Law};
+pub use law::EdgeRule;
 pub use piece::Piece;
 
-pub use crate::model::pairs::{Pair, PairError, PairPiece, PairSide};
+pub use crate::model::law::{Bound, Friction, Law};
+pub use crate::model::pairs::{Pair, PairError};

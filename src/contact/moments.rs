@@ -6,13 +6,14 @@
 //! radius. A cut that is off by e leaves |P| = O(e) there, and Newton's method in balls makes e some 2^-100.
 
 use super::friction;
-use super::law::{EdgeRule, Law};
+use super::law::EdgeRule;
 use super::piece::Piece;
 use crate::kernel::ball::{PreciseBall, larger};
 use crate::kernel::edge_integral::{bilateral, gauss, roots, times_radius, value_at};
 use crate::kernel::friction::gauss_friction;
 use crate::kernel::{Element, Response};
 use crate::model::element::{Degree, with_element};
+use crate::model::law::Law;
 
 impl Piece<PreciseBall> {
     /// The force of [`contribution`](Piece::contribution), enclosed.

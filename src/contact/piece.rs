@@ -12,7 +12,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use super::hoop::HoopStress;
-use super::law::{EdgeRule, Integrals, Law, is_open};
+use super::law::{EdgeRule, Integrals, is_open};
 use super::stress_points::Nodal;
 use crate::kernel::contact_edge::integral_of_product;
 use crate::kernel::edge_integral::{self, edge_mass, weighted_product};
@@ -20,6 +20,7 @@ use crate::kernel::friction::clip;
 use crate::kernel::positive_part;
 use crate::kernel::{ContactEdge, DoubleDouble, Element, Material, Response, Scalar, Triangle};
 use crate::model::element::{Degree, with_element};
+use crate::model::law::Law;
 use crate::model::mesh::{BoundaryEdge, Mesh};
 use crate::model::space::Space;
 
@@ -59,7 +60,7 @@ pub struct PieceGeometry {
     /// The smooth boundary is curved along the piece, which is a chord.
     pub curved: bool,
     /// n~ is the normal of the edge at all nodes.
-    pub along_normal: bool,
+    pub(crate) along_normal: bool,
     /// g in the middle less the mean of its values at the ends, where n~ does not turn; 0 where g is known to be affine.
     pub(crate) bulge: f64,
 }
@@ -127,7 +128,7 @@ impl PieceGeometry {
     }
 
     /// n~ at the nodes.
-    pub fn directions(&self) -> impl Iterator<Item = Vector2<f64>> + '_ {
+    pub(crate) fn directions(&self) -> impl Iterator<Item = Vector2<f64>> + '_ {
         self.nodes.iter().map(|node| node.direction)
     }
 }
@@ -891,7 +892,7 @@ pub(crate) mod tests {
         let space = Space::new(&problem.mesh, Degree::One);
         let pieces = contact_line::assemble(&problem, &space, 1.0).unwrap();
         let [piece] = &pieces[..] else { panic!("one piece") };
-        let halfway = crate::contact::friction::Bound::Tresca([2.5, 2.5]);
+        let halfway = crate::contact::Bound::Tresca([2.5, 2.5]);
         assert_eq!(piece.geometry.law, Law::Friction(halfway));
     }
 

@@ -2,8 +2,8 @@
 
 use super::grip::across;
 use super::solvability::{Slides, all, joined, moves, negligible, rows};
+use crate::contact::Law;
 use crate::contact::discretization::Discretization;
-use crate::contact::law::Law;
 use crate::contact::piece::Piece;
 use crate::kernel::{DoubleDouble, Response};
 use crate::linear::dense::{dot, norm};

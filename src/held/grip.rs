@@ -10,7 +10,7 @@
 //! c_i + mu r_t and c_i - mu r_t: what friction can do at a node grows with what presses there.
 
 use super::solvability::{MARGIN, jumps, moves, nnls_residual};
-use crate::contact::law::Law;
+use crate::contact::Law;
 use crate::contact::piece::Piece;
 use crate::linear::dense::{dot, norm, singular_vectors};
 use crate::model::law::Bound;

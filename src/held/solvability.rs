@@ -37,9 +37,9 @@ pub(crate) struct NotHeld {
 
 /// The solutions of a body that contact holds: with u those u + sum_j x_j b_j with row . (x + b . u) <= bound.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Slides {
+pub(crate) struct Slides {
     /// b_j, fields with orthonormal nodal values: the motions that contact does not stop.
-    pub basis: Vec<Vec<[f64; 2]>>,
+    pub(crate) basis: Vec<Vec<[f64; 2]>>,
     /// Motions that span the same, each with its components along the basis.
     pub(super) motions: Vec<(FreeMotion, Vec<f64>)>,
     /// Where edges that do not press stop them.
@@ -47,7 +47,7 @@ pub struct Slides {
     /// The contact edges that do not press and stop one of the motions somewhere, in their order.
     pub(crate) stopping: Vec<usize>,
     /// For each contact edge whether it presses in no solution; empty if all may.
-    pub idle: Vec<bool>,
+    pub(crate) idle: Vec<bool>,
 }
 
 /// The way that a body may go along a motion that neither supports nor pressed edges stop, from the given displacement, which

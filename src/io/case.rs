@@ -65,18 +65,18 @@ pub struct Case {
     /// Quantities to be proved beside the bound.
     pub(crate) asked: Asked,
     /// The places where the displacement is wanted.
-    pub probes: Vec<[f64; 2]>,
+    pub(crate) probes: Vec<[f64; 2]>,
     /// The materials as the case has them.
-    pub materials: Vec<MaterialEcho>,
+    pub(crate) materials: Vec<MaterialEcho>,
     /// The units of the case, if it names them.
-    pub units: Option<Units>,
+    pub(crate) units: Option<Units>,
     /// The thickness of the body across the plane, if the case gives it; 1 for a body of revolution, whose results are those of the
     /// whole of it.
-    pub thickness: Option<f64>,
+    pub(crate) thickness: Option<f64>,
     /// The number of vertices of a body of revolution that were next to its axis and have been moved onto it.
     pub(crate) snapped: usize,
     /// The amount by which the picture magnifies displacement and gap, if the case says so.
-    pub stretch: Option<f64>,
+    pub(crate) stretch: Option<f64>,
     /// The exact solution, if there is one.
     pub exact: Option<ExactCase>,
     /// The text that it was read from, with a comment for each setting laid over it.
@@ -89,17 +89,17 @@ pub struct Case {
 
 /// The units of a case: words for labels. The numbers are consistent by themselves.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Units {
+pub(crate) struct Units {
     /// The unit of lengths.
-    pub length: String,
+    pub(crate) length: String,
     /// The unit of forces.
-    pub force: String,
+    pub(crate) force: String,
 }
 
 /// The quantity that a number measures. Forces, and moments as energies, are those of the whole body if its thickness is known, else
 /// per length across the plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measure {
+pub(crate) enum Measure {
     /// A length.
     Length,
     /// A stress or a pressure.
@@ -112,7 +112,7 @@ pub enum Measure {
 
 impl Units {
     /// The unit of a measure on a body whose thickness is known or not.
-    pub fn of(&self, measure: Measure, thickness: Option<f64>) -> String {
+    pub(crate) fn of(&self, measure: Measure, thickness: Option<f64>) -> String {
         let Units { length, force } = self;
         let per = if thickness.is_some() { String::new() } else { format!("/{length}") };
         match (measure, &**force, &**length) {
@@ -427,6 +427,27 @@ mod tests {
         material = { young = 2.5, poisson = 0.25 }
         boundary.bottom.contact = {}
     ";
+
+    #[test]
+    fn a_material_is_echoed_by_what_the_case_gives() {
+        let entries = "{ stiffness = [12, 3, 2, 5, -1, 2], plane = \"stress\" }";
+        let by_entries = SMALL.replace("{ young = 2.5, poisson = 0.25 }", entries);
+        let echo = |text: &str| read(text).unwrap().materials[0].stiffness;
+        assert_eq!(echo(&by_entries), Some([12.0, 3.0, 2.0, 5.0, -1.0, 2.0]));
+        // Control: by moduli.
+        assert_eq!(echo(SMALL), None);
+    }
+
+    #[test]
+    fn units_are_shown_on_one_line() {
+        let of = |length: &str| {
+            let units = format!("units = {{ length = \"{length}\", force = \"N\" }}");
+            read(&format!("{units}\n{SMALL}")).unwrap().units.unwrap().length
+        };
+        assert_eq!(of(r"mm\u001b\nerror: forged"), r"mm\u{1b}\nerror: forged");
+        // Control: one line.
+        assert_eq!(of("mm"), "mm");
+    }
 
     #[test]
     fn the_echo_of_lame_coefficients_does_not_overflow_where_the_moduli_do_not() {

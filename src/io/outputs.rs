@@ -30,7 +30,7 @@ const PICTURE: &str = "picture.svg";
 
 /// The names of all files that a solve may write into its folder, by this program or by the engine fenicsx. Those of an earlier
 /// run that a run does not write itself are removed. The last one says that a set is whole.
-pub const FILES: [&str; 11] = [
+pub(crate) const FILES: [&str; 11] = [
     "solution.vtu",
     "contact.vtu",
     "contact.csv",

@@ -23,7 +23,10 @@ mod scene;
 use svg::Node;
 use svg::node::element::{Group, Use};
 
+use super::Case;
 use super::files::{NotFinite, check_finite};
+use super::result::Results;
+use crate::results::Solution;
 use body::{BAR, body, colour_bar, definitions, outlines};
 use contact::{ContactLine, arrow, hatched, obstacle, pressure, tags};
 use draw::{
@@ -32,18 +35,26 @@ use draw::{
 };
 use loads::{FORCE, MOTION};
 use scale::Scale;
-pub use scene::Scene;
+pub(crate) use scene::Scene;
 
 /// The page around the drawing.
 const MARGIN: f64 = 36.0;
 const HEADER: f64 = 88.0;
 const GAP: f64 = 20.0;
 
-/// The pictures of solved cases, on one scale.
+/// The picture of a solved case.
 ///
 /// # Errors
 /// A number beyond the range of doubles.
-pub fn draw(scenes: &[Scene]) -> Result<Vec<String>, NotFinite> {
+pub fn picture_of(case: &Case, s: &Solution, results: &Results) -> Result<String, NotFinite> {
+    Ok(draw(&[Scene::of(case, s, results)])?.concat())
+}
+
+/// The pictures of solved cases, on one scale.
+///
+/// # Errors
+/// As [`picture_of`].
+pub(crate) fn draw(scenes: &[Scene]) -> Result<Vec<String>, NotFinite> {
     let scale = Scale::of(scenes)?;
     scenes.iter().map(|scene| picture(scene, &scale)).collect()
 }

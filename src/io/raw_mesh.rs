@@ -24,31 +24,30 @@ type Result<T> = std::result::Result<T, Failure>;
 pub(crate) type ByDimension<T> = [T; 3];
 
 /// Nodes, elements, and the names of what the elements lie on.
-#[derive(Default)]
-pub struct RawMesh {
+pub(crate) struct RawMesh {
     /// The nodes.
-    pub nodes: Vec<Node>,
+    pub(crate) nodes: Vec<Node>,
     /// The elements.
-    pub elements: Elements,
+    pub(crate) elements: Elements,
     /// The names of the points, curves and surfaces on which elements lie, by their numbers; one without a name may be left out.
-    pub names: ByDimension<BTreeMap<i32, Vec<String>>>,
+    pub(crate) names: ByDimension<BTreeMap<i32, Vec<String>>>,
     /// The origin of the numbers of nodes and elements, in messages.
-    pub numbers: &'static str,
+    pub(crate) numbers: &'static str,
     /// Decisions so far, in sentences for people.
-    pub remarks: Vec<String>,
+    pub(crate) remarks: Vec<String>,
 }
 
 /// A node.
-pub struct Node {
+pub(crate) struct Node {
     /// Its number.
-    pub tag: usize,
+    pub(crate) tag: usize,
     /// x, y, z.
-    pub place: [f64; 3],
+    pub(crate) place: [f64; 3],
 }
 
 /// Elements by their corners.
 #[derive(Default)]
-pub struct Elements {
+pub(crate) struct Elements {
     /// The elements in the order of the file.
     pub(super) all: Vec<Element>,
     on_edges: Vec<NodeOnEdge>,
@@ -91,13 +90,13 @@ struct NodeOnEdge {
 
 /// A kind of element that is read.
 #[derive(Clone, Copy, Debug)]
-pub struct Kind {
+pub(crate) struct Kind {
     /// 1 for a point, 2 for a line, 3 for a triangle, 4 for a quadrangle.
     corners: usize,
     /// The polynomial degree of its edges.
     order: usize,
     /// The number of its nodes: corners, then those on its edges one edge after the other, then those inside.
-    pub nodes: usize,
+    pub(crate) nodes: usize,
 }
 
 /// The kinds of elements by Gmsh's number: corners, order, nodes.
@@ -146,7 +145,7 @@ impl Kind {
     ///
     /// # Errors
     /// A message with the kind of the element and those that are expected.
-    pub fn of_gmsh(number: i32) -> std::result::Result<Kind, String> {
+    pub(crate) fn of_gmsh(number: i32) -> std::result::Result<Kind, String> {
         if let Some((_, [corners, order, nodes])) = KINDS.into_iter().find(|kind| kind.0 == number)
         {
             return Ok(Kind { corners, order, nodes });
@@ -172,7 +171,7 @@ impl Kind {
 
 impl Elements {
     /// Adds the element `tag` with these nodes, as many as its kind has, on `entity`.
-    pub fn add(&mut self, kind: Kind, tag: usize, nodes: &[usize], entity: i32) {
+    pub(crate) fn add(&mut self, kind: Kind, tag: usize, nodes: &[usize], entity: i32) {
         let Kind { corners, order, .. } = kind;
         let mut own = [0; 4];
         own.iter_mut().zip(&nodes[..corners]).for_each(|(own, node)| *own = *node);
@@ -207,6 +206,35 @@ pub struct Made {
     pub remarks: Vec<String>,
 }
 
+/// Cells of one kind: Gmsh's number of it, their nodes cell after cell, and the entity on which each lies.
+pub type Block = (i32, Vec<usize>, Vec<i32>);
+
+/// The mesh of nodes and of blocks of cells in memory, with the names of the points, curves and surfaces on which cells lie, by their
+/// numbers. The boundaries of these pairs may touch each other.
+///
+/// # Errors
+/// The first mistake found; nodes and cells are counted from 0, the cells block after block.
+pub fn of_blocks(
+    nodes: Vec<[f64; 3]>,
+    blocks: &[Block],
+    names: [BTreeMap<i32, Vec<String>>; 3],
+    pairs: &[Pair],
+) -> Result<Made> {
+    let mut elements = Elements::default();
+    let mut tag = 0;
+    for (number, nodes, entities) in blocks {
+        let kind = Kind::of_gmsh(*number)
+            .map_err(|found| Failure::wrong(format!("cell {tag} is {found}")))?;
+        for (nodes, entity) in nodes.chunks_exact(kind.nodes).zip(entities) {
+            elements.add(kind, tag, nodes, *entity);
+            tag += 1;
+        }
+    }
+    let nodes = nodes.into_iter().enumerate().map(|(tag, place)| Node { tag, place }).collect();
+    let numbers = "points and cells are counted from 0, the cells block after block";
+    RawMesh { nodes, elements, names, numbers, remarks: Vec::new() }.made(None, pairs)
+}
+
 const NO_TRIANGLE: &str =
     "mesh with gmsh -2, and where curves have a physical group, give the surface one too";
 
@@ -224,7 +252,7 @@ impl RawMesh {
     ///
     /// # Errors
     /// The first mistake found, with the numbers of nodes and elements that are used here.
-    pub fn made(mut self, share: Option<f64>, pairs: &[Pair]) -> Result<Made> {
+    pub(crate) fn made(mut self, share: Option<f64>, pairs: &[Pair]) -> Result<Made> {
         let mut remarks = std::mem::take(&mut self.remarks);
         let cells: usize = self.elements.of(2).map(|element| element.corners - 2).sum();
         // A map from tags, which is at most half empty and twice as large for a moment while it grows; the lists.

@@ -64,7 +64,7 @@ pub struct Results {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) play: Vec<Play>,
     /// Energies, forces, lengths.
-    pub quantities: Quantities,
+    pub(crate) quantities: Quantities,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) contact: Vec<ContactBoundary>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -376,12 +376,12 @@ impl From<&Result<Enclosure, Unproved>> for DiscreteCertificate {
 pub struct ContinuousCertificate {
     #[serde(skip_serializing_if = "Option::is_none")]
     /// The bound of the distance of v from u in the energy norm.
-    pub bound: Option<f64>,
+    pub(crate) bound: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) relative: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     /// The value of the solution itself.
-    pub of_solution: Option<f64>,
+    pub(crate) of_solution: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) potential_energy: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]

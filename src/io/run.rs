@@ -56,9 +56,9 @@ impl From<AdaptError> for Failure {
 #[derive(Default)]
 pub struct Earlier {
     /// Where the next one starts.
-    pub start: Option<Solution>,
+    pub(crate) start: Option<Solution>,
     /// Bounds that still hold if loads and gaps alone are others.
-    pub kept: Kept,
+    pub(crate) kept: Kept,
 }
 
 impl Earlier {

@@ -19,7 +19,7 @@ use crate::memory;
 use crate::solve::SolveError;
 
 /// The structure of L: its columns in groups with one pattern, the supernodes.
-pub struct Structure {
+pub(crate) struct Structure {
     symbolic: SymbolicSupernodalCholesky<usize>,
     /// The supernode of each column.
     supernodes: Vec<usize>,
@@ -97,7 +97,7 @@ impl Structure {
     }
 
     /// The entries of L that are stored.
-    pub fn stored_entries(&self) -> usize {
+    pub(crate) fn stored_entries(&self) -> usize {
         self.symbolic.len_val()
     }
 
@@ -117,7 +117,7 @@ const BESIDE: usize = 320;
 
 /// L of H = L L^T.
 pub struct Factor {
-    structure: Arc<Structure>,
+    pub(crate) structure: Arc<Structure>,
     values: Entries,
 }
 
@@ -138,7 +138,10 @@ impl Factor {
     ///
     /// # Errors
     /// [`SolveError::NotPositiveDefinite`], as far as doubles tell, and [`SolveError::OutOfMemory`].
-    pub fn with(structure: &Arc<Structure>, matrix: &LowerTriangle) -> Result<Self, SolveError> {
+    pub(crate) fn with(
+        structure: &Arc<Structure>,
+        matrix: &LowerTriangle,
+    ) -> Result<Self, SolveError> {
         let scratch = numeric::scratch_bytes(structure);
         let entries = structure.stored_entries();
         let bytes = (Entries::bytes(entries) + scratch + BESIDE * structure.size()) as u64;
@@ -177,9 +180,9 @@ impl Factor {
         Ok(Arc::new(Factor { structure, values }))
     }
 
-    /// Its structure.
-    pub fn structure(&self) -> &Structure {
-        &self.structure
+    /// Its entries that are stored.
+    pub fn stored_entries(&self) -> usize {
+        self.structure.stored_entries()
     }
 
     /// The columns of supernode `s`: first the lower triangle on the diagonal, below it the rows of

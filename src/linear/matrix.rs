@@ -36,8 +36,13 @@ pub struct Numbering {
 }
 
 impl Numbering {
-    /// Numbers the components that are not `prescribed`, the nodes taken in `order`, where each comes once.
-    pub fn new(order: &[usize], prescribed: &[[Option<f64>; 2]]) -> Self {
+    /// Numbers the components that are not `prescribed`, the nodes taken in `order`, where each comes once; at nodes with a frame, those
+    /// along its first axis and across it.
+    pub fn new(
+        order: &[usize],
+        prescribed: &[[Option<f64>; 2]],
+        frames: BTreeMap<usize, [f64; 2]>,
+    ) -> Self {
         let mut of = vec![[None; 2]; prescribed.len()];
         let mut nodes = Vec::new();
         for &node in order {
@@ -49,21 +54,12 @@ impl Numbering {
             }
         }
         let count = nodes.len();
-        Numbering { of, count, nodes, frames: BTreeMap::new() }
+        Numbering { of, count, nodes, frames }
     }
 
     /// Numbers the components that are free under `constraints`, in the frames of their nodes.
     pub fn under(order: &[usize], constraints: &Constraints) -> Self {
-        Numbering::in_frames(order, constraints.values(), constraints.frames().clone())
-    }
-
-    /// Numbers the components that are not `prescribed`, along the first axes in `frames` and across them at those nodes.
-    pub fn in_frames(
-        order: &[usize],
-        prescribed: &[[Option<f64>; 2]],
-        frames: BTreeMap<usize, [f64; 2]>,
-    ) -> Self {
-        Numbering { frames, ..Numbering::new(order, prescribed) }
+        Numbering::new(order, constraints.values(), constraints.frames().clone())
     }
 
     /// A vector over the free degrees of freedom, from a field.
@@ -416,7 +412,8 @@ mod tests {
         let mesh = square.mesh().unwrap();
         let space = Space::new(&mesh, Degree::One);
         let nodes = space.nodes().len();
-        let numbering = Numbering::new(&(0..nodes).collect::<Vec<_>>(), &vec![[None; 2]; nodes]);
+        let order: Vec<usize> = (0..nodes).collect();
+        let numbering = Numbering::new(&order, &vec![[None; 2]; nodes], BTreeMap::new());
         let pair = joined.then_some(&between[..]);
         let neighbours = Neighbours::of_cliques(nodes, space.elements().chain(pair));
         let mut matrix = LowerTriangle::zero(&numbering, &neighbours);

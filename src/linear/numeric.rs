@@ -433,7 +433,7 @@ mod tests {
 
     /// L x, and L^T x, by the blocks of L.
     fn times_factor(factor: &Factor, x: &[f64], transposed: bool) -> Vec<f64> {
-        let structure = factor.structure();
+        let structure = &factor.structure;
         let mut product = vec![0.0; x.len()];
         for s in 0..structure.supernodes() {
             let block = factor.block(s);

@@ -19,7 +19,7 @@ use crate::linear::matrix;
 use crate::linear::matrix::{LowerTriangle, Neighbours, Numbering, OutsidePattern};
 use crate::model::material::least_eigenvalue;
 use crate::solve::SolveError;
-use crate::solve::course::{Course, Phase};
+use crate::solve::{Course, Phase};
 
 /// The matrices of a discretization.
 pub struct System<'d, 'p> {
@@ -30,7 +30,7 @@ pub struct System<'d, 'p> {
     /// A
     pub matrix: LowerTriangle,
     /// The structure of the factor of A and of every tangent.
-    pub structure: Arc<Structure>,
+    pub(crate) structure: Arc<Structure>,
     pub(crate) course: Course<'d>,
     /// The entries of B.
     functionals: Arc<[Entry]>,

@@ -98,7 +98,7 @@ impl Materials {
     }
 
     /// The one material, if the whole body is made of it.
-    pub fn only(&self) -> Option<&Material<f64>> {
+    pub(crate) fn only(&self) -> Option<&Material<f64>> {
         if self.of_triangle.is_empty() { self.distinct.first() } else { None }
     }
 }

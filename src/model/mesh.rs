@@ -15,7 +15,7 @@
 pub mod bisection;
 mod edges;
 mod error;
-mod split;
+pub(crate) mod split;
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, OnceLock};
@@ -29,7 +29,6 @@ use edges::{MeshEdge, match_edges, name_boundaries};
 pub use error::MeshError;
 pub(super) use error::TOUCHING;
 use nalgebra::Vector2;
-pub use split::split_names;
 
 /// A conforming triangulation with named parts of its boundary.
 #[derive(Clone, Debug)]
@@ -276,7 +275,7 @@ impl Mesh {
     ///
     /// # Errors
     /// [`MeshError::NamedTwice`]; as [`Mesh::edges_of`].
-    pub fn check_apart<'n>(
+    pub(crate) fn check_apart<'n>(
         &self,
         names: impl IntoIterator<Item = &'n str>,
     ) -> Result<(), MeshError> {

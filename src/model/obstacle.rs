@@ -26,7 +26,7 @@ use super::path::{Beside, Path};
 
 /// The largest deviation of |grad phi| from 1. An expression that is no distance (x^2 - 1, 2 x) is off by far more nearly
 /// everywhere; one that is a distance on the obstacle is off by its curvature times the gap, which is small where contact is.
-pub const MOST_OFF: f64 = 0.1;
+pub(crate) const MOST_OFF: f64 = 0.1;
 
 /// A rigid obstacle.
 #[derive(Clone)]

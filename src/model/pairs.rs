@@ -192,7 +192,7 @@ impl Pair {
 ///
 /// # Errors
 /// As `pieces`; a boundary of a pair that has a condition as well, and a pair that is given twice.
-pub fn of_problem(
+pub(crate) fn of_problem(
     problem: &Problem,
     smooth: &SmoothBoundary,
     degree: Degree,
@@ -218,20 +218,20 @@ const MOST_TURN: f64 = 1.5;
 /// A piece of contact between two boundaries. Values at its nodes have the order start, end, and for P2 the middle; it runs along
 /// boundary 1 with the body on the left.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PairPiece {
+pub(crate) struct PairPiece {
     /// The two sides, of boundary 1 and of boundary 2.
     pub(crate) sides: [PairSide; 2],
     /// d at the nodes: unit vectors from body 1 to body 2.
-    pub directions: Vec<Vector2<f64>>,
+    pub(crate) directions: Vec<Vector2<f64>>,
     /// g at the nodes.
-    pub gap: Vec<f64>,
+    pub(crate) gap: Vec<f64>,
     /// The mean of the lengths of the two chords.
-    pub length: f64,
+    pub(crate) length: f64,
 }
 
 /// One side of a piece.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PairSide {
+pub(crate) struct PairSide {
     /// The edge that it is a part of.
     pub(crate) edge: BoundaryEdge,
     /// Where on the edge the nodes of the piece are: from 0 at the edge's start to 1 at its end.

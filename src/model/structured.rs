@@ -192,7 +192,7 @@ impl Trapezoid {
     ///
     /// # Errors
     /// As [`Rectangle::perturbed`].
-    pub fn perturbed(&self, amount: f64, seed: u64) -> Result<Mesh, MeshError> {
+    pub(crate) fn perturbed(&self, amount: f64, seed: u64) -> Result<Mesh, MeshError> {
         let (nx, ny) = (self.n, self.n);
         let square = Rectangle { width: 1.0, height: 1.0, nx, ny, diagonal: Diagonal::Right };
         let tan = self.omega.tan();

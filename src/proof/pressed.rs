@@ -11,7 +11,7 @@ use std::ops::Range;
 
 use nalgebra::DMatrix;
 
-use crate::contact::law::Law;
+use crate::contact::Law;
 use crate::contact::piece::Stretch;
 use crate::contact::{Discretization, EdgeRule, Piece};
 use crate::kernel::ball::{PreciseBall, up};
@@ -453,7 +453,7 @@ fn stress_factor(line: &Piece<PreciseBall>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::law::Law;
+    use crate::contact::Law;
     use crate::contact::piece::tests::beside;
     use crate::kernel::edge_integral::edge_mass;
     use crate::kernel::{Material, Plane};

@@ -4,9 +4,9 @@
 use nalgebra::{Matrix2, Vector2, Vector3};
 
 use super::products::rounded_sum_with_products;
+use crate::contact::Law;
 use crate::contact::Piece;
 use crate::contact::discretization::Discretization;
-use crate::contact::law::Law;
 use crate::contact::residual::exactly;
 use crate::kernel::axial;
 use crate::kernel::ball::up;

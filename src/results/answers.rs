@@ -28,8 +28,8 @@ use serde::{Deserialize, Serialize};
 
 use nalgebra::Vector2;
 
+use crate::contact::Law;
 use crate::contact::discretization::Discretization;
-use crate::contact::law::Law;
 use crate::contact::piece::Contribution;
 use crate::contact::{EdgeRule, Piece};
 use crate::kernel::DoubleDouble;
@@ -391,7 +391,7 @@ pub(crate) fn label(boundary: &str, partner: Option<&str>) -> String {
 
 impl ContactBoundary {
     /// Its name, and that of the other body's boundary if there is one.
-    pub fn label(&self) -> String {
+    pub(crate) fn label(&self) -> String {
         label(&self.boundary, self.partner.as_deref())
     }
 

@@ -6,7 +6,7 @@ pub(crate) mod solution;
 pub(crate) mod stresses;
 pub(crate) mod whole;
 
-pub use answers::{ContactBoundary, EnergyBalance};
+pub use answers::{BoundaryFriction, ContactBoundary, EnergyBalance};
 pub use report::{MethodReport, NewtonReport, Report, RouteName, Status, Verdict};
 pub use solution::{ContactEdge, ContactPoint, GammaReport, Quantities, Solution};
 

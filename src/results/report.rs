@@ -77,7 +77,7 @@ pub enum Status {
 
 impl Status {
     /// "converged" or "converged to rounding".
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Status::Converged => "converged",
             Status::ConvergedToRounding => "converged to rounding",

@@ -31,7 +31,7 @@ pub trait Route {
     /// there, with it.
     ///
     /// # Errors
-    /// As [`super::newton::minimise`].
+    /// As `newton::minimise`.
     fn pass(
         &mut self,
         iterate: &mut Iterate,
@@ -44,7 +44,7 @@ pub trait Route {
     /// no tangent of all of (8).
     ///
     /// # Errors
-    /// As [`super::newton::minimise`].
+    /// As `newton::minimise`.
     fn step_for(&mut self, _: &Evaluation, _: &[f64]) -> Result<Option<Vec<f64>>, SolveError> {
         Ok(None)
     }
@@ -145,7 +145,7 @@ const MOST_PASSES: usize = 12;
 /// for, or no smaller by better arithmetic.
 ///
 /// # Errors
-/// As [`super::newton::minimise`].
+/// As `newton::minimise`.
 pub fn refine(
     system: &System,
     route: &mut dyn Route,

@@ -12,7 +12,7 @@ use crate::contact::piece::Stretch;
 use crate::kernel::{DoubleDouble, Response};
 
 /// The pieces of Gamma_C as Newton's method needs them.
-pub trait ContactEnergy {
+pub(crate) trait ContactEnergy {
     /// The number of them.
     fn count(&self) -> usize;
     /// The numbers of the values of P on piece `e`, among those of all pieces.
@@ -77,7 +77,7 @@ impl ContactEnergy for Discretization<'_> {
 }
 
 /// The body with its loads, at an iterate.
-pub trait Body {
+pub(crate) trait Body {
     /// y, the values of P at the nodes of each piece, in double-doubles: between the nodes P may be far smaller.
     fn y(&self) -> Cow<'_, [DoubleDouble]>;
     /// The residual of (8) at the iterate, relative, where Psi has the derivatives `at`; and how much of it may be noise.
@@ -99,35 +99,35 @@ pub trait Body {
 
 /// The size of a residual.
 #[derive(Clone, Copy, Debug)]
-pub struct Residual {
+pub(crate) struct Residual {
     /// Its norm, relative to the reference of the problem.
-    pub norm: f64,
+    pub(crate) norm: f64,
     /// A norm that rounding alone may have.
-    pub noise: f64,
+    pub(crate) noise: f64,
 }
 
 /// The derivatives of Psi at y.
-pub struct Derivatives {
+pub(crate) struct Derivatives {
     /// The stiffness of its springs, 1 for those of (8).
     pub(crate) stiffness: f64,
     /// Nodal values of the gradient.
-    pub gradient: Vec<f64>,
+    pub(crate) gradient: Vec<f64>,
     /// The Hessian, piece by piece.
-    pub hessian: Vec<DMatrix<f64>>,
+    pub(crate) hessian: Vec<DMatrix<f64>>,
 }
 
 /// A step d.
-pub struct Step {
+pub(crate) struct Step {
     /// B d
-    pub dy: Vec<f64>,
+    pub(crate) dy: Vec<f64>,
     /// DJ d <= 0
-    pub slope: f64,
+    pub(crate) slope: f64,
     /// d^T A d
-    pub curvature: f64,
+    pub(crate) curvature: f64,
 }
 
 /// The derivatives of Psi at `y`, with springs of this `stiffness`.
-pub fn derivatives(
+pub(crate) fn derivatives(
     edges: &impl ContactEnergy,
     stiffness: f64,
     y: &[impl Copy + Into<DoubleDouble>],

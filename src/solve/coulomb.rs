@@ -26,7 +26,7 @@ use super::body::{Derivatives, all_springs, derivatives};
 use super::course::Course;
 use super::iterate::{Evaluation, Iterate};
 use super::newton::Until;
-use crate::contact::law::Law;
+use crate::contact::Law;
 use crate::contact::{Discretization, Piece};
 use crate::linear::dense::norm;
 use crate::linear::factor::Factor;

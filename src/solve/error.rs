@@ -75,7 +75,7 @@ fn awaited(residual: f64, tolerance: f64) -> String {
 }
 
 /// The residuals from step to step, to one digit.
-pub fn history(residuals: &[f64]) -> String {
+fn history(residuals: &[f64]) -> String {
     residuals.iter().map(|r| format!("{r:.0e}")).collect::<Vec<_>>().join(" ")
 }
 

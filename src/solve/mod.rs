@@ -12,10 +12,10 @@
 
 pub mod accuracy;
 pub mod assembled;
-pub mod body;
+pub(crate) mod body;
 pub mod condensed;
 pub(crate) mod coulomb;
-pub mod course;
+mod course;
 mod error;
 pub mod iterate;
 mod method;
@@ -25,7 +25,7 @@ mod setup;
 pub(crate) mod times;
 
 pub use self::course::{Course, Kept, Phase};
-pub use self::error::{SolveError, history};
+pub use self::error::SolveError;
 pub use self::method::{
     ContactQuadrature, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
 };

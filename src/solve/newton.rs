@@ -19,7 +19,7 @@
 //! most stays the same). When the residual at s is
 //! small beside the one that stiffer springs bring, the springs get stiffer by a factor: the contact zone of stiff springs is
 //! narrow, and a minimiser is found from near only. At s = 1 this is Newton's method on J_h, from a good start. Going to the
-//! body without contact counts as a step where it takes one. A start that is given ([`super::course`]) needs no soft
+//! body without contact counts as a step where it takes one. A start that is given ([`Course`](super::Course)) needs no soft
 //! springs.
 //!
 //! **The end** is the rounding level of the residual, or of the decrease along a step, or what [`Until`] says.
@@ -64,12 +64,12 @@ const NEAR: f64 = 1e-3;
 #[derive(Clone, Copy, Debug)]
 pub struct Until {
     /// There are more residuals than this.
-    pub steps: usize,
+    pub(crate) steps: usize,
     /// The relative residual is no larger.
-    pub residual: f64,
+    pub(crate) residual: f64,
     /// The relative residual is no larger, and the last step took it down as near a solution: where springs are stiff a small residual
     /// alone says little of the error.
-    pub near: f64,
+    pub(crate) near: f64,
 }
 
 /// Newton's method from where `body` is, with soft springs if this is the `first` time. Appends the residual at each
@@ -78,7 +78,7 @@ pub struct Until {
 ///
 /// # Errors
 /// As [`Body::step`].
-pub fn minimise(
+pub(crate) fn minimise(
     edges: &impl ContactEnergy,
     body: &mut impl Body,
     first: bool,
@@ -235,3 +235,6 @@ pub(crate) fn largest_eigenvalue(mut x: Vec<f64>, times: impl Fn(&[f64]) -> Vec<
 
 /// Steps of the power method. It starts from what the loads do, which is mostly what is soft.
 const POWER_STEPS: usize = 2;
+
+#[cfg(test)]
+mod tests;

@@ -43,7 +43,7 @@ pub fn by(
 }
 
 /// The data that both routes share, and the order in which to take them.
-pub struct Strategy<'a, 'd, 'p> {
+pub(crate) struct Strategy<'a, 'd, 'p> {
     system: &'a System<'d, 'p>,
     reach: Reach,
     /// The multiplications with an addition that each route is predicted to take, condensed and assembled; those of dense
@@ -58,7 +58,7 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
     ///
     /// # Errors
     /// [`SolveError::OutOfRange`].
-    pub fn new(system: &'a System<'d, 'p>) -> Result<Self, SolveError> {
+    pub(crate) fn new(system: &'a System<'d, 'p>) -> Result<Self, SolveError> {
         let structure = &system.structure;
         let reach = Reach::new(structure, &system.pieces());
         let factor = structure.operations();
@@ -75,7 +75,7 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
     }
 
     /// The routes to take, one after the other as long as too little is proved.
-    pub fn routes(&self) -> &'static [RouteName] {
+    pub(crate) fn routes(&self) -> &'static [RouteName] {
         let [condensed, assembled] = self.predicted;
         let d = self.system.d;
         if !d.has_coulomb() && condensed <= assembled {
@@ -94,7 +94,7 @@ impl<'a, 'd, 'p> Strategy<'a, 'd, 'p> {
     ///
     /// # Errors
     /// As [`solve_discrete`](super::solve_discrete).
-    pub fn solve(
+    pub(crate) fn solve(
         &self,
         name: RouteName,
         settings: &Settings,

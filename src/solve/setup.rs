@@ -30,7 +30,7 @@ pub struct Outline {
     /// How many rigid motions the supports leave free.
     pub(crate) free_motions: usize,
     /// How many of them contact does not stop either.
-    pub(crate) slides: usize,
+    pub slides: usize,
     /// gamma0, kappa and where the limit comes from.
     pub gamma: GammaReport,
 }

@@ -344,9 +344,6 @@ fn the_text_of_a_file_is_shown_on_one_short_line() {
         let error = certificate::audit(&written(name, &json, &arrays)).unwrap_err().to_string();
         assert!(error.len() < 1000 && !error.contains(char::is_control), "{error}");
     }
-    let units = r#"units = { length = "mm\u001b\nerror: forged", force = "N" }"#;
-    let units = case_of(&format!("{units}\n{LOADED}"), &[]).units.unwrap();
-    assert_eq!(units.length, "mm\\u{1b}\\nerror: forged");
 }
 
 #[test]

@@ -139,16 +139,16 @@ fn the_error_of_the_solution_as_it_is_written_is_bounded_too() {
         let ladder = on_trapezoid(&solution, 0.75, degree, 8);
         let (_, problem, solution) = ladder.solve(1).unwrap();
         let result = certify(&problem, &solution);
-        let said = ContinuousCertificate::from(&result);
+        let said = serde_json::to_value(ContinuousCertificate::from(&result)).unwrap();
+        let said = ["bound", "of_solution"].map(|key| said[key].as_f64().unwrap());
         let certified = result.unwrap();
-        for (bound, field) in
-            [(said.bound, &certified.displacement), (said.of_solution, &solution.displacement)]
-        {
-            let ratio = bound.unwrap() / error_of(&problem, &ladder.solution, field);
+        let fields = [&certified.displacement, &solution.displacement];
+        for (bound, field) in said.into_iter().zip(fields) {
+            let ratio = bound / error_of(&problem, &ladder.solution, field);
             assert!((1.0..3.0).contains(&ratio), "{degree:?}: {ratio}");
         }
         // Control: they are two numbers.
-        assert!(said.bound != said.of_solution && certified.clipping > 0.0);
+        assert!(said[0] != said[1] && certified.clipping > 0.0);
     }
 }
 

@@ -5,9 +5,7 @@ use approx::{abs_diff_eq, assert_abs_diff_eq, assert_relative_eq};
 use std::collections::BTreeMap;
 
 use signorini::certificates::certify;
-use signorini::contact::friction::Bound;
-use signorini::contact::law::Law;
-use signorini::contact::{Discretization, Friction};
+use signorini::contact::{Bound, Discretization, Friction, Law};
 use signorini::exact::Exact;
 use signorini::kernel::{Material, Plane, PreciseBall};
 use signorini::linear::system::System;

@@ -231,9 +231,9 @@ fn a_wall_that_no_load_presses_is_left_out_of_the_energy_and_two_walls_may_squee
             let problem = beside_walls(gaps);
             let rule = EdgeRule::Exact;
             let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, rule).unwrap();
-            let idle = &d.slides.as_ref().unwrap().idle;
-            let found = d.contact.iter().map(|piece| piece.boundary().to_string()).zip(idle);
-            let found: Vec<(String, bool)> = found.map(|(name, idle)| (name, *idle)).collect();
+            let pieces = d.contact.iter().enumerate();
+            let found: Vec<(String, bool)> =
+                pieces.map(|(e, piece)| (piece.boundary().to_string(), d.is_idle(e))).collect();
             // Control: the floor carries the load.
             let is_right =
                 |(name, idle): &(String, bool)| *idle == (is_left_out && name != "bottom");

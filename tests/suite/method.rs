@@ -85,7 +85,7 @@ fn newton_iterate(d: &Discretization, set: &[usize]) -> Vec<[f64; 2]> {
     u
 }
 
-/// That it is the line search which ends it is a property of `properties::newton`: the solver does not start here, but from soft
+/// That it is the line search which ends it is a test beside `solve::newton`: the solver does not start here, but from soft
 /// springs.
 #[test]
 fn plain_newton_cycles_where_the_solver_ends() {

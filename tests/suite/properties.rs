@@ -8,10 +8,10 @@ mod given;
 mod integration;
 mod matrix;
 mod meshes;
-mod newton;
 mod places;
 mod postprocess;
 mod refinement;
+mod verdict;
 
 use proptest::array::uniform2;
 use proptest::collection::vec;

@@ -1,8 +1,8 @@
 //! Remarks: each is given where it is true, with its place and both numbers, and not where it is not.
 
+use signorini::contact::Pair;
 use signorini::io::Case;
 use signorini::kernel::{Material, Plane};
-use signorini::model::pairs::Pair;
 use signorini::model::{Condition, Diagonal, Mesh, Obstacle, Problem, Rectangle, Side};
 use signorini::solve::{Method, Settings, SolveError, solve};
 

@@ -5,12 +5,10 @@
 use approx::{abs_diff_eq, assert_abs_diff_eq};
 use signorini::io::Case;
 use signorini::kernel::{Material, Plane};
-use signorini::linear::system::System;
 use signorini::model::Degree;
 use signorini::model::{Condition, Diagonal, Mesh, Problem, Rectangle, SharedFunction};
 use signorini::results::{RouteName, Verdict};
-use signorini::solve::route::Strategy;
-use signorini::solve::{Gamma0, Method, Settings, SolveError, discretize, solve};
+use signorini::solve::{Gamma0, Method, Settings, SolveError, solve};
 
 use crate::common::*;
 
@@ -175,10 +173,8 @@ fn beams_are_condensed_and_long_strips_of_a_few_rows_are_not() {
             let problem = Problem::of(mesh.mesh().unwrap(), material)
                 .with(held, Condition::clamped())
                 .with("bottom", Condition::contact(|_| 0.0));
-            let d = discretize(&problem, &method(degree, EXACT)).unwrap();
-            let system = System::new(&d).unwrap();
-            let routes = Strategy::new(&system).unwrap().routes();
-            assert_eq!(routes[0], expected, "{width} {degree:?}");
+            let solved = solve(&problem, &method(degree, EXACT), &Settings::default());
+            assert_eq!(solved.unwrap().0.method.route, expected, "{width} {degree:?}");
         }
     }
 }

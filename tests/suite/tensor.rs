@@ -233,7 +233,6 @@ fn cases_have_the_materials_that_they_say() {
     let case = read(WOOD);
     assert_eq!(case.problem.material, spruce(30.0).into());
     let stiffness = spruce(30.0).stiffness();
-    assert_eq!(case.materials[0].stiffness, Some(stiffness));
     let orthotropic = WOOD.lines().find(|line| line.starts_with("orthotropic")).unwrap();
     let entries = read(&WOOD.replace(orthotropic, &format!("stiffness = {stiffness:?}")));
     assert_eq!(entries.problem.material, case.problem.material);

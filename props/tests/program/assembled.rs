@@ -324,7 +324,7 @@ fn compared<const N: usize>(
                 ensure!(values[c].is_some() == exact.prescribed.contains_key(&(node, c)));
             }
         }
-        let numbering = Numbering::new(&draw.order(nodes), d.constraints.values());
+        let numbering = Numbering::under(&draw.order(nodes), &d.constraints);
         ensure!(numbering.count == 2 * nodes - exact.prescribed.len());
         let order = if matrices { numbered(&numbering) } else { Vec::new() };
         let [u, step] = draw.fields(nodes);

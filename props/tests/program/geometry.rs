@@ -12,7 +12,6 @@ use signorini::linear::matrix::Neighbours;
 use signorini::linear::system::System;
 use signorini::model::Degree;
 use signorini::model::boundary_normals::SmoothBoundary;
-use signorini::model::obstacle::MOST_OFF;
 use signorini::model::{Diagonal, Distance, Function, Mesh, Obstacle, Problem, Rectangle, Side};
 use signorini::nalgebra::Vector2;
 use signorini::proof::korn::Korn;
@@ -83,6 +82,9 @@ fn obstacle(&(center, radius, away, angle, factor): &Seen, turn: f64) -> Verdict
     ensure!(Obstacle::Circle { center, radius, side }.closest(center, String::new).is_err());
     Verdict::Holds(if side == Side::Outside { "outside" } else { "inside" })
 }
+
+/// What the length of the gradient of an obstacle's distance may be off by, at most.
+const MOST_OFF: f64 = 0.1;
 
 fn places() -> impl Strategy<Value = Seen> {
     let factor = 1.0 - 0.9 * MOST_OFF..1.0 + 0.9 * MOST_OFF;
@@ -211,7 +213,7 @@ fn korn_on(degree: Degree, problem: &Problem, by: f64) -> Result<f64, String> {
     let system = System::new(&d).map_err(text)?;
     let neighbours = Neighbours::new(&d.space);
     let stiffness = matrix::assemble_stiffness(&d, &system.numbering, &neighbours).map_err(text)?;
-    let factor = Factor::with(&system.structure, &stiffness).map_err(text)?;
+    let factor = Factor::new(&stiffness).map_err(text)?;
     let korn = Korn::new(&d.space, &problem.material, &d.constraints, &[]).ok_or("not held")?;
     let mut least = f64::INFINITY;
     for (numbers, constant) in system.numbering.of.iter().zip(&korn.nodes) {

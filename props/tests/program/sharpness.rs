@@ -84,7 +84,7 @@ impl Order {
     fn new(d: &Discretization) -> Self {
         let neighbours = Neighbours::new(&d.space);
         let order = nested_dissection(d.space.nodes(), &neighbours);
-        Order { numbering: Numbering::new(&order, d.constraints.values()), neighbours }
+        Order { numbering: Numbering::under(&order, &d.constraints), neighbours }
     }
 
     /// The rows of S: for an affine w on an edge int w^2 = |E| (mean^2 + (difference of the end values)^2/12).

@@ -30,7 +30,7 @@ pub(super) const PLANES: [(&str, Plane); 3] =
 /// A material as the case has it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
-pub struct MaterialEcho {
+pub(crate) struct MaterialEcho {
     /// The physical surfaces made of it; none if the mesh has no named surface.
     pub(crate) surfaces: Vec<String>,
     /// Young's modulus of a material that is isotropic.
@@ -41,7 +41,7 @@ pub struct MaterialEcho {
     pub(crate) poisson: Option<f64>,
     /// `[C11, C12, C16, C22, C26, C66]` of one that is not.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub stiffness: Option<[f64; 6]>,
+    pub(crate) stiffness: Option<[f64; 6]>,
     /// "strain", "stress" or "axisymmetric".
     pub(crate) plane: String,
 }

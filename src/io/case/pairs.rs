@@ -5,7 +5,7 @@ use super::table::{Spot, Table, Value};
 use crate::contact::{Law, Pair};
 use crate::io::input::FileError;
 use crate::model::Mesh;
-use crate::model::mesh::split_names;
+use crate::model::mesh::split::split_names;
 use crate::quote::{key, quoted};
 
 /// A pair and where the file has it.

@@ -16,7 +16,7 @@ use crate::results::{ContactBoundary, Solution, Verdict};
 
 /// The content of the picture of a solved case.
 #[derive(Clone, Debug)]
-pub struct Scene {
+pub(crate) struct Scene {
     /// The headline, and a line below it.
     pub(super) title: String,
     pub(super) subtitle: String,
@@ -106,7 +106,7 @@ impl ContactSurface {
 
 impl Scene {
     /// The content of the picture of a solved case. A quadratic triangle is drawn as four, its edges as two.
-    pub fn of(case: &Case, s: &Solution, results: &Results) -> Scene {
+    pub(crate) fn of(case: &Case, s: &Solution, results: &Results) -> Scene {
         let mesh = &case.problem.mesh;
         let linear = s.degree == Degree::One;
         let parts = |edge: BoundaryEdge| {

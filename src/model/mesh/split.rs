@@ -124,7 +124,7 @@ impl Mesh {
 }
 
 /// The names of the boundaries that [`Mesh::split_between`] makes: of the first surface, and of the second.
-pub fn split_names([first, second]: &[String; 2]) -> [String; 2] {
+pub(crate) fn split_names([first, second]: &[String; 2]) -> [String; 2] {
     [format!("{first}|{second}"), format!("{second}|{first}")]
 }
 

@@ -18,7 +18,8 @@ use signorini::results::{RouteName, Solution};
 use signorini::solve::Times;
 use signorini::solve::iterate::Iterate;
 use signorini::solve::{
-    ContactQuadrature, Method, Settings, SolveError, discretize, route, solve, solve_discrete,
+    ContactQuadrature, Method, Settings, SolveError, check, discretize, route, solve,
+    solve_discrete,
 };
 
 use super::{Outcome, field, for_all, properties, text};
@@ -196,8 +197,8 @@ fn held(prescribed: [bool; 2], force: [f64; 2]) -> Result<Option<usize>, String>
     }
     let material = Material::lame(1.0, 1.0, Plane::Strain);
     let problem = Problem::new(block(0.0)?, material, force.map(constant), conditions);
-    match discretize(&problem, &Method::default()) {
-        Ok(d) => Ok(Some(d.slides.map_or(0, |slides| slides.basis.len()))),
+    match check(&problem, &Method::default()) {
+        Ok(outline) => Ok(Some(outline.slides)),
         Err(SolveError::Data(DataError::RigidMotion { .. })) => Ok(None),
         Err(other) => Err(other.to_string()),
     }

@@ -34,7 +34,7 @@ type Directions = fn(&Piece) -> Vec<Vector2<f64>>;
 fn functionals_on(degree: Degree, plane: Plane, directions: Directions) -> Outcome {
     let problem = bent(plane)?;
     let d = discretize(&problem, &Method { degree, ..Method::default() }).map_err(text)?;
-    if d.contact.iter().all(|edge| edge.geometry.along_normal) {
+    if d.contact.iter().all(|edge| given(edge) == facets(edge)) {
         return Err("the direction of contact turns nowhere".to_owned());
     }
     let of_edge = |edge: &Piece, v: &[[f64; 2]]| {
@@ -77,7 +77,7 @@ fn facets(edge: &Piece) -> Vec<Vector2<f64>> {
 }
 
 fn given(edge: &Piece) -> Vec<Vector2<f64>> {
-    edge.geometry.directions().collect()
+    edge.geometry.nodes.iter().map(|node| node.direction).collect()
 }
 
 /// C_h by its definition, an edge counted `factor` of the cosine times; and (11) with kappa for random fields.

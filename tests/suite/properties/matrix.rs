@@ -38,7 +38,7 @@ impl Unknowns {
     }
 
     fn numbering(&self) -> Numbering {
-        Numbering::in_frames(&self.order, &self.prescribed, self.frames.clone())
+        Numbering::new(&self.order, &self.prescribed, self.frames.clone())
     }
 }
 
@@ -88,7 +88,7 @@ fn an_edge_forgotten(d: &Discretization, unknowns: &Unknowns) -> [LowerTriangle;
 
 /// Planted: no node is turned.
 fn frames_forgotten(d: &Discretization, unknowns: &Unknowns) -> [LowerTriangle; 2] {
-    assembled_over(d, &Numbering::new(&unknowns.order, &unknowns.prescribed))
+    assembled_over(d, &Numbering::new(&unknowns.order, &unknowns.prescribed, BTreeMap::new()))
 }
 
 fn matrices_are_forms(assemble: Assemble) -> Outcome {
