@@ -190,7 +190,7 @@ pub enum Law {
 
 impl Law {
     /// q at both ends.
-    pub fn shear(self) -> [f64; 2] {
+    pub(crate) fn shear(self) -> [f64; 2] {
         match self {
             Law::Contact | Law::Sliding => [0.0; 2],
             Law::Bonded { shear, .. } | Law::Friction { shear, .. } => shear,
@@ -485,7 +485,7 @@ impl<S: Enclosing> Shape<S> {
     }
 
     /// 12 / |T| times the work of the body force on it.
-    pub fn work(&self, piece: &Piece) -> S {
+    pub(crate) fn work(&self, piece: &Piece) -> S {
         // int_T l_i v = |T| / 12 (v_0 + v_1 + v_2 + v_i)
         let nodal = piece.vertices.map(|vertex| self.points[vertex]);
         let total = nodal[0] + nodal[1] + nodal[2];
@@ -525,7 +525,7 @@ impl<S: Enclosing> Shape<S> {
 }
 
 /// The triangles of each edge, the one on its left first: inner edges have two, the others one.
-pub type Owners = Vec<[Option<usize>; 2]>;
+pub(crate) type Owners = Vec<[Option<usize>; 2]>;
 
 impl Piece {
     /// f is not constant.

@@ -93,7 +93,11 @@ impl Certificate {
     }
 
     /// The direction of contact on an edge of Gamma_C, at both ends.
-    pub fn directions<S: Enclosing>(&self, e: usize, points: &[Vector2<S>]) -> [Vector2<S>; 2] {
+    pub(crate) fn directions<S: Enclosing>(
+        &self,
+        e: usize,
+        points: &[Vector2<S>],
+    ) -> [Vector2<S>; 2] {
         if let Role::Contact { along: Some(d), .. } = self.edges[e].role {
             return d.map(exactly);
         }
@@ -283,13 +287,13 @@ pub struct Forces<'a, S> {
     /// The certificate.
     pub certificate: &'a Certificate,
     /// The certificate in equilibrium.
-    pub state: &'a Balanced<S>,
+    pub(crate) state: &'a Balanced<S>,
     /// The boundary of each edge.
     pub of: &'a [Option<usize>],
     /// M
-    pub mean: Mean,
+    pub(crate) mean: Mean,
     /// The error of L(w) and a(v, w) for each unit of |w|_a, as data oscillate.
-    pub loose: f64,
+    pub(crate) loose: f64,
     unbalanced: Shape<S>,
 }
 

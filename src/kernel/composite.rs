@@ -51,7 +51,7 @@ pub struct Composite<S> {
     /// At the centroid.
     pub centre: Stress<S>,
     /// On part i, in the middles of its edge i and of its cuts to the corners i+1 and i+2: what is beyond the mean of the ends.
-    pub bulges: Option<[[Stress<S>; 3]; 3]>,
+    pub(crate) bulges: Option<[[Stress<S>; 3]; 3]>,
 }
 
 /// C eps(v) of a displacement v of degree 1 or 2: a stress that is constant on the triangle or affine.

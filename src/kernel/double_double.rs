@@ -55,7 +55,7 @@ impl DoubleDouble {
 
 /// Splits a into a sum of two doubles of 26 bits each (Veltkamp).
 #[inline]
-pub fn halves(a: f64) -> [f64; 2] {
+fn halves(a: f64) -> [f64; 2] {
     let c = 134_217_729.0 * a;
     let high = c - (c - a);
     [high, a - high]

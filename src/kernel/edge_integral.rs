@@ -230,13 +230,13 @@ fn mass<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(a: usize, b
 /// The Bregman distance of 1/2 \[.\]+^2 from `a` to `b`: 1/2 \[b\]+^2 - 1/2 \[a\]+^2 - \[a\]+ (b - a), written as the sum
 /// 1/2 (\[b\]+ - \[a\]+)^2 + \[a\]+ \[-b\]+ of two terms that are never negative, so that nothing cancels. It is the part of
 /// the change of J_h along a step that is not linear.
-pub fn bregman<S: Scalar>(a: S, b: S) -> S {
+fn bregman<S: Scalar>(a: S, b: S) -> S {
     let (positive_a, positive_b) = (positive_part(a), positive_part(b));
     let d = positive_b - positive_a;
     d * d / S::from(2) + positive_a * positive_part(-b)
 }
 
-/// The integral over the edge of the [Bregman distance](bregman) from P to Q, without quadrature error: over the pieces on
+/// The integral over the edge of the Bregman distance from P to Q, without quadrature error: over the pieces on
 /// which neither changes sign; with the weight r where r has these `radii` at the two ends.
 pub fn exact_bregman<E: Element<N, M>, const N: usize, const M: usize>(
     p: [f64; M],
