@@ -80,17 +80,17 @@ pub(crate) struct Stop<S> {
 /// such a motion, do by rounding and by what Newton's method leaves.
 const STOP: f64 = 1e-10;
 
-/// The topology of a certificate's triangles: those of each edge, and the tree over those of each part: an order from the root on, and the edge towards the root. A part is what an edge
+/// The topology of a certificate's triangles: those of each edge, and the tree over those of each part. A part is what an edge
 /// that is held in both components, long enough to take any force and moment, is the nearest such to, or a connected part of
 /// the body where there is none: the fewer triangles behind an edge, the less rounding is carried over it.
 #[derive(Clone)]
 pub struct Topology {
     /// The triangles of each edge.
     pub owners: Owners,
+    /// The triangles of one part after the other, each from its root on.
     order: Vec<usize>,
+    /// The edge towards the root, which has none.
     towards_root: Vec<Option<usize>>,
-    /// Where in `order` each part begins.
-    parts: Vec<usize>,
 }
 
 impl Topology {
@@ -98,22 +98,21 @@ impl Topology {
     /// edge, come before all others.
     pub(crate) fn new(certificate: &Certificate, owners: Owners) -> Topology {
         let count = certificate.pieces.len();
-        let (mut found, mut parts) = (Vec::with_capacity(count), 0);
-        let mut part_of = vec![usize::MAX; count];
+        let mut order = Vec::with_capacity(count);
+        // The place of the root among those found.
+        let mut part_of = vec![None; count];
         let mut towards_root = vec![None; count];
         let mut next = 0;
         let held = held_roots(certificate, &owners);
         let alone = (0..count).map(|root| vec![root]);
         for roots in std::iter::once(held).chain(alone) {
             for root in roots {
-                if part_of[root] == usize::MAX {
-                    part_of[root] = parts;
-                    parts += 1;
-                    found.push(root);
+                if part_of[root].is_none() {
+                    part_of[root] = Some(order.len());
+                    order.push(root);
                 }
             }
-            while next < found.len() {
-                let t = found[next];
+            while let Some(&t) = order.get(next) {
                 next += 1;
                 let mut reached = vec![t];
                 while let Some(from) = reached.pop() {
@@ -124,35 +123,24 @@ impl Topology {
                         }
                         let other = owners[e].into_iter().flatten().find(|&owner| owner != from);
                         if let Some(to) = other
-                            && part_of[to] == usize::MAX
+                            && part_of[to].is_none()
                         {
                             part_of[to] = part_of[t];
                             towards_root[to] = Some(e);
-                            found.push(to);
+                            order.push(to);
                             reached.push(to);
                         }
                     }
                 }
             }
         }
-        let mut first = vec![0; parts + 1];
-        part_of.iter().for_each(|&part| first[part + 1] += 1);
-        for part in 0..parts {
-            first[part + 1] += first[part];
-        }
-        first.pop();
-        let (mut order, mut end) = (vec![0; count], first.clone());
-        for t in found {
-            order[end[part_of[t]]] = t;
-            end[part_of[t]] += 1;
-        }
-        Topology { owners, order, towards_root, parts: first }
+        order.sort_by_key(|&t| part_of[t]);
+        Topology { owners, order, towards_root }
     }
 
     /// The triangles of each part, from the root on.
     fn parts(&self) -> impl Iterator<Item = &[usize]> {
-        let ends = self.parts.iter().skip(1).copied().chain([self.order.len()]);
-        self.parts.iter().zip(ends).map(|(&first, end)| &self.order[first..end])
+        self.order.chunk_by(|_, &t| self.towards_root[t].is_some())
     }
 }
 
@@ -210,7 +198,7 @@ impl<S: Enclosing> OnEdges<'_, S> {
             }
             for (hold, factor, share) in self.factors(part, chosen, total)? {
                 if let Variation::Stop(c) = hold.profile {
-                    let wrench = times(stop(c, total.about), factor);
+                    let wrench = stop(c, factor, total.about);
                     let [start, end] =
                         [1, 2].map(|k| self.points[self.certificate.pieces[root].vertices[k]]);
                     let force = wrench.on_edge(start, end);
@@ -224,7 +212,7 @@ impl<S: Enclosing> OnEdges<'_, S> {
                 let there = other.map(|edge| (edge, opposite(force)));
                 for (edge, force) in std::iter::once((hold.edge, force)).chain(there) {
                     let Some(owner) = owners[edge][0] else { continue };
-                    add(&mut added[edge], force);
+                    (0..2).for_each(|k| added[edge][k] += force[k]);
                     let wrench = self.wrench(edge, force);
                     wrenches[owner] = wrenches[owner].plus(wrench);
                 }
@@ -246,14 +234,12 @@ impl<S: Enclosing> OnEdges<'_, S> {
                 // The triangle behind the edge gets minus its resultant, the one before it the resultant.
                 let (before, force) =
                     if left == t { (right, force.map(|f| -f)) } else { (left, force) };
-                add(&mut added[e], force);
+                (0..2).for_each(|k| added[e][k] += force[k]);
                 wrenches[before] = wrenches[before].plus(wrench);
             }
         }
-        let sum = |(given, added): (&[Vector2<S>; 2], [Vector2<S>; 2])| {
-            [given[0] + added[0], given[1] + added[1]]
-        };
-        let forces = self.forces.iter().zip(added).map(sum).collect();
+        let both = self.forces.iter().zip(added);
+        let forces = both.map(|(given, added)| [0, 1].map(|k| given[k] + added[k])).collect();
         Ok(Equilibrium { forces, changes, stops, resultants })
     }
 
@@ -304,17 +290,18 @@ impl<S: Enclosing> OnEdges<'_, S> {
         let free = Unbalanced::Free { triangle: part[0] };
         let pull = self.pull(part);
         let unit = holds.map(|hold| match hold.profile {
-            Variation::Stop(c) => stop(c, total.about),
+            Variation::Stop(c) => stop(c, S::from(1), total.about),
             _ => self.wrench(hold.edge, self.unit(hold)).about(total.about),
         });
         let factors = solve(unit, total);
         let found = [0, 1, 2].map(|k| {
             let share = match holds[k].profile {
-                Variation::Stop(2) => most(factors[k]) / (pull * size),
-                Variation::Stop(_) => most(factors[k]) / pull,
+                _ if factors[k].size() == 0.0 => 0.0,
+                Variation::Stop(2) => factors[k].size() / (pull * size),
+                Variation::Stop(_) => factors[k].size() / pull,
                 _ => 0.0,
             };
-            (holds[k], factors[k], if most(factors[k]) == 0.0 { 0.0 } else { share })
+            (holds[k], factors[k], share)
         });
         if found.iter().all(|(_, _, share)| *share <= STOP) { Ok(found) } else { Err(free) }
     }
@@ -323,7 +310,7 @@ impl<S: Enclosing> OnEdges<'_, S> {
     fn pull(&self, part: &[usize]) -> f64 {
         let edges = part.iter().flat_map(|&t| self.certificate.pieces[t].edges);
         let outer = edges.filter(|&e| self.topology.owners[e][1].is_none());
-        outer.flat_map(|e| self.forces[e]).map(length).sum()
+        outer.flat_map(|e| self.forces[e]).map(|force| force[0].size() + force[1].size()).sum()
     }
 
     /// The force of a hold at both ends of its edge.
@@ -410,15 +397,10 @@ impl<S: Enclosing> OnEdges<'_, S> {
         }
         let norm = |row: &[f64; 3]| row.iter().map(|x| x * x).sum::<f64>();
         let mut chosen: Vec<(FreeForce, [f64; 3])> = Vec::with_capacity(3);
+        let edge = self.certificate.pieces[part[0]].edges[0];
         let stops = [0, 1, 2].map(|c| {
             let row = [0, 1, 2].map(|d| if c == d { 1.0 } else { 0.0 });
-            (
-                FreeForce {
-                    edge: self.certificate.pieces[part[0]].edges[0],
-                    profile: Variation::Stop(c),
-                },
-                row,
-            )
+            (FreeForce { edge, profile: Variation::Stop(c) }, row)
         });
         for (_, row) in &mut candidates {
             row[2] /= size;
@@ -450,37 +432,16 @@ impl<S: Enclosing> OnEdges<'_, S> {
     }
 }
 
-/// An upper bound of the length of a vector.
-fn length<S: Enclosing>(v: Vector2<S>) -> f64 {
-    most(v[0]) + most(v[1])
-}
-
-/// An upper bound of the size of a number.
-fn most<S: Enclosing>(x: S) -> f64 {
-    x.upper().max(-x.lower())
-}
-
-/// A unit force along x, along y, or a unit moment.
-fn stop<S: Enclosing>(c: usize, about: Vector2<S>) -> Wrench<S> {
-    let [x, y, moment] = [0, 1, 2].map(|k| S::from(i32::from(k == c)));
+/// A force along x, along y, or a moment of this size.
+fn stop<S: Enclosing>(c: usize, size: S, about: Vector2<S>) -> Wrench<S> {
+    let [x, y, moment] = [0, 1, 2].map(|k| if k == c { size } else { S::from(0) });
     Wrench { force: Vector2::new(x, y), moment, about }
-}
-
-fn times<S: Enclosing>(wrench: Wrench<S>, factor: S) -> Wrench<S> {
-    Wrench { force: wrench.force * factor, moment: wrench.moment * factor, ..wrench }
-}
-
-fn add<S: Enclosing>(to: &mut [Vector2<S>; 2], force: [Vector2<S>; 2]) {
-    for (to, force) in to.iter_mut().zip(force) {
-        *to += force;
-    }
 }
 
 /// The factors with which three wrenches about one point add up to minus `total`, by Cramer's rule.
 fn solve<S: Enclosing>(unit: [Wrench<S>; 3], total: Wrench<S>) -> [S; 3] {
-    let column = |w: &Wrench<S>| [w.force[0], w.force[1], w.moment];
-    let columns = [column(&unit[0]), column(&unit[1]), column(&unit[2])];
-    let right = column(&total).map(|x| -x);
+    let column = |w: Wrench<S>| [w.force[0], w.force[1], w.moment];
+    let (columns, right) = (unit.map(column), column(total).map(|x| -x));
     let determinant = |[a, b, c]: [[S; 3]; 3]| {
         a[0] * (b[1] * c[2] - b[2] * c[1]) - b[0] * (a[1] * c[2] - a[2] * c[1])
             + c[0] * (a[1] * b[2] - a[2] * b[1])
@@ -496,9 +457,8 @@ fn solve<S: Enclosing>(unit: [Wrench<S>; 3], total: Wrench<S>) -> [S; 3] {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::certificate::Piece;
+    use crate::certificate::tests::piece;
     use crate::checks::Rejection;
-    use crate::kernel::{Material, Plane};
 
     /// A square of two triangles under a pressure all round, on its left side that of contact, which holds it along x alone: where its
     /// direction turns it has one size. On the side below, of the first triangle, acts a further traction. In units of length and stress.
@@ -508,20 +468,13 @@ pub(crate) mod tests {
         let along = Some([[-1.0, 0.0], [-1.0, 2.0_f64.powi(-60)]]);
         let law = Law::default();
         let contact = Role::Contact { pressure: [-stress; 2], gap: [0.0; 2], along, law };
-        let piece = |vertices, edges| Piece {
-            vertices,
-            edges,
-            material: Material::lame(stress, stress, Plane::Strain),
-            body: [[0.0; 2]; 3],
-            oscillation: 0.0,
-        };
         Certificate {
             vertices: [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
                 .map(|x| x.map(|c| size * c))
                 .into(),
             displacement: vec![[0.0; 2]; 4],
             prescribed: vec![[None; 2]; 4],
-            pieces: vec![piece([0, 1, 2], [0, 1, 2]), piece([0, 2, 3], [3, 4, 1])],
+            pieces: vec![piece([0, 1, 2], [0, 1, 2], stress), piece([0, 2, 3], [3, 4, 1], stress)],
             edges: vec![
                 edge(1, 2, Role::Pressed([stress; 2])),
                 edge(2, 0, Role::Inner([[size * stress, -size * stress]; 2])),

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use super::balance::OnEdges;
 pub use super::balance::{Change, Equilibrium, Topology, Unbalanced};
 use super::certificate::{
-    Certificate, Edge, Law, Piece, Role, Shape, exactly, opposite, support, turned,
+    Certificate, Edge, Law, Piece, Role, Shape, Trace, exactly, opposite, support, turned,
 };
 use super::checks::{Rejection, VARIES, wrong};
 use super::forces::along;
@@ -19,7 +19,7 @@ use crate::kernel::{Ball, Enclosing, Triangle};
 pub(super) fn friction<S: Enclosing>(across: [S; 4], shear: [f64; 2], bound: [f64; 2]) -> S {
     let mut sum = S::from(0);
     for (i, slip) in across.into_iter().enumerate() {
-        let size = S::exactly(slip.upper().max(-slip.lower()));
+        let size = S::exactly(slip.size());
         for (k, weight) in [4 - i as i32, 1 + i as i32].into_iter().enumerate() {
             let both = size * S::exactly(bound[k]) + slip * S::exactly(shear[k]);
             sum += both * S::from(weight);
@@ -56,7 +56,13 @@ impl Certificate {
     /// Checks all other conditions and puts the triangles in equilibrium.
     pub fn balanced<S: Enclosing>(&self, topology: Topology) -> Result<Balanced<S>, Rejection> {
         let points: Vec<Vector2<S>> = self.places();
-        let triangles = self.triangles(&points)?;
+        let triangle = |(t, piece): (usize, &Piece)| {
+            let triangle = Triangle { vertices: piece.vertices.map(|p| points[p]) };
+            let is_triangle = triangle.double_area().is_positive();
+            if is_triangle { Ok(triangle) } else { Err(Rejection::Orientation { triangle: t }) }
+        };
+        let triangles: Vec<_> =
+            self.pieces.iter().enumerate().map(triangle).collect::<Result<_, _>>()?;
         let v = self.shape();
         self.check_displacement()?;
         let mut on_contact = vec![S::from(0); self.pieces.len()];
@@ -148,7 +154,14 @@ impl Certificate {
                 let normal = Vector2::new(along[1], -along[0]);
                 p.map(|p| -(normal * S::exactly(p)))
             }
-            Role::Contact { .. } => self.traction(e, points),
+            Role::Contact { law, .. } => {
+                let (push, shear) = (self.push(e, points), law.shear());
+                if shear == [0.0; 2] {
+                    return push;
+                }
+                let units = self.units(e, points);
+                [0, 1].map(|k| push[k] + turned(units[k]) * S::exactly(shear[k]))
+            }
         }
     }
 
@@ -178,28 +191,14 @@ impl Certificate {
         }
     }
 
-    /// tau N at both ends of edge `e` of Gamma_C.
-    fn traction<S: Enclosing>(&self, e: usize, points: &[Vector2<S>]) -> [Vector2<S>; 2] {
-        let push = self.push(e, points);
-        match self.edges[e].role {
-            Role::Contact { law, .. } if law.shear() != [0.0; 2] => {
-                let units = self.units(e, points);
-                let drag = |k: usize| turned(units[k]) * S::exactly(law.shear()[k]);
-                [0, 1].map(|k| push[k] + drag(k))
-            }
-            _ => push,
-        }
-    }
-
     /// |E| w . e on edge `e` of Gamma_C, e being d turned to the left, of a displacement with this jump: its Bernstein coefficients.
     pub(super) fn across<S: Enclosing>(
         &self,
         e: usize,
-        (w, bulge): ([Vector2<S>; 2], Option<Vector2<S>>),
+        jump: Trace<S>,
         points: &[Vector2<S>],
     ) -> [S; 4] {
-        let bulge = bulge.unwrap_or_else(Vector2::zeros);
-        along(w, bulge, self.units(e, points).map(turned))
+        along(jump, self.units(e, points).map(turned))
     }
 
     /// The edges of Gamma_C on which v can't be shown to be outside the obstacle, each with how far it may be inside.
@@ -232,8 +231,8 @@ impl Certificate {
             return Err(wrong("edge", e, "expected one of Gamma_C"));
         };
         let (v, bulge) = self.jump(e, v);
-        let data = self.curved.as_ref().map(|curved| curved.data[e][0]);
-        let shape = OnEdge { v, gap, bulges: bulge.zip(data) };
+        let bulges = self.curved.as_ref().map(|curved| (bulge, curved.data[e][0]));
+        let shape = OnEdge { v, gap, bulges };
         let span = self.span(edge.ends, points);
         let length = || span.dot(&span).sqrt();
         match along {
@@ -267,21 +266,6 @@ impl Certificate {
             }
         }
         points[end] - points[start]
-    }
-
-    fn triangles<S: Enclosing>(
-        &self,
-        points: &[Vector2<S>],
-    ) -> Result<Vec<Triangle<S>>, Rejection> {
-        let triangle = |(t, piece): (usize, &Piece)| {
-            let triangle = Triangle { vertices: piece.vertices.map(|p| points[p]) };
-            if triangle.double_area().is_positive() {
-                Ok(triangle)
-            } else {
-                Err(Rejection::Orientation { triangle: t })
-            }
-        };
-        self.pieces.iter().enumerate().map(triangle).collect()
     }
 }
 
@@ -326,7 +310,7 @@ pub(crate) fn outward<S: Enclosing>(
     forces: &[[Vector2<S>; 2]],
 ) -> [[Vector2<S>; 2]; 3] {
     edges.map(|e| {
-        let [a, b] = forces[e];
-        if topology.owners[e][0] == Some(t) { [a, b] } else { [-b, -a] }
+        let is_left = topology.owners[e][0] == Some(t);
+        if is_left { forces[e] } else { opposite(forces[e]) }
     })
 }

@@ -190,7 +190,7 @@ pub enum Law {
 
 impl Law {
     /// q at both ends.
-    pub fn shear(self) -> [f64; 2] {
+    pub(crate) fn shear(self) -> [f64; 2] {
         match self {
             Law::Contact | Law::Sliding => [0.0; 2],
             Law::Bonded { shear, .. } | Law::Friction { shear, .. } => shear,
@@ -221,8 +221,7 @@ impl Law {
         d: [f64; 2],
         [g, h]: [S; 2],
     ) -> Vector2<S> {
-        let is_zero = |x: S| x.lower() == 0.0 && x.upper() == 0.0;
-        let beyond = |c: usize, g: S| if is_zero(g) { other[c] } else { other[c] + g };
+        let beyond = |c: usize, g: S| if g.ends() == [0.0; 2] { other[c] } else { other[c] + g };
         let along = |c: usize| if d[c] > 0.0 { g } else { -g };
         match (self, axis(d)) {
             (Law::Bonded { .. }, _) => Vector2::new(beyond(0, g), beyond(1, h)),
@@ -394,21 +393,12 @@ impl Certificate {
     }
 
     /// A displacement at both ends of edge `e` of Gamma_C, and its bulge there: on a pair less that of the other body.
-    pub(crate) fn jump<S: Enclosing>(
-        &self,
-        e: usize,
-        w: &Shape<S>,
-    ) -> ([Vector2<S>; 2], Option<Vector2<S>>) {
+    pub(crate) fn jump<S: Enclosing>(&self, e: usize, w: &Shape<S>) -> Trace<S> {
         let ends = |e: usize| self.edges[e].ends.map(|p| w.points[p]);
-        let bulge = |e: usize| w.bulges.as_ref().map(|bulges| bulges[e]);
-        match self.facing.get(&e) {
-            None => (ends(e), bulge(e)),
-            Some(&other) => {
-                let ([a, b], [c, d]) = (ends(e), opposite(ends(other)));
-                let both = bulge(e).zip(bulge(other));
-                ([a + c, b + d], both.map(|(own, other)| own - other))
-            }
-        }
+        let bulge = |e: usize| w.bulges.as_ref().map_or(Vector2::zeros(), |bulges| bulges[e]);
+        let Some(&other) = self.facing.get(&e) else { return (ends(e), bulge(e)) };
+        let ([a, b], [c, d]) = (ends(e), opposite(ends(other)));
+        ([a + c, b + d], bulge(e) - bulge(other))
     }
 
     /// The edges on which two bodies may not open.
@@ -477,6 +467,9 @@ pub struct Tied {
     pub gap: [f64; 2],
 }
 
+/// A displacement along an edge: at both ends, and its bulge.
+pub(crate) type Trace<S> = ([Vector2<S>; 2], Vector2<S>);
+
 /// A displacement on the triangles of a certificate.
 #[derive(Clone)]
 pub struct Shape<S> {
@@ -492,7 +485,7 @@ impl<S: Enclosing> Shape<S> {
     }
 
     /// 12 / |T| times the work of the body force on it.
-    pub fn work(&self, piece: &Piece) -> S {
+    pub(crate) fn work(&self, piece: &Piece) -> S {
         // int_T l_i v = |T| / 12 (v_0 + v_1 + v_2 + v_i)
         let nodal = piece.vertices.map(|vertex| self.points[vertex]);
         let total = nodal[0] + nodal[1] + nodal[2];
@@ -532,7 +525,7 @@ impl<S: Enclosing> Shape<S> {
 }
 
 /// The triangles of each edge, the one on its left first: inner edges have two, the others one.
-pub type Owners = Vec<[Option<usize>; 2]>;
+pub(crate) type Owners = Vec<[Option<usize>; 2]>;
 
 impl Piece {
     /// f is not constant.
@@ -555,9 +548,15 @@ pub fn place(certificate: &Certificate, p: usize) -> Vector2<f64> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::kernel::Plane;
+
+    /// A triangle without loads, of a material with lambda = mu = `modulus`.
+    pub(crate) fn piece(vertices: [usize; 3], edges: [usize; 3], modulus: f64) -> Piece {
+        let material = Material::lame(modulus, modulus, Plane::Strain);
+        Piece { vertices, edges, material, body: [[0.0; 2]; 3], oscillation: 0.0 }
+    }
 
     #[test]
     fn lifts_add_up_by_their_squares_and_so_does_a_bound_beside_them() {
@@ -572,13 +571,7 @@ mod tests {
 
     #[test]
     fn triangles_with_lifts_and_those_that_are_measured_are_counted_apart() {
-        let piece = |oscillation: f64| Piece {
-            vertices: [0, 1, 2],
-            edges: [0, 1, 2],
-            material: Material::lame(1.0, 1.0, Plane::Strain),
-            body: [[0.0; 2]; 3],
-            oscillation,
-        };
+        let piece = |oscillation| Piece { oscillation, ..piece([0, 1, 2], [0, 1, 2], 1.0) };
         let lift = Lift { corners: [0, 1, 2], norm: 1.0 };
         let certificate = Certificate {
             pieces: [0.0, 1e-30, 2.0, 0.0, 1.0].map(piece).into(),

@@ -84,10 +84,11 @@ fn check_along(v: [f64; 2], d: [f64; 2], w: f64, at: Prescribed) -> Result<(), R
     let [x, y] = [v[0] * d[0], v[1] * d[1]];
     let allowed =
         if is_oblique(d) { 16.0 * f64::EPSILON * (x.abs() + y.abs() + w.abs()) } else { 0.0 };
-    if (x + y - w).abs() <= allowed {
-        return Ok(());
-    }
-    Err(Rejection::NotPrescribed { at, found: x + y, expected: w })
+    check_value((x + y - w).abs() <= allowed, at, x + y, w)
+}
+
+fn check_value(is: bool, at: Prescribed, found: f64, expected: f64) -> Result<(), Rejection> {
+    if is { Ok(()) } else { Err(Rejection::NotPrescribed { at, found, expected }) }
 }
 
 /// The law has finite entries and positive eigenvalues.
@@ -101,26 +102,23 @@ fn has_length(d: [f64; 2]) -> bool {
     (0.25..=4.0).contains(&(d[0] * d[0] + d[1] * d[1]))
 }
 
-/// The directions in which a point is held: one, or all.
-#[derive(Clone, Copy, Default)]
-struct Directions {
-    first: Option<[f64; 2]>,
-    all: bool,
-}
-
-impl Directions {
-    fn add(&mut self, d: [f64; 2]) {
-        let f = *self.first.get_or_insert(d);
-        self.all |= f[0] * d[1] != f[1] * d[0];
-    }
-
-    fn has(&self, d: [f64; 2]) -> bool {
-        self.all || self.first.is_some_and(|f| f[0] * d[1] == f[1] * d[0])
-    }
+/// A point with supports along `all` of these directions is held along d: by the first one, or all round by two.
+fn is_held(all: &[[f64; 2]], d: [f64; 2]) -> bool {
+    let is_along_first = |d: [f64; 2]| all.first().is_some_and(|f| f[0] * d[1] == f[1] * d[0]);
+    is_along_first(d) || !all.iter().all(|&other| is_along_first(other))
 }
 
 pub(super) fn wrong(what: &'static str, index: usize, problem: &'static str) -> Rejection {
     Rejection::Wrong { what, index, problem }
+}
+
+fn require(
+    holds: bool,
+    what: &'static str,
+    index: usize,
+    problem: &'static str,
+) -> Result<(), Rejection> {
+    if holds { Ok(()) } else { Err(wrong(what, index, problem)) }
 }
 
 /// There are as many entries as there should be.
@@ -133,10 +131,8 @@ fn is_finite(values: &[f64]) -> bool {
 }
 
 fn are_finite(what: &'static str, values: &[[f64; 2]]) -> Result<(), Rejection> {
-    match values.iter().position(|x| !is_finite(x)) {
-        Some(i) => Err(wrong(what, i, "a number is not finite")),
-        None => Ok(()),
-    }
+    let mut all = values.iter().enumerate();
+    all.try_for_each(|(i, x)| require(is_finite(x), what, i, "a number is not finite"))
 }
 
 impl Certificate {
@@ -174,9 +170,7 @@ impl Certificate {
                 }
                 Role::Facing => true,
             };
-            if !numbers {
-                return Err(wrong("edge", i, "expected finite numbers"));
-            }
+            require(numbers, "edge", i, "expected finite numbers")?;
         }
         Ok(())
     }
@@ -190,53 +184,46 @@ impl Certificate {
         }
         are_finite("vertex", &self.vertices)?;
         for (i, cut) in self.cuts.iter().enumerate() {
-            if !(0.0 < cut.at && cut.at < 1.0 && cut.ends.iter().all(|&end| end < vertices)) {
-                return Err(wrong("cut", i, "expected a place between two vertices"));
-            }
+            let lies = 0.0 < cut.at && cut.at < 1.0 && cut.ends.iter().all(|&end| end < vertices);
+            require(lies, "cut", i, "expected a place between two vertices")?;
         }
         let mut elliptic = None;
         for (i, piece) in self.pieces.iter().enumerate() {
-            if !(piece.vertices.iter().all(|&p| p < points)
-                && piece.edges.iter().all(|&e| e < self.edges.len()))
-            {
-                return Err(wrong("triangle", i, "a vertex or an edge does not exist"));
-            }
+            let exists = piece.vertices.iter().all(|&p| p < points)
+                && piece.edges.iter().all(|&e| e < self.edges.len());
+            require(exists, "triangle", i, "a vertex or an edge does not exist")?;
             // Neighbours mostly have one material.
             if elliptic != Some(piece.material) {
                 elliptic = is_elliptic(&piece.material).then_some(piece.material);
             }
-            if !(is_finite(piece.body.as_flattened()) && elliptic.is_some()) {
-                return Err(wrong(
-                    "triangle",
-                    i,
-                    "expected mu > 0, lambda + mu > 0 (a tensor with positive eigenvalues) and a finite body force",
-                ));
-            }
-            if !(piece.oscillation >= 0.0 && piece.oscillation.is_finite()) {
-                return Err(wrong("triangle", i, "expected an oscillation that is not negative"));
-            }
+            require(
+                is_finite(piece.body.as_flattened()) && elliptic.is_some(),
+                "triangle",
+                i,
+                "expected mu > 0, lambda + mu > 0 (a tensor with positive eigenvalues) and a finite body force",
+            )?;
+            let measured = piece.oscillation >= 0.0 && piece.oscillation.is_finite();
+            require(measured, "triangle", i, "expected an oscillation that is not negative")?;
         }
         for (&point, &d) in &self.frames {
-            let held = self.at_own(point).map(|(_, data)| data);
-            if !(matches!(held, Some([Some(_), None])) && has_length(d) && is_oblique(d)) {
-                return Err(wrong("point", point, "expected a value along an oblique direction"));
-            }
+            let is_held = matches!(self.at_own(point), Some((_, [Some(_), None])));
+            let right = is_held && has_length(d) && is_oblique(d);
+            require(right, "point", point, "expected a value along an oblique direction")?;
         }
-        let is_edge = |[a, b]: [usize; 2]| a < points && b < points && a != b;
-        if let Some(i) = self.edges.iter().position(|edge| !is_edge(edge.ends)) {
-            return Err(wrong("edge", i, "expected two different vertices"));
+        for (i, &Edge { ends: [a, b], .. }) in self.edges.iter().enumerate() {
+            let is_edge = a < points && b < points && a != b;
+            require(is_edge, "edge", i, "expected two different vertices")?;
         }
         let mut lifted = BTreeSet::new();
         for (i, &Lift { mut corners, norm }) in self.lifts.iter().enumerate() {
             corners.sort_unstable();
             let distinct = corners[0] < corners[1] && corners[1] < corners[2];
             let measured = norm >= 0.0 && norm.is_finite();
-            if !(distinct && corners[2] < vertices && measured && lifted.insert(corners)) {
-                return Err(wrong("lift", i, "expected a triangle of its own and its norm"));
-            }
+            let right = distinct && corners[2] < vertices && measured && lifted.insert(corners);
+            require(right, "lift", i, "expected a triangle of its own and its norm")?;
         }
-        if let Some(i) = self.polygon.iter().position(|&e| e >= self.edges.len()) {
-            return Err(wrong("edge of the polygon", i, "this edge does not exist"));
+        for (i, &e) in self.polygon.iter().enumerate() {
+            require(e < self.edges.len(), "edge of the polygon", i, "this edge does not exist")?;
         }
         self.check_facing()?;
         self.check_laws()
@@ -266,17 +253,15 @@ impl Certificate {
             let (Some(&other), Some(d)) = (self.facing.get(&e), along.filter(is_right)) else {
                 return Err(wrong("edge", e, "expected two bodies, tied along a direction"));
             };
-            if d[0] != d[1] && pressure[0] != pressure[1] {
-                return Err(wrong("edge", e, VARIES));
-            }
+            let varies = d[0] != d[1] && pressure[0] != pressure[1];
+            require(!varies, "edge", e, VARIES)?;
             for (k, p) in edge.ends.into_iter().enumerate() {
                 let second = self.edges[other].ends[1 - k];
                 let jump = [gap[k], law.offset()[k]];
                 let tie = (second, law.is_bonded(), d[k], jump);
                 seconds.insert(second);
-                if *ties.entry(p).or_insert(tie) != tie {
-                    return Err(wrong("point", p, "is tied to two places"));
-                }
+                let is_one = *ties.entry(p).or_insert(tie) == tie;
+                require(is_one, "point", p, "is tied to two places")?;
             }
         }
         for (&p, &(second, is_bonded, d, jump)) in &ties {
@@ -296,10 +281,9 @@ impl Certificate {
                         && !self.frames.contains_key(&second)
                 }
             };
-            if seconds.contains(&p) || self.frames.contains_key(&p) || !(is_given(0) && is_given(1))
-            {
-                return Err(wrong("point", p, "is tied to another place than what is prescribed"));
-            }
+            let moves = seconds.contains(&p) || self.frames.contains_key(&p);
+            let right = !moves && is_given(0) && is_given(1);
+            require(right, "point", p, "is tied to another place than what is prescribed")?;
         }
         Ok(())
     }
@@ -311,35 +295,30 @@ impl Certificate {
             matches!((a, b), (Some(Role::Contact { along: Some(_), .. }), Some(Role::Facing)))
         };
         for (&e, &other) in &self.facing {
-            if !(self.facing.get(&other) == Some(&e) && (is_pair(e, other) || is_pair(other, e))) {
-                return Err(wrong(
-                    "edge",
-                    e,
-                    "expected contact along a direction and what faces it",
-                ));
-            }
+            let faces =
+                self.facing.get(&other) == Some(&e) && (is_pair(e, other) || is_pair(other, e));
+            require(faces, "edge", e, "expected contact along a direction and what faces it")?;
         }
-        let alone =
-            |(e, edge): (usize, &Edge)| edge.role == Role::Facing && !self.facing.contains_key(&e);
-        match self.edges.iter().enumerate().position(alone) {
-            Some(e) => Err(wrong("edge", e, "faces no edge")),
-            None => Ok(()),
+        for (e, edge) in self.edges.iter().enumerate() {
+            let is_alone = edge.role == Role::Facing && !self.facing.contains_key(&e);
+            require(!is_alone, "edge", e, "faces no edge")?;
         }
+        Ok(())
     }
 
     /// v = u_D at both ends of the edges of Gamma_D, nothing is prescribed elsewhere, and there is no force in a direction
     /// that is not held.
     pub(super) fn check_displacement(&self) -> Result<(), Rejection> {
         let count = self.vertices.len() + self.curved.as_ref().map_or(0, |_| self.cuts.len());
-        let mut held_at = vec![Directions::default(); count];
+        let mut held_at = vec![Vec::new(); count];
         for edge in &self.edges {
             for point in edge.ends {
                 let Some(at) = held_at.get_mut(point) else { continue };
                 match edge.role {
                     Role::Held(held, _) => {
-                        (0..2).filter(|&c| held[c]).for_each(|c| at.add(AXES[c]));
+                        at.extend((0..2).filter(|&c| held[c]).map(|c| AXES[c]));
                     }
-                    Role::Supported { along, .. } => at.add(along),
+                    Role::Supported { along, .. } => at.push(along),
                     _ => {}
                 }
             }
@@ -348,16 +327,15 @@ impl Certificate {
             let Some((_, data)) = self.at_own(point) else { continue };
             let frame = self.frames.get(&point);
             let axes = frame.map_or(AXES, |&d| [d, d]);
-            if (0..2).any(|c| data[c].is_some() && !held.has(axes[c])) {
-                return Err(wrong("point", point, "a prescribed value off Gamma_D"));
-            }
+            let is_right = (0..2).all(|c| data[c].is_none() || is_held(held, axes[c]));
+            require(is_right, "point", point, "a prescribed value off Gamma_D")?;
         }
         for (e, edge) in self.edges.iter().enumerate() {
             match edge.role {
                 Role::Held(held, force) => {
-                    if (0..2).any(|c| !held[c] && (force[0][c] != 0.0 || force[1][c] != 0.0)) {
-                        return Err(wrong("edge", e, "a force where nothing is held"));
-                    }
+                    let pulls = |c: usize| force[0][c] != 0.0 || force[1][c] != 0.0;
+                    let is_free = (0..2).any(|c| !held[c] && pulls(c));
+                    require(!is_free, "edge", e, "a force where nothing is held")?;
                     for point in edge.ends {
                         self.check_components(e, point, held)?;
                     }
@@ -382,10 +360,8 @@ impl Certificate {
         }
         for component in (0..2).filter(|&c| held[c]) {
             let (found, expected) = (v[component], data[component].ok_or_else(missing)?);
-            if expected != found {
-                let at = Prescribed { is_between: false, index: point, component: Some(component) };
-                return Err(Rejection::NotPrescribed { at, found, expected });
-            }
+            let at = Prescribed { is_between: false, index: point, component: Some(component) };
+            check_value(found == expected, at, found, expected)?;
         }
         Ok(())
     }
@@ -422,13 +398,11 @@ impl Certificate {
             let is_held = matches!(edge.role, Role::Held(..));
             for component in 0..2 {
                 let (found, expected) = (bulge[component], data[component]);
-                if !held[component] && expected != 0.0 {
-                    return Err(wrong("edge", e, "a bulge of data where there are none"));
-                }
-                if is_held && held[component] && found != expected {
-                    let at = Prescribed { is_between: true, index: e, component: Some(component) };
-                    return Err(Rejection::NotPrescribed { at, found, expected });
-                }
+                let is_data = held[component] || expected == 0.0;
+                require(is_data, "edge", e, "a bulge of data where there are none")?;
+                let at = Prescribed { is_between: true, index: e, component: Some(component) };
+                let is_free = !(is_held && held[component]);
+                check_value(is_free || found == expected, at, found, expected)?;
             }
         }
         Ok(())
@@ -442,27 +416,21 @@ impl Certificate {
                 let e = piece.edges[local];
                 let seen = [piece.vertices[(local + 1) % 3], piece.vertices[(local + 2) % 3]];
                 let [a, b] = self.edges[e].ends;
-                let side = if seen == [a, b] {
-                    0
-                } else if seen == [b, a] {
-                    1
-                } else {
-                    return Err(wrong("triangle", t, "one of its edges joins other vertices"));
-                };
-                if owners[e][side].replace(t).is_some() {
-                    return Err(wrong("edge", e, "two triangles on the same side"));
-                }
+                let other = || wrong("triangle", t, "one of its edges joins other vertices");
+                let side = [[a, b], [b, a]].iter().position(|ends| seen == *ends);
+                let side = side.ok_or_else(other)?;
+                let is_second = owners[e][side].replace(t).is_some();
+                require(!is_second, "edge", e, "two triangles on the same side")?;
             }
         }
         for (e, (owner, edge)) in owners.iter().zip(&self.edges).enumerate() {
             let inner = matches!(edge.role, Role::Inner(_));
-            if owner[0].is_none() || owner[1].is_some() != inner {
-                return Err(wrong(
-                    "edge",
-                    e,
-                    "expected two triangles at an inner edge, one on the left at others",
-                ));
-            }
+            require(
+                owner[0].is_some() && owner[1].is_some() == inner,
+                "edge",
+                e,
+                "expected two triangles at an inner edge, one on the left at others",
+            )?;
         }
         Ok(owners)
     }
@@ -472,25 +440,17 @@ impl Certificate {
 mod tests {
     use super::*;
     use crate::certificate::Cut;
-    use crate::certificate::Piece;
-    use crate::kernel::Plane;
+    use crate::certificate::tests::piece;
 
     #[test]
     fn a_cut_lies_between_its_ends() {
-        let piece = Piece {
-            vertices: [0, 1, 2],
-            edges: [0; 3],
-            material: Material::lame(1.0, 1.0, Plane::Strain),
-            body: [[0.0; 2]; 3],
-            oscillation: 0.0,
-        };
         let answer = |at: f64| {
             let certificate = Certificate {
                 vertices: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
                 displacement: vec![[0.0; 2]; 3],
                 prescribed: vec![[None; 2]; 3],
                 cuts: vec![Cut { ends: [0, 1], at }],
-                pieces: vec![piece],
+                pieces: vec![piece([0, 1, 2], [0; 3], 1.0)],
                 ..Certificate::default()
             };
             certificate.check_shape()
@@ -507,17 +467,12 @@ mod tests {
 
     #[test]
     fn a_point_is_held_all_round_by_directions_that_are_neither_one_nor_opposite() {
-        let of = |directions: &[[f64; 2]]| {
-            let mut all = Directions::default();
-            directions.iter().for_each(|&d| all.add(d));
-            all
-        };
         for again in [[3.0, 4.0], [-3.0, -4.0], [6.0, 8.0]] {
-            let held = of(&[[3.0, 4.0], again]);
-            assert!(held.has([-1.5, -2.0]) && !held.has([1.0, 0.0]) && !held.has([4.0, 3.0]));
+            let held = |d| is_held(&[[3.0, 4.0], again], d);
+            assert!(held([-1.5, -2.0]) && !held([1.0, 0.0]) && !held([4.0, 3.0]));
         }
         // Controls: another direction holds it all round, and none does not.
-        assert!(of(&[[3.0, 4.0], [-3.0, -4.0], [4.0, 3.0]]).has([1.0, 0.0]));
-        assert!(!of(&[]).has([1.0, 0.0]));
+        assert!(is_held(&[[3.0, 4.0], [-3.0, -4.0], [4.0, 3.0]], [1.0, 0.0]));
+        assert!(!is_held(&[], [1.0, 0.0]));
     }
 }

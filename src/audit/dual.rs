@@ -151,7 +151,7 @@ struct Pair<S> {
 /// The resultant of tractions on the edges of a triangle, to twice the precision of doubles: what tractions that balance to
 /// rounding leave is then known by far better than rounding.
 fn resultant(triangle: &Triangle<Ball>, forces: [[Vector2<Ball>; 2]; 3]) -> Wrench<Ball> {
-    let precise = |v: Vector2<Ball>| v.map(|x| PreciseBall::around(x.centre().into(), x.radius()));
+    let precise = |v: Vector2<Ball>| v.map(PreciseBall::from);
     let triangle = Triangle { vertices: triangle.vertices.map(precise) };
     let loads = Loads { forces: forces.map(|ends| ends.map(precise)), body: [Vector2::zeros(); 3] };
     let wrench = loads.resultant(&triangle).about(triangle.vertices[0]);
@@ -165,15 +165,8 @@ fn resultant(triangle: &Triangle<Ball>, forces: [[Vector2<Ball>; 2]; 3]) -> Wren
 
 /// Vectors in doubles, and how far a component may be from them.
 fn in_doubles(vectors: [Vector2<Ball>; 2]) -> ([Vector2<f64>; 2], f64) {
-    let mut off = 0.0_f64;
-    let values = vectors.map(|v| {
-        v.map(|x| {
-            let (value, radius) = (x.centre(), x.radius());
-            off = off.max(radius);
-            value
-        })
-    });
-    (values, off)
+    let radii = vectors.iter().flatten().map(|x| x.radius());
+    (vectors.map(|v| v.map(Ball::centre)), radii.fold(0.0, f64::max))
 }
 
 /// The work on a gap of a traction on an edge that is as much as `off` at each of its ends, with 20 times the integrals of the gap with
@@ -290,23 +283,19 @@ impl<S: Enclosing> Forces<'_, S> {
         let missed = self.all_missed(&pair.w, target, cover)?;
         let point = Ball::point;
         let middle = middle.ball() + beside + product / Ball::from(2);
-        let force = point(cover.map_or(0.0, Cover::force));
         let loose = point(2.0 * self.loose) * (norm + eta / Ball::from(2));
         let factors = [0, 1].map(|side| most[side].max(missed.open[side]));
         let away = |side: usize| {
             let k = factors[side];
-            let covered = point(missed.covered[side]) * force;
             if k.is_finite() {
-                (reach(eta, point(k), self.mean) + covered + loose).upper()
+                (reach(eta, point(k), self.mean) + missed.covered[side] + loose).upper()
             } else {
                 f64::INFINITY
             }
         };
         let ends = [(middle - point(away(0))).lower(), (middle + point(away(1))).upper()];
-        let between = [
-            if ends[0].is_nan() { f64::NEG_INFINITY } else { ends[0] },
-            if ends[1].is_nan() { f64::INFINITY } else { ends[1] },
-        ];
+        // An end that is NaN is infinite.
+        let between = [ends[0].max(f64::NEG_INFINITY), ends[1].min(f64::INFINITY)];
         Ok(ByPair { between, shares, factors })
     }
 }

@@ -17,7 +17,9 @@ use std::fmt::Display;
 use nalgebra::Vector2;
 
 use super::balanced::{Balanced, friction};
-use super::certificate::{Certificate, Edge, Law, Piece, Role, Shape, Tied, exactly, is_oblique};
+use super::certificate::{
+    Certificate, Edge, Law, Piece, Role, Shape, Tied, Trace, exactly, is_oblique,
+};
 use super::checks::{Rejection, length};
 use super::dual::{Dual, WrongPair};
 use super::proof::Proof;
@@ -53,11 +55,7 @@ impl Mean {
 
 /// The Bernstein coefficients of w . d on an edge, for w with these values at the ends and this bulge in the middle, and d
 /// affine.
-pub(crate) fn along<S: Enclosing>(
-    w: [Vector2<S>; 2],
-    bulge: Vector2<S>,
-    d: [Vector2<S>; 2],
-) -> [S; 4] {
+pub(crate) fn along<S: Enclosing>((w, bulge): Trace<S>, d: [Vector2<S>; 2]) -> [S; 4] {
     let (two, three) = (S::from(2), S::from(3));
     let middle = (w[0] + w[1]) / two + bulge * two;
     [
@@ -95,13 +93,17 @@ impl Certificate {
     }
 
     /// The direction of contact on an edge of Gamma_C, at both ends.
-    pub fn directions<S: Enclosing>(&self, e: usize, points: &[Vector2<S>]) -> [Vector2<S>; 2] {
+    pub(crate) fn directions<S: Enclosing>(
+        &self,
+        e: usize,
+        points: &[Vector2<S>],
+    ) -> [Vector2<S>; 2] {
         if let Role::Contact { along: Some(d), .. } = self.edges[e].role {
             return d.map(exactly);
         }
         let [start, end] = self.edges[e].ends.map(|p| points[p]);
         let edge = end - start;
-        let is_zero = |x: S| x.lower() == 0.0 && x.upper() == 0.0;
+        let is_zero = |x: S| x.ends() == [0.0; 2];
         // Along an axis it is known exactly.
         let sign = |x: S| S::from(if x.is_positive() { 1 } else { -1 });
         let zero = S::from(0);
@@ -120,9 +122,7 @@ impl Certificate {
         let Role::Contact { gap, .. } = self.edges[e].role else { return [S::from(0); 4] };
         let bulge = self.curved.as_ref().map_or(0.0, |curved| curved.data[e][0]);
         let g = elevated(gap.map(S::exactly), S::exactly(bulge));
-        let (v, bulge) = self.jump(e, &state.v);
-        let bulge = bulge.unwrap_or_else(Vector2::zeros);
-        let v = along(v, bulge, self.directions(e, &state.points));
+        let v = along(self.jump(e, &state.v), self.directions(e, &state.points));
         [0, 1, 2, 3].map(|k| g[k] - v[k])
     }
 }
@@ -251,8 +251,8 @@ impl Evidence {
 #[expect(missing_docs, reason = "the message of each variant says what it is")]
 #[non_exhaustive]
 pub enum WrongLifting {
-    #[error("w has {found} entries; expected {expected}")]
-    Length { found: usize, expected: usize },
+    #[error(transparent)]
+    Length(#[from] Rejection),
     #[error("edge {edge}: w is not what it should be on a part of the boundary that is held")]
     OnSupport { edge: usize },
     #[error(
@@ -274,19 +274,12 @@ pub struct Cover {
     pub between: [f64; 2],
 }
 
-impl Cover {
-    /// An upper bound of R(w0).
-    pub(crate) fn force(&self) -> f64 {
-        self.between[1]
-    }
-}
-
-/// Bounds of omega from above and below: times g - v_n, and times w0_n; and of int s |chi|.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// What omega costs from below and from above: bounds of it times g - v_n, and R(w0) times those times w0_n; and int s |chi|.
+#[derive(Clone, Copy)]
 pub(crate) struct Missed {
     pub(crate) open: [f64; 2],
-    pub(crate) covered: [f64; 2],
-    pub(crate) dragged: f64,
+    pub(crate) covered: [Ball; 2],
+    dragged: f64,
 }
 
 /// A certificate whose triangles are in equilibrium, with what its data and its bound are worth for forces.
@@ -294,13 +287,13 @@ pub struct Forces<'a, S> {
     /// The certificate.
     pub certificate: &'a Certificate,
     /// The certificate in equilibrium.
-    pub state: &'a Balanced<S>,
+    pub(crate) state: &'a Balanced<S>,
     /// The boundary of each edge.
     pub of: &'a [Option<usize>],
     /// M
-    pub mean: Mean,
+    pub(crate) mean: Mean,
     /// The error of L(w) and a(v, w) for each unit of |w|_a, as data oscillate.
-    pub loose: f64,
+    pub(crate) loose: f64,
     unbalanced: Shape<S>,
 }
 
@@ -452,20 +445,9 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         }
     }
 
-    /// w has a value for each vertex and, if it is quadratic, for each cut and each edge.
-    fn check_lengths(&self, w: &Lifting) -> Result<(), WrongLifting> {
-        let same = |found: usize, expected: usize| {
-            if found == expected { Ok(()) } else { Err(WrongLifting::Length { found, expected }) }
-        };
-        same(w.vertices.len(), self.certificate.vertices.len())?;
-        let Some([at_cuts, beyond]) = &w.beyond else { return Ok(()) };
-        same(at_cuts.len(), self.certificate.cuts.len())?;
-        same(beyond.len(), self.certificate.edges.len())
-    }
-
-    /// The displacement of a lifting on the triangles of the certificate.
-    pub fn shape(&self, w: &Lifting, target: ForceTarget) -> Result<Shape<S>, WrongLifting> {
-        self.check_lengths(w)?;
+    /// The displacement of a lifting on the triangles of the certificate, verified on Gamma_D.
+    fn shape(&self, w: &Lifting, target: ForceTarget) -> Result<Shape<S>, WrongLifting> {
+        self.check_supports(w, target)?;
         let certificate = self.certificate;
         let vertices = certificate.vertices.len();
         let mut points: Vec<Vector2<S>> = w.vertices.iter().map(|&w| exactly(w)).collect();
@@ -476,7 +458,7 @@ impl<'a, S: Enclosing> Forces<'a, S> {
                 if frames.get(&p) != Some(&d) {
                     continue;
                 }
-                let (value, d) = (self.on_support(e, p, target), exactly::<S>(d));
+                let (value, d) = (self.motion(e, p, target), exactly::<S>(d));
                 points[p] = points[p] - d * ((points[p] - value).dot(&d) / d.dot(&d));
             }
         }
@@ -515,9 +497,7 @@ impl<'a, S: Enclosing> Forces<'a, S> {
                 let (own, there) = (w.points[p], w.points[certificate.edges[other].ends[1 - k]]);
                 let given = certificate.is_given(p);
                 let tied = law.tie((own, given), there, d[k], jump);
-                let same = |c: usize| {
-                    tied[c].lower() == own[c].lower() && tied[c].upper() == own[c].upper()
-                };
+                let same = |c: usize| tied[c].ends() == own[c].ends();
                 if (0..2).any(|c| given[c] && !same(c)) {
                     return Err(WrongLifting::OnSupport { edge });
                 }
@@ -552,13 +532,8 @@ impl<'a, S: Enclosing> Forces<'a, S> {
             return S::from(0);
         };
         let ([a, b], bulge) = certificate.jump(e, w);
-        let motion = |p: usize| {
-            let motion = || target.motion.at(self.state.points[p]);
-            self.is_meant(e, target).then(motion).flatten().unwrap_or_else(Vector2::zeros)
-        };
-        let [r, s] = certificate.edges[e].ends.map(motion);
-        let missed = ([r - a, s - b], bulge.map(|bulge| -bulge));
-        let across = certificate.across(e, missed, &self.state.points);
+        let [r, s] = certificate.edges[e].ends.map(|p| self.motion(e, p, target));
+        let across = certificate.across(e, ([r - a, s - b], -bulge), &self.state.points);
         friction(across, [0.0; 2], bound) / S::from(2)
     }
 
@@ -575,17 +550,20 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         target.boundary.is_none_or(|boundary| self.of[e] == Some(boundary))
     }
 
-    /// The value prescribed for w at vertex `p` of edge `e` of Gamma_D.
-    fn on_support(&self, e: usize, p: usize, target: ForceTarget) -> Vector2<S> {
-        let motion = || target.motion.at(exactly(self.certificate.vertices[p]));
-        let motion = self.is_meant(e, target).then(motion).flatten();
+    /// The rigid motion at point `p` of edge `e`, where one is asked for: the value of w there if the edge is one of Gamma_D.
+    fn motion(&self, e: usize, p: usize, target: ForceTarget) -> Vector2<S> {
+        let motion = target.motion.at(self.state.points[p]).filter(|_| self.is_meant(e, target));
         motion.unwrap_or_else(Vector2::zeros)
     }
 
-    /// Verifies w on Gamma_D.
+    /// Verifies w on Gamma_D, and that it has a value for each vertex and, if it is quadratic, for each cut and each edge.
     fn check_supports(&self, w: &Lifting, target: ForceTarget) -> Result<(), WrongLifting> {
-        self.check_lengths(w)?;
         let certificate = self.certificate;
+        length("w", w.vertices.len(), certificate.vertices.len())?;
+        if let Some([at_cuts, beyond]) = &w.beyond {
+            length("w", at_cuts.len(), certificate.cuts.len())?;
+            length("w", beyond.len(), certificate.edges.len())?;
+        }
         for (edge, Edge { ends, role }) in certificate.edges.iter().enumerate() {
             let (held, oblique) = match *role {
                 Role::Held(held, _) => (held, None),
@@ -593,15 +571,13 @@ impl<'a, S: Enclosing> Forces<'a, S> {
                 Role::Supported { along: d, .. } => (d.map(|d| d != 0.0), None),
                 _ => continue,
             };
-            let is =
-                |value: f64, expected: S| expected.lower() == value && expected.upper() == value;
             for p in ends.iter().flat_map(|&p| self.bases(p)) {
                 let framed = certificate.frames.get(&p);
-                let expected = self.on_support(edge, p, target);
+                let expected = self.motion(edge, p, target).map(S::ends);
                 let right = match (framed, oblique) {
                     (Some(frame), Some(d)) => *frame == d,
                     (Some(_), None) => false,
-                    (None, _) => (0..2).all(|c| !held[c] || is(w.vertices[p][c], expected[c])),
+                    (None, _) => (0..2).all(|c| !held[c] || expected[c] == [w.vertices[p][c]; 2]),
                 };
                 if !right {
                     return Err(WrongLifting::OnSupport { edge });
@@ -618,7 +594,7 @@ impl<'a, S: Enclosing> Forces<'a, S> {
     }
 
     /// Encloses L(w) - int m : eps(w) + int |sigma_n| omega.
-    fn enclose(&self, w: &Shape<S>, missed: Missed, cover: Option<&Cover>) -> [f64; 2] {
+    fn enclose(&self, w: &Shape<S>, missed: Missed) -> [f64; 2] {
         let (certificate, state) = (self.certificate, self.state);
         // Half of int f . w is in int tau : eps(w) / 2, as is half of the work of all tractions.
         let mut middle = self.within(w) / S::from(2);
@@ -633,13 +609,10 @@ impl<'a, S: Enclosing> Forces<'a, S> {
             .fold(Ball::from(0), |sum, (piece, triangle)| sum + energy(w, piece, triangle));
         let point = Ball::point;
         let norm = point(square.sqrt().upper());
-        let force = point(cover.map_or(0.0, Cover::force));
+        let loose = point(self.loose) * norm;
         let away = |side: usize| {
-            let covered = point(missed.covered[side]) * force;
-            let loose = point(self.loose) * norm;
-            let of_friction = point(missed.dragged);
-            (reach(norm, point(missed.open[side]), self.mean) + covered + of_friction + loose)
-                .upper()
+            let opened = reach(norm, point(missed.open[side]), self.mean);
+            (opened + missed.covered[side] + point(missed.dragged) + loose).upper()
         };
         let below = point(middle.lower()) - point(away(0));
         let above = point(middle.upper()) + point(away(1));
@@ -652,14 +625,12 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         let ends = certificate.edges[e].ends;
         let d = certificate.directions(e, &self.state.points);
         let ([a, b], bulge) = certificate.jump(e, w);
-        let bulge = bulge.unwrap_or_else(Vector2::zeros);
-        let off = |x: S| [x.lower(), x.upper()];
         if !self.is_meant(e, target) {
-            return along([-a, -b], -bulge, d).map(off);
+            return along(([-a, -b], -bulge), d).map(S::ends);
         }
         let places = ends.map(|p| self.state.points[p]);
         if let (Some(r), Some(s)) = (target.motion.at(places[0]), target.motion.at(places[1])) {
-            return along([r - a, s - b], -bulge, d).map(off);
+            return along(([r - a, s - b], -bulge), d).map(S::ends);
         }
         let one = S::from(1);
         let constant = d[0] == d[1];
@@ -669,12 +640,12 @@ impl<'a, S: Enclosing> Forces<'a, S> {
                 let [a, b, bulge] = [a, b, bulge].map(|w| component(w, d[0]));
                 elevated([phi[0] - a, phi[1] - b], -bulge)
             } else {
-                let (phi, w) = (elevated(phi, S::from(0)), along([a, b], bulge, d));
+                let (phi, w) = (elevated(phi, S::from(0)), along(([a, b], bulge), d));
                 [0, 1, 2, 3].map(|k| phi[k] - w[k])
             }
         };
         let Motion::Along(Some(ramp)) = target.motion else {
-            return missed([one; 2]).map(off);
+            return missed([one; 2]).map(S::ends);
         };
         let [p, q] = places.map(|x| x[ramp.axis]);
         let phi = [p, q].map(|x| ramp.at(x));
@@ -685,7 +656,7 @@ impl<'a, S: Enclosing> Forces<'a, S> {
                 (S::exactly(kink), (p.lower().min(q.lower()), p.upper().max(q.upper())));
             if inside.0 < kink && kink < inside.1 {
                 let s = (x - p) / (q - p);
-                let [low, high] = off(ramp.at(x) - (phi[0] + (phi[1] - phi[0]) * s));
+                let [low, high] = (ramp.at(x) - (phi[0] + (phi[1] - phi[0]) * s)).ends();
                 beyond = [beyond[0].min(low), beyond[1].max(high)];
                 // Too short to tell: a weight is between 0 and 1.
                 if !(low.is_finite() && high.is_finite()) {
@@ -694,10 +665,10 @@ impl<'a, S: Enclosing> Forces<'a, S> {
             }
         }
         if beyond == [0.0; 2] {
-            return missed(phi).map(off);
+            return missed(phi).map(S::ends);
         }
         missed(phi).map(|omega| {
-            let [low, high] = off(omega).map(Ball::point);
+            let [low, high] = omega.ends().map(Ball::point);
             [(low + Ball::point(beyond[0])).lower(), (high + Ball::point(beyond[1])).upper()]
         })
     }
@@ -715,14 +686,16 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         target: ForceTarget,
         cover: Option<&Cover>,
     ) -> Result<Missed, WrongLifting> {
-        let mut missed = Missed { dragged: self.all_dragged(w, target), ..Missed::default() };
+        let (mut open, mut covered) = ([0.0_f64; 2], [0.0_f64; 2]);
+        // R(w0) from above.
+        let force = cover.map_or(0.0, |cover| cover.between[1]);
         for edge in self.contact() {
             let off = self.missed(edge, w, target);
             if off == [[0.0; 2]; 4] {
                 continue;
             }
             let gap = self.certificate.gap(edge, self.state).map(|g| g.lower());
-            let covered = cover.and_then(|cover| cover.along[edge]);
+            let w0 = cover.and_then(|cover| cover.along[edge]);
             let largest = |sizes: [f64; 4], side: usize| {
                 let sizes = sizes
                     .into_iter()
@@ -732,41 +705,40 @@ impl<'a, S: Enclosing> Forces<'a, S> {
             };
             for side in 0..2 {
                 let by_gap = largest(gap, side);
-                let by_cover = covered.map_or(f64::INFINITY, |covered| largest(covered, side));
+                let by_cover = w0.map_or(f64::INFINITY, |w0| largest(w0, side));
                 // What is cheaper.
-                let costs = [by_gap * self.mean.square, by_cover * cover.map_or(0.0, Cover::force)];
+                let costs = [by_gap * self.mean.square, by_cover * force];
                 if by_gap.is_finite() && !(by_cover.is_finite() && costs[1] <= costs[0]) {
-                    missed.open[side] = missed.open[side].max(by_gap);
+                    open[side] = open[side].max(by_gap);
                 } else if by_cover.is_finite() {
-                    missed.covered[side] = missed.covered[side].max(by_cover);
+                    covered[side] = covered[side].max(by_cover);
                 } else {
                     let off = off.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
                     return Err(WrongLifting::OnContact { edge, off });
                 }
             }
         }
-        Ok(missed)
+        let covered = covered.map(|most| Ball::point(most) * Ball::point(force));
+        Ok(Missed { open, covered, dragged: self.all_dragged(w, target) })
     }
 
     /// w0 of the module's head, from a lifting that is 1 along contact where it can be.
     pub fn cover(&self, w: &Lifting) -> Result<Cover, WrongLifting> {
         let target = ForceTarget { boundary: None, motion: Motion::Along(None) };
         // On Gamma_D a motion along contact is 0.
-        self.check_supports(w, target)?;
         let shape = self.shape(w, target)?;
         let mut along_all = vec![None; self.certificate.edges.len()];
         for e in self.contact() {
-            let (w, bulge) = self.certificate.jump(e, &shape);
-            let bulge = bulge.unwrap_or_else(Vector2::zeros);
             let d = self.certificate.directions(e, &self.state.points);
-            let w = along(w, bulge, d).map(|w| w.lower());
+            let w = along(self.certificate.jump(e, &shape), d).map(S::lower);
             along_all[e] = w.iter().all(|&w| w >= 0.0).then_some(w);
             if along_all[e].is_none() {
                 return Err(WrongLifting::OnContact { edge: e, off: 1.0 });
             }
         }
-        let missed = Missed { dragged: self.all_dragged(&shape, target), ..Missed::default() };
-        let between = self.enclose(&shape, missed, None);
+        let dragged = self.all_dragged(&shape, target);
+        let missed = Missed { open: [0.0; 2], covered: [Ball::from(0); 2], dragged };
+        let between = self.enclose(&shape, missed);
         Ok(Cover { along: along_all, between })
     }
 
@@ -777,10 +749,9 @@ impl<'a, S: Enclosing> Forces<'a, S> {
         cover: Option<&Cover>,
     ) -> Vec<Result<[f64; 2], WrongLifting>> {
         let between = |(target, w): &(ForceTarget, Lifting)| {
-            self.check_supports(w, *target)?;
             let shape = self.shape(w, *target)?;
             let missed = self.all_missed(&shape, *target, cover)?;
-            let ends = self.enclose(&shape, missed, cover);
+            let ends = self.enclose(&shape, missed);
             let is_finite = ends.iter().all(|end| end.is_finite());
             if is_finite { Ok(ends) } else { Err(WrongLifting::NotFinite) }
         };

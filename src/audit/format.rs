@@ -124,11 +124,11 @@ impl Audit {
             let name = target.boundary.and_then(|k| forces.names.get(k));
             let name = name.map_or("", String::as_str);
             let (what, ends) = match target.motion {
-                Motion::Along(None) => ("force".to_owned(), [low_along, high]),
-                Motion::Along(Some(Ramp { axis, between: [from, to], width })) => {
-                    let along = ["x", "y"][axis];
-                    let words = format!("force {along} {from} {to} ramp {width}");
-                    (words, [low_along, high])
+                Motion::Along(ramp) => {
+                    let words = |Ramp { axis, between: [from, to], width }| {
+                        format!("force {} {from} {to} ramp {width}", ["x", "y"][axis])
+                    };
+                    (ramp.map_or("force".to_owned(), words), [low_along, high])
                 }
                 Motion::Axis(c) => (["force x", "force y"][c].to_owned(), [-high, -low]),
                 Motion::Turn => ("moment".to_owned(), [-high, -low]),
@@ -437,73 +437,47 @@ pub fn is_named(edge: &Edge) -> bool {
 }
 
 /// A number or numbers in words of eight bytes each, least significant first.
-pub trait Words: Sized {
-    /// Adds `f` for each double, `n` for each whole number.
-    fn name(name: &mut String);
+pub trait Words: Copy {
+    /// With 0 for each word.
+    const ZERO: Self;
 
-    /// Adds the words themselves.
-    fn write(&self, bytes: &mut Vec<u8>);
-
-    /// Takes as many words as it needs.
-    fn read(words: &mut impl Iterator<Item = u64>) -> Self;
+    /// Puts others in place of its words: `word` gets `f` for a double and `n` for a whole number, and the word.
+    #[must_use]
+    fn replaced(self, word: &mut impl FnMut(char, u64) -> u64) -> Self;
 }
 
 impl Words for f64 {
-    fn name(name: &mut String) {
-        name.push('f');
-    }
+    const ZERO: f64 = 0.0;
 
-    fn write(&self, bytes: &mut Vec<u8>) {
-        bytes.extend_from_slice(&self.to_bits().to_le_bytes());
-    }
-
-    fn read(words: &mut impl Iterator<Item = u64>) -> f64 {
-        f64::from_bits(words.next().unwrap_or_default())
+    fn replaced(self, word: &mut impl FnMut(char, u64) -> u64) -> f64 {
+        f64::from_bits(word('f', self.to_bits()))
     }
 }
 
 impl Words for usize {
-    fn name(name: &mut String) {
-        name.push('n');
-    }
-
-    fn write(&self, bytes: &mut Vec<u8>) {
-        bytes.extend_from_slice(&(*self as u64).to_le_bytes());
-    }
+    const ZERO: usize = 0;
 
     /// A number that names nothing is as good as the largest.
-    fn read(words: &mut impl Iterator<Item = u64>) -> usize {
-        usize::try_from(words.next().unwrap_or_default()).unwrap_or(usize::MAX)
+    fn replaced(self, word: &mut impl FnMut(char, u64) -> u64) -> usize {
+        usize::try_from(word('n', self as u64)).unwrap_or(usize::MAX)
     }
 }
 
 impl<T: Words, const N: usize> Words for [T; N] {
-    fn name(name: &mut String) {
-        (0..N).for_each(|_| T::name(name));
-    }
+    const ZERO: [T; N] = [T::ZERO; N];
 
-    fn write(&self, bytes: &mut Vec<u8>) {
-        self.iter().for_each(|x| x.write(bytes));
-    }
-
-    fn read(words: &mut impl Iterator<Item = u64>) -> [T; N] {
-        std::array::from_fn(|_| T::read(words))
+    fn replaced(self, word: &mut impl FnMut(char, u64) -> u64) -> [T; N] {
+        self.map(|x| x.replaced(word))
     }
 }
 
 macro_rules! words_of_tuple {
     ($($kind:ident $place:tt),+) => {
         impl<$($kind: Words),+> Words for ($($kind,)+) {
-            fn name(name: &mut String) {
-                $($kind::name(name);)+
-            }
+            const ZERO: Self = ($($kind::ZERO,)+);
 
-            fn write(&self, bytes: &mut Vec<u8>) {
-                $(self.$place.write(bytes);)+
-            }
-
-            fn read(words: &mut impl Iterator<Item = u64>) -> Self {
-                ($($kind::read(words),)+)
+            fn replaced(self, word: &mut impl FnMut(char, u64) -> u64) -> Self {
+                ($(self.$place.replaced(word),)+)
             }
         }
     };
@@ -515,7 +489,10 @@ words_of_tuple!(A 0, B 1, C 2, D 3);
 /// The letters of all words of an entry.
 pub fn name_of<T: Words>() -> String {
     let mut name = String::new();
-    T::name(&mut name);
+    let _ = T::ZERO.replaced(&mut |letter, word| {
+        name.push(letter);
+        word
+    });
     name
 }
 
@@ -554,8 +531,11 @@ impl<'a> ArrayReader<'a> {
         if said != words {
             return Err(format!("{name:?} has entries of the words {said:?}; expected {words:?}"));
         }
-        let entries = array.chunks_exact(words.len());
-        Ok(entries.map(|entry| T::read(&mut entry.iter().map(|word| u64::from_le_bytes(*word)))))
+        let read = |entry: &[[u8; 8]]| {
+            let mut bytes = entry.iter().copied();
+            T::ZERO.replaced(&mut |_, _| bytes.next().map_or(0, u64::from_le_bytes))
+        };
+        Ok(array.chunks_exact(words.len()).map(read))
     }
 
     /// The entries of an array in lists of so many each.

@@ -31,8 +31,7 @@ pub(super) fn along_the_normal<S: Enclosing>(
     [p, q]: [S; 2],
     length: impl Fn() -> S,
 ) -> OnContact<S> {
-    let is_zero = |x: S| x.lower() == 0.0 && x.upper() == 0.0;
-    let axis = (0..2).find(|&c| is_zero(normal[1 - c]));
+    let axis = (0..2).find(|&c| normal[1 - c].ends() == [0.0; 2]);
     let less_gap = |v: Vector2<S>, gap: f64| match axis {
         _ if gap == 0.0 => v.dot(&normal),
         // Where v is on the obstacle to the last bit, nothing is left.

@@ -136,11 +136,10 @@ impl Certificate {
         double_area: impl Fn(usize) -> S,
         balance: &Equilibrium<S>,
     ) -> Result<(), Rejection> {
-        let size = |x: S| x.upper().max(-x.lower());
         // The sum of the forces' sizes, and the largest component of the edge.
         let on_edge = |(edge, forces): (&Edge, &[Vector2<S>; 2])| {
             let [start, end] = edge.ends.map(|p| place(self, p));
-            let forces: f64 = forces.iter().flatten().copied().map(size).sum();
+            let forces: f64 = forces.iter().flatten().map(|force| force.size()).sum();
             (forces, (end - start).amax())
         };
         let edges: Vec<(f64, f64)> = self.edges.iter().zip(forces).map(on_edge).collect();
@@ -149,7 +148,7 @@ impl Certificate {
             let forces: f64 = of_edges.iter().map(|(forces, _)| forces).sum();
             let reach = of_edges.iter().map(|&(_, reach)| reach).fold(0.0, f64::max);
             let body: f64 = piece.body.iter().flatten().map(|f| f.abs()).sum();
-            let loads = if body == 0.0 { 0.0 } else { body * size(double_area(t)) };
+            let loads = if body == 0.0 { 0.0 } else { body * double_area(t).size() };
             let allowed = IMBALANCE * (forces + loads);
             let Wrench { force, moment, .. } = &balance.resultants[t];
             // Places of cuts are not doubles: what their balls leave open may be balance.

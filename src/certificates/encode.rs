@@ -181,7 +181,13 @@ impl ArrayWriter {
         let words = name_of::<T>();
         let before = self.bytes.len();
         self.bytes.reserve(8 * words.len() * entries.size_hint().0);
-        entries.for_each(|entry| entry.write(&mut self.bytes));
+        let mut write = |_, word: u64| {
+            self.bytes.extend_from_slice(&word.to_le_bytes());
+            word
+        };
+        entries.for_each(|entry| {
+            let _ = entry.replaced(&mut write);
+        });
         let entries = (self.bytes.len() - before) / (8 * words.len());
         if entries > 0 {
             self.arrays.push(Array { name: name.to_owned(), words, entries });

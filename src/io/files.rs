@@ -1,18 +1,18 @@
 //! The files of a run, written together.
 //!
 //! They are first written into a temporary folder of their own inside the output folder, `.signorini-XXXX.tmp` with a random
-//! name, and flushed to disk, each by a thread of its own: most of that is waiting. Then, under a lock of the output folder, the last file of an earlier set (result.json) is removed,
+//! name, and flushed to disk, for a quota or a disk behind a network may refuse them only then. Then, under a lock of the output folder, the last file of an earlier set (result.json) is removed,
 //! each new file is renamed into its place, and the new result.json comes last. So the files beside a result.json belong to
 //! it, whenever a run is stopped and however many run at a time; where there is none, a run is under way or was stopped.
 //!
-//! A run that fails leaves neither files nor new folders. One that is stopped may leave its temporary folder.
+//! A run that is stopped may leave its temporary folder.
 
 use std::collections::hash_map::RandomState;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File};
 use std::hash::{BuildHasher, Hasher};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::thread::{self, JoinHandle};
+use std::thread;
 
 use thiserror::Error;
 
@@ -23,12 +23,9 @@ use crate::quote;
 #[derive(Debug)]
 pub struct Output {
     folder: PathBuf,
-    room: PathBuf,
-    /// The folders that did not exist before, innermost first.
-    made: Vec<PathBuf>,
+    /// The temporary folder, where another program may write, too.
+    pub(crate) room: PathBuf,
     names: Vec<String>,
-    /// The files that are being written to the disk, by their names.
-    writing: Vec<(String, JoinHandle<io::Result<()>>)>,
 }
 
 /// A number that cannot be written.
@@ -72,36 +69,25 @@ impl Output {
     /// Makes the folder, if there is none yet, and the temporary one in it.
     pub fn new(folder: impl Into<PathBuf>) -> Result<Output, Failure> {
         let folder = folder.into();
-        let missing = |path: &&Path| !path.as_os_str().is_empty() && !path.exists();
-        let made = folder.ancestors().take_while(missing).map(Path::to_path_buf).collect();
         let number = RandomState::new().build_hasher().finish();
         let room = folder.join(format!(".signorini-{number:016x}.tmp"));
-        let output = Output { folder, room, made, names: Vec::new(), writing: Vec::new() };
-        match fs::create_dir_all(&output.folder).and_then(|()| fs::create_dir(&output.room)) {
-            Ok(()) => Ok(output),
-            Err(error) => {
-                let (folder, why) = (quote::path(&output.folder), reason(&error));
-                Err(Failure::failed(format!("cannot make the folder {folder}: {why}")))
-            }
-        }
+        let made = fs::create_dir_all(&folder).and_then(|()| fs::create_dir(&room));
+        made.map_err(|error| {
+            let (folder, why) = (quote::path(&folder), reason(&error));
+            Failure::failed(format!("cannot make the folder {folder}: {why}"))
+        })?;
+        Ok(Output { folder, room, names: Vec::new() })
     }
 
-    /// Begins to write the file `name` to the disk, but not yet to its place. The last file of a set is the one that says that the
-    /// set is whole.
+    /// Writes the file `name`, but not yet to its place. The last file of a set is the one that says that the set is whole.
     ///
     /// # Errors
-    /// A failure where its place is a folder; one to write is told by [`Output::publish`].
-    pub fn stage(&mut self, name: &str, bytes: impl Into<Vec<u8>>) -> Result<(), Failure> {
-        let (path, bytes) = (self.room.join(name), bytes.into());
-        self.add(name, |_| Ok(()))?;
-        let write = move || {
-            let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
-            file.write_all(&bytes)?;
-            file.sync_all()
-        };
-        let started = thread::Builder::new().spawn(write);
-        let thread = started.map_err(|error| self.wrong(name, error))?;
-        self.writing.push((name.to_owned(), thread));
+    /// A failure to write it.
+    pub fn stage(&mut self, name: &str, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
+        let file = File::create_new(self.room.join(name));
+        let written = file.and_then(|mut file| file.write_all(bytes.as_ref()));
+        written.map_err(|error| self.wrong(name, error))?;
+        self.adopt(name);
         Ok(())
     }
 
@@ -109,7 +95,7 @@ impl Output {
     pub fn stage_made(
         &mut self,
         file: &'static str,
-        content: Result<impl Into<Vec<u8>>, NotFinite>,
+        content: Result<impl AsRef<[u8]>, NotFinite>,
     ) -> Result<(), Failure> {
         match content {
             Ok(content) => self.stage(file, content),
@@ -117,35 +103,9 @@ impl Output {
         }
     }
 
-    /// The temporary folder, for another program to write to.
-    pub(crate) fn room(&self) -> &Path {
-        &self.room
-    }
-
-    /// Stages a file that another program has written into [`Output::room`].
-    ///
-    /// # Errors
-    /// A failure with the place that the file was to have; also if there is no such file.
-    pub(crate) fn adopt(&mut self, name: &str) -> Result<(), Failure> {
-        self.add(name, |path| match fs::symlink_metadata(path)?.is_file() {
-            true => File::open(path)?.sync_all(),
-            false => Err(io::Error::other("not a regular file")),
-        })
-    }
-
-    /// Adds a file to the set once it is `made` at its path in the temporary folder.
-    fn add(
-        &mut self,
-        name: &str,
-        made: impl FnOnce(&Path) -> io::Result<()>,
-    ) -> Result<(), Failure> {
-        let made = match self.folder.join(name).is_dir() {
-            true => Err(io::ErrorKind::IsADirectory.into()),
-            false => made(&self.room().join(name)),
-        };
-        made.map_err(|error| self.wrong(name, error))?;
+    /// Adds a file to the set that is in the temporary folder.
+    pub(crate) fn adopt(&mut self, name: &str) {
         self.names.push(name.to_owned());
-        Ok(())
     }
 
     fn wrong(&self, name: &str, error: io::Error) -> Failure {
@@ -153,63 +113,54 @@ impl Output {
         Failure::failed(format!("cannot write {path}: {why}"))
     }
 
-    /// Waits for the disk.
-    ///
-    /// # Errors
-    /// A failure where a file cannot be written.
-    pub(crate) fn wait(&mut self) -> Result<(), Failure> {
-        let written = self.writing.drain(..).map(|(name, thread)| (name, thread.join()));
-        for (name, written) in written.collect::<Vec<_>>() {
-            let lost = |_| Err(io::Error::other("writing stopped"));
-            written.unwrap_or_else(lost).map_err(|error| self.wrong(&name, error))?;
-        }
-        Ok(())
-    }
-
     /// Gives all staged files their places, and returns the paths in the order of staging. The files of an earlier run that have
     /// these names go, and those called `stale`, which a reader could take for files of this one.
     ///
     /// # Errors
-    /// A failure, should the system refuse to write a file: then nothing has changed; or to rename one: then the last file of the set is
-    /// not there.
-    pub fn publish(mut self, stale: &[&str]) -> Result<Vec<PathBuf>, Failure> {
-        self.wait()?;
-        // A system without locks takes its chance.
-        let lock = File::open(&self.folder).and_then(|folder| folder.lock().map(|()| folder));
-        let renamed = self.rename_all(stale);
-        drop(lock);
-        renamed?;
-        self.made.clear();
-        Ok(self.names.iter().map(|name| self.folder.join(name)).collect())
-    }
-
-    fn rename_all(&self, stale: &[&str]) -> Result<(), Failure> {
-        let Some((last, others)) = self.names.split_last() else { return Ok(()) };
+    /// A failure, should the disk refuse a file: then nothing has changed; or the system to rename one: then the last file of the set
+    /// is not there.
+    pub fn publish(self, stale: &[&str]) -> Result<Vec<PathBuf>, Failure> {
+        self.flush()?;
+        let Some((last, others)) = self.names.split_last() else { return Ok(Vec::new()) };
         let place = |name: &str| self.folder.join(name);
-        let remove = |name: &str| match fs::symlink_metadata(place(name)) {
-            Ok(found) if !found.is_dir() => {
-                fs::remove_file(place(name)).map_err(|error| self.wrong(name, error))
+        let remove = |name: &str| match fs::remove_file(place(name)) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound && !place(name).is_dir() => {
+                Err(self.wrong(name, error))
             }
             _ => Ok(()),
         };
         let rename = |name: &String| {
-            fs::rename(self.room().join(name), place(name)).map_err(|error| self.wrong(name, error))
+            fs::rename(self.room.join(name), place(name)).map_err(|error| self.wrong(name, error))
         };
+        // To the end of this function; a system without locks takes its chance.
+        let _lock = File::open(&self.folder).and_then(|folder| folder.lock().map(|()| folder));
         remove(last)?;
         let is_stale = |name: &&&str| !self.names.iter().any(|staged| staged == **name);
         stale.iter().filter(is_stale).try_for_each(|name| remove(name))?;
         others.iter().try_for_each(rename)?;
-        rename(last)
+        rename(last)?;
+        Ok(self.names.iter().map(|name| place(name)).collect())
+    }
+
+    /// Hands all files to the disk, each in a thread of its own: it is a matter of waiting.
+    fn flush(&self) -> Result<(), Failure> {
+        let flush = |name| File::options().append(true).open(self.room.join(name))?.sync_all();
+        let lost = |_| Err(io::Error::other("writing stopped"));
+        thread::scope(|scope| {
+            let start = |name| thread::Builder::new().spawn_scoped(scope, move || flush(name));
+            let threads: Vec<_> = self.names.iter().map(|name| (name, start(name))).collect();
+            threads.into_iter().try_for_each(|(name, thread)| {
+                let flushed = thread.and_then(|thread| thread.join().unwrap_or_else(lost));
+                flushed.map_err(|error| self.wrong(name, error))
+            })
+        })
     }
 }
 
-/// Removes the temporary folder, and the new folders of a run that did not come to the end of [`Output::publish`]. What cannot be
-/// removed stays: the failure that led here is the one to report.
+/// Removes the temporary folder. What cannot be removed stays: the failure that led here is the one to report.
 impl Drop for Output {
     fn drop(&mut self) {
-        self.writing.drain(..).for_each(|(_, thread)| drop(thread.join()));
         let _ = fs::remove_dir_all(&self.room);
-        self.made.iter().for_each(|folder| drop(fs::remove_dir(folder)));
     }
 }
 
@@ -259,14 +210,14 @@ mod tests {
     fn a_file_that_cannot_be_written_leaves_the_earlier_run_untouched() {
         let scratch = Scratch::new("earlier");
         fs::write(scratch.0.join("a.txt"), b"earlier").unwrap();
-        fs::create_dir(scratch.0.join("b.txt")).unwrap();
         let mut output = Output::new(&scratch.0).unwrap();
         output.stage("a.txt", "later").unwrap();
-        let error = output.stage("b.txt", "later").unwrap_err();
-        let place = scratch.0.join("b.txt");
-        assert_eq!(error.to_string(), format!("cannot write {}: is a directory", place.display()));
+        let error = output.stage("none/b.txt", "later").unwrap_err();
+        let place = scratch.0.join("none/b.txt");
+        let said = format!("cannot write {}: No such file or directory", place.display());
+        assert_eq!(error.to_string(), said);
         drop(output);
-        assert_eq!(names(&scratch.0), ["a.txt", "b.txt"]);
+        assert_eq!(names(&scratch.0), ["a.txt"]);
         assert_eq!(fs::read(scratch.0.join("a.txt")).unwrap(), b"earlier");
     }
 

@@ -61,12 +61,12 @@ pub struct Failure {
 impl Failure {
     /// The input is wrong.
     pub fn wrong(error: impl Display) -> Failure {
-        Failure { message: error.to_string(), is_wrong: true }
+        Failure::new(true, error)
     }
 
     /// The input may be right, but there is no result of it here: memory or files to open are lacking, or a method fails.
     pub fn failed(error: impl Display) -> Failure {
-        Failure { message: error.to_string(), is_wrong: false }
+        Failure::new(false, error)
     }
 
     /// The one or the other.
@@ -195,18 +195,15 @@ pub(crate) fn reason(error: &io::Error) -> String {
 
 /// Says why a file can't be read, in words that don't depend on the system where that is possible.
 fn unreadable(error: io::Error) -> Failure {
-    // ENFILE and EMFILE, which have no kind.
-    if matches!(error.raw_os_error(), Some(23 | 24)) && cfg!(unix) {
-        return Failure::failed(reason(&error));
-    }
     match error.kind() {
         io::ErrorKind::NotFound => "there is no such file".into(),
         io::ErrorKind::IsADirectory => DIRECTORY.into(),
         io::ErrorKind::PermissionDenied => "there is no permission to read this file".into(),
         io::ErrorKind::OutOfMemory => {
-            Failure::failed("there is not enough memory to read this file".to_owned())
+            Failure::failed("there is not enough memory to read this file")
         }
-        _ => reason(&error).into(),
+        // ENFILE and EMFILE have no kind.
+        _ => Failure::new(!matches!(error.raw_os_error(), Some(23 | 24)), reason(&error)),
     }
 }
 

@@ -84,7 +84,6 @@ pub fn write(
     let continuous = solved.certified.as_ref().and_then(|c| c.as_ref().ok());
     let mut results = results(case, solved, read, extra)?;
     let indicators = continuous.map(|c| c.indicators.as_slice());
-    // The largest file first: the picture is drawn while the disk takes it.
     stage_fields(&mut output, solution, &case.problem, indicators)?;
     let scene = Scene::of(case, solution, &results);
     let picture = draw(std::slice::from_ref(&scene)).unwrap_or_else(|error| {
@@ -102,7 +101,6 @@ pub fn write(
     {
         stage_certificate(&mut output, case, continuous)?;
     }
-    output.wait()?;
     results.seconds.write = start.elapsed().as_secs_f64();
     output.stage_made("result.json", result_json(&results))?;
     Ok(Written { files: output.publish(&FILES)?, results, scene })

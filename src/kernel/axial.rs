@@ -15,14 +15,12 @@ use super::{Element, Material, Scalar, Stress, Triangle};
 
 /// int r f g over a triangle for functions of degree p - 1 in terms of their values at the points: entry (a, b) is that of f at a
 /// and g at b. The other entries are 0.
-pub fn mass<E, S, const N: usize, const M: usize>(radii: [S; 3]) -> [[S; 3]; 3]
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
+pub fn mass<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(
+    radii: [S; 3],
+) -> [[S; 3]; 3] {
     let mut mass = [[S::from(0); 3]; 3];
     if E::POINTS == 1 {
-        mass[0][0] = sum(radii) / S::from(3);
+        mass[0][0] = (radii[0] + radii[1] + radii[2]) / S::from(3);
         return mass;
     }
     for a in 0..3 {
@@ -38,10 +36,7 @@ where
 
 /// int v_r q over a triangle, for q that is 1 at a point and 0 at the others: what each node's v_r counts in it, in thirtieths.
 /// Entries of points that the element does not have are 0.
-pub fn shares<E, const N: usize, const M: usize>() -> [[i32; N]; 3]
-where
-    E: Element<N, M>,
-{
+pub fn shares<E: Element<N, M>, const N: usize, const M: usize>() -> [[i32; N]; 3] {
     let mut shares = [[0; N]; 3];
     if E::POINTS == 1 {
         shares[0] = [10; N];
@@ -61,11 +56,9 @@ where
 }
 
 /// int v_r q for the same q, from v_r at the nodes.
-pub fn means<E, S, const N: usize, const M: usize>(radial: &[S; N]) -> [S; 3]
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
+pub fn means<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(
+    radial: &[S; N],
+) -> [S; 3] {
     shares::<E, N, M>().map(|row| {
         let terms = row.iter().zip(radial).filter(|(share, _)| **share != 0);
         terms.fold(S::from(0), |sum, (&share, &v)| sum + S::from(share) * v) / S::from(30)
@@ -95,20 +88,18 @@ pub fn projected<S: Scalar>(mass: &[[S; 3]; 3], means: [S; 3], points: usize) ->
 }
 
 /// theta(v) at the points, from v_r at the nodes.
-pub fn hoop_strain<E, S, const N: usize, const M: usize>(radii: [S; 3], radial: &[S; N]) -> [S; 3]
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
+pub fn hoop_strain<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(
+    radii: [S; 3],
+    radial: &[S; N],
+) -> [S; 3] {
     projected(&mass::<E, S, N, M>(radii), means::<E, S, N, M>(radial), E::POINTS)
 }
 
 /// The value at the barycentric coordinates `l` of the function of degree p - 1 with these values at the points.
-pub fn value_at<E, S, const N: usize, const M: usize>(at_points: [S; 3], l: [S; 3]) -> S
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
+pub fn value_at<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(
+    at_points: [S; 3],
+    l: [S; 3],
+) -> S {
     if E::POINTS == 1 {
         return at_points[0];
     }
@@ -119,15 +110,11 @@ where
 
 /// The element matrix of a(.,.) = int r sigma(u):eps(v) of a radian, in blocks as those of [`stiffness`](super::element::stiffness).
 /// Exact.
-pub fn stiffness<E, S, const N: usize, const M: usize>(
+pub fn stiffness<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(
     triangle: &Triangle<S>,
     radii: [S; 3],
     material: &Material<S>,
-) -> [[Matrix2<S>; N]; N]
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
+) -> [[Matrix2<S>; N]; N] {
     let barycentric = triangle.barycentric_gradients();
     let area = triangle.double_area() / S::from(2);
     let (zero, thirty) = (S::from(0), S::from(30));
@@ -185,15 +172,11 @@ pub fn weighted<S: Scalar>(
 /// The sharp constant R |T| / |E| of int_E r w^2 <= R int_T r w^2 for w of degree p - 1, with r at the two ends of E and at the
 /// corner opposite: r_E / r_c for P1, with the means of r on the edge and the triangle; for P2 a root of a quadratic, at most 4 and 3
 /// where r is constant.
-pub fn trace_constant<E, S, const N: usize, const M: usize>(
+pub fn trace_constant<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(
     [a, b]: [S; 2],
     c: S,
     root: impl Fn(S) -> S,
-) -> S
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
+) -> S {
     let two = S::from(2);
     if E::DEGREE == 1 {
         return (a + b) / two * S::from(3) / (a + b + c);
@@ -226,43 +209,37 @@ pub fn corner_mass<S: Scalar>(radii: [S; 3]) -> [[S; 3]; 3] {
 /// The amount by which an edge counts more in kappa where the direction of contact turns along it, with r at its ends and `cosine` =
 /// n~ . n~' there: 1 for P1, and 1 + (1 - cosine) rho / (1 - rho) for P2, rho = (a + b) / ((3 a + b) (a + 3 b))^{1/2}. That is the
 /// 2 - cosine of [`turning_factor`](super::contact_edge::turning_factor) where r is constant; the factor is attained.
-pub fn turning_factor<E, S, const N: usize, const M: usize>(
-    [a, b]: [S; 2],
+pub fn turning_factor<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(
+    radii: [S; 2],
     cosine: S,
     root: impl Fn(S) -> S,
-) -> S
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
-    let (one, three) = (S::from(1), S::from(3));
+) -> S {
+    let one = S::from(1);
     if E::DEGREE == 1 {
         return one;
     }
-    let rho = (a + b) / root((three * a + b) * (a + three * b));
+    let rho = coupling(radii, root);
     one + (one - cosine) * rho / (one - rho)
+}
+
+/// rho: the entry of [`edge_mass`] off the diagonal beside the root of the product of the other two.
+fn coupling<S: Scalar>([a, b]: [S; 2], root: impl Fn(S) -> S) -> S {
+    let three = S::from(3);
+    (a + b) / root((three * a + b) * (a + three * b))
 }
 
 /// The amount by which an edge counts more in kappa where both components of the traction act, whatever the angle:
 /// (1 + rho) / (1 - rho). With the values at the ends multiplied by the roots of the diagonal of [`edge_mass`] the integral is between 1 - rho and 1 + rho times the sum of their squares.
-pub fn turning_factor_of_both<E, S, const N: usize, const M: usize>(
-    [a, b]: [S; 2],
+pub fn turning_factor_of_both<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(
+    radii: [S; 2],
     root: impl Fn(S) -> S,
-) -> S
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
-    let (one, three) = (S::from(1), S::from(3));
+) -> S {
+    let one = S::from(1);
     if E::DEGREE == 1 {
         return one;
     }
-    let rho = (a + b) / root((three * a + b) * (a + three * b));
+    let rho = coupling(radii, root);
     (one + rho) / (one - rho)
-}
-
-fn sum<S: Scalar>([a, b, c]: [S; 3]) -> S {
-    a + b + c
 }
 
 #[cfg(test)]

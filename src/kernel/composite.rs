@@ -31,7 +31,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::{Material, Scalar, Stress, Triangle};
+use super::{Material, Scalar, Squares, Stress, Triangle};
 
 /// The load of one triangle as a certificate sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +51,7 @@ pub struct Composite<S> {
     /// At the centroid.
     pub centre: Stress<S>,
     /// On part i, in the middles of its edge i and of its cuts to the corners i+1 and i+2: what is beyond the mean of the ends.
-    pub bulges: Option<[[Stress<S>; 3]; 3]>,
+    pub(crate) bulges: Option<[[Stress<S>; 3]; 3]>,
 }
 
 /// C eps(v) of a displacement v of degree 1 or 2: a stress that is constant on the triangle or affine.
@@ -236,23 +236,16 @@ impl<S: Scalar> Composite<S> {
     /// 3/2 s^2 + 1/2 (a - b)^2 + 4/3 c^2. On a part of the area A with the bulges h, 4 mu_p mu_q h_pq each, there is
     /// 2/15 A sum h_pq (2 a_p + 2 a_q + a_r) and 4/45 A (sum h^2 + (sum h)^2) more.
     pub fn energy(&self, material: &Material<S>, double_area: S) -> S {
-        let (three, eight) = (S::from(3), S::from(8));
         let law = material.squares();
         let squares = |tau: Stress<S>| law.products(tau, tau);
-        let products = |a: Stress<S>, b: Stress<S>| law.products(a, b);
-        let two_thirds = self.centre * (S::from(2) / three);
-        let mut sum = squares(self.centre).map(|x| eight * x);
-        for [a, b] in self.corners {
-            let (s, d) = (squares(a + b + two_thirds), squares(a - b));
-            sum = [0, 1].map(|k| sum[k] + three * s[k] + d[k]);
-        }
+        let mut sum = self.affine_products((self.corners, self.centre), &law);
         for ([a, b], h) in self.corners.iter().zip(self.bulges.iter().flatten()) {
             let whole = *a + *b + self.centre;
             let opposite = [self.centre, *b, *a];
             let (linear, square) = (S::from(16) / S::from(5), S::from(32) / S::from(15));
             let mut squared = squares(h[0] + h[1] + h[2]);
             for (h, opposite) in h.iter().zip(opposite) {
-                let along = products(*h, whole * S::from(2) - opposite);
+                let along = law.products(*h, whole * S::from(2) - opposite);
                 sum = [0, 1].map(|k| sum[k] + linear * along[k]);
                 let own = squares(*h);
                 squared = [0, 1].map(|k| squared[k] + own[k]);
@@ -262,6 +255,22 @@ impl<S: Scalar> Composite<S> {
         law.per_moduli(sum) * double_area / S::from(576)
     }
 
+    /// The products of two stresses without bulges, but for 1/576: the bilinear form of a square form.
+    fn affine_products(
+        &self,
+        (corners, centre): ([[Stress<S>; 2]; 3], Stress<S>),
+        law: &Squares<S>,
+    ) -> [S; 2] {
+        let (three, eight) = (S::from(3), S::from(8));
+        let two_thirds = S::from(2) / three;
+        let sum = law.products(self.centre, centre).map(|x| eight * x);
+        self.corners.into_iter().zip(corners).fold(sum, |sum, ([a, b], [c, d])| {
+            let s = law.products(a + b + self.centre * two_thirds, c + d + centre * two_thirds);
+            let d = law.products(a - b, c - d);
+            [0, 1].map(|k| sum[k] + three * s[k] + d[k])
+        })
+    }
+
     /// int_T tau : C^-1 rho, the bilinear form of [`Composite::energy`]; rho has no bulges.
     pub fn product_with_affine(
         &self,
@@ -269,18 +278,10 @@ impl<S: Scalar> Composite<S> {
         material: &Material<S>,
         double_area: S,
     ) -> S {
-        let (three, eight) = (S::from(3), S::from(8));
         let law = material.squares();
-        let two_thirds = S::from(2) / three;
-        let mut sum = law.products(self.centre, centre).map(|x| eight * x);
-        for ([a, b], [c, d]) in self.corners.into_iter().zip(corners) {
-            let of_sums =
-                law.products(a + b + self.centre * two_thirds, c + d + centre * two_thirds);
-            let of_differences = law.products(a - b, c - d);
-            sum = [0, 1].map(|k| sum[k] + three * of_sums[k] + of_differences[k]);
-        }
+        let mut sum = self.affine_products((corners, centre), &law);
         // Half of what is linear in the bulges.
-        let linear = eight / S::from(5);
+        let linear = S::from(8) / S::from(5);
         for ([c, d], h) in corners.iter().zip(self.bulges.iter().flatten()) {
             let whole = (*c + *d + centre) * S::from(2);
             for (h, opposite) in h.iter().zip([centre, *d, *c]) {

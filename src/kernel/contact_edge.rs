@@ -44,7 +44,6 @@ impl<S: Scalar, const N: usize, const M: usize> ContactEdge<S, N, M> {
     /// [`ContactEdge::new`] where the direction of contact is a field n~: P0(v) = n~ . v - gamma s(v), s(v) = n~ . sigma(v)
     /// n, with the unit vectors `directions` at the nodes. s is affine on the edge, from its values at the two ends, in P0 as
     /// in A: this is what J_h and the consistency of (8) need. With n~ = n it is the functional of [`ContactEdge::new`].
-    #[cfg(not(kani))]
     pub fn along<E: Element<N, M>>(
         triangle: &Triangle<S>,
         i: usize,
@@ -60,7 +59,6 @@ impl<S: Scalar, const N: usize, const M: usize> ContactEdge<S, N, M> {
 
     /// [`ContactEdge::along`] on a part of the edge, on which the nodes of a piece lie at `places`: P0 and s are the polynomials of
     /// degree p and 1 on the piece that have the values n~ . v - gamma s(v) at its nodes and n~ . sigma(v) n at its ends.
-    #[cfg(not(kani))]
     pub fn between<E: Element<N, M>>(
         triangle: &Triangle<S>,
         i: usize,
@@ -80,7 +78,6 @@ impl<S: Scalar, const N: usize, const M: usize> ContactEdge<S, N, M> {
     }
 
     /// The functionals with s at the `ends` of the piece; `trace` adds n~ . v at a node of the piece.
-    #[cfg(not(kani))]
     fn with_traces<E: Element<N, M>>(
         (triangle, i): (&Triangle<S>, usize),
         ends: [S; 2],
@@ -125,27 +122,17 @@ pub fn integral_of_product<S: Scalar>(f: [S; 2], g: [S; 2]) -> S {
 /// The amount by which the length of an edge counts more in kappa where the direction of contact turns along it, for `cosine` =
 /// n~ . n~' at its two ends: 1 for P1, whose stress is constant on the triangle, and 2 - cosine for P2. Then
 /// int_E s(v)^2 is at most the factor times int_E |sigma(v) n|^2 (docs/theory.md, Lemma 2.1b; the factor is attained).
-#[cfg(not(kani))]
-pub fn turning_factor<E, S, const N: usize, const M: usize>(cosine: S) -> S
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
+pub fn turning_factor<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(cosine: S) -> S {
     if E::DEGREE == 1 { S::from(1) } else { S::from(2) - cosine }
 }
 
 /// [`turning_factor`] where both components of the stress count, that along the direction of contact and that across:
 /// int_E |s(v)|^2 is at most the factor times int_E |sigma(v) n|^2, and the factor x + (x^2 - 1)^(1/2), x = (4 - cosine) / 3, of P2 is
 /// attained (docs/theory.md, 13.2).
-#[cfg(not(kani))]
-pub fn turning_factor_of_both<E, S, const N: usize, const M: usize>(
+pub fn turning_factor_of_both<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(
     cosine: S,
     root: impl Fn(S) -> S,
-) -> S
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
+) -> S {
     if E::DEGREE == 1 {
         return S::from(1);
     }
@@ -156,7 +143,6 @@ where
 /// The constant c of (n~ . sigma(v) n)^2 <= c sigma(v):eps(v) along an edge with the unit normal n: for one direction of contact d,
 /// d . Q(n) d with the acoustic tensor Q(n), which is A_nnnn for d = n; for directions that turn (`None`) the largest eigenvalue of
 /// Q(n), which serves |sigma(v) n|^2. lambda + 2 mu, which does for all unit vectors d, where A is isotropic.
-#[cfg(not(kani))]
 pub fn traction_stiffness<S: Scalar>(
     material: &Material<S>,
     n: Vector2<S>,
@@ -181,15 +167,11 @@ pub fn traction_stiffness<S: Scalar>(
 /// The share of an edge on Gamma_C in kappa_T / gamma0 of its triangle: c_p A_nnnn h_T |E| / |T|, so that with the sum kappa_T of
 /// its edges |gamma^{1/2} sigma_n(v)|^2 on them is at most kappa_T a_T(v, v), the explicit form of (11). `stiffness` is A_nnnn,
 /// lambda + 2 mu where A is isotropic; for other components of sigma n it is the largest eigenvalue of the acoustic tensor.
-pub fn coercivity_constant<E, S, const N: usize, const M: usize>(
+pub fn coercivity_constant<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(
     stiffness: S,
     diameter: S,
     contact_length: S,
     area: S,
-) -> S
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
+) -> S {
     S::from(E::TRACE_CONSTANT) * stiffness * diameter * contact_length / area
 }

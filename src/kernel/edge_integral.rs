@@ -55,11 +55,7 @@ impl<S: Scalar, const M: usize> EdgeIntegrals<S, M> {
 }
 
 /// P at `s` from its nodal values.
-pub fn value_at<E, S, const N: usize, const M: usize>(p: [S; M], s: S) -> S
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
+pub fn value_at<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(p: [S; M], s: S) -> S {
     let shapes = E::edge_values(s);
     (0..M).fold(S::from(0), |sum, a| sum + p[a] * shapes[a])
 }
@@ -171,28 +167,20 @@ pub fn times_radius<S: Scalar>(weight: S, radii: Option<[S; 2]>, s: S) -> S {
 
 /// The integrals by a rule on the whole edge: `rule` yields points in \[0, 1\] with their weights. With the weight r where r has
 /// these `radii` at the two ends.
-pub fn gauss<E, S, const N: usize, const M: usize>(
+pub fn gauss<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(
     p: [S; M],
     radii: Option<[S; 2]>,
     rule: impl IntoIterator<Item = (S, S)>,
-) -> EdgeIntegrals<S, M>
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
+) -> EdgeIntegrals<S, M> {
     let value = |(s, weight)| (value_at::<E, S, N, M>(p, s), s, weight);
     gauss_of::<E, S, N, M>(rule.into_iter().map(value), radii)
 }
 
 /// The integrals by a rule on the whole edge, from the values of P at its points: each with the point and its weight.
-pub fn gauss_of<E, S, const N: usize, const M: usize>(
+pub fn gauss_of<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(
     values: impl IntoIterator<Item = (S, S, S)>,
     radii: Option<[S; 2]>,
-) -> EdgeIntegrals<S, M>
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
+) -> EdgeIntegrals<S, M> {
     let mut sum = EdgeIntegrals::of(S::from(0));
     for (value, s, weight) in values {
         let (positive, slope) = (positive_part(value), positive_part_slope(value));
@@ -203,14 +191,10 @@ where
 
 /// The integrals with P in place of \[P\]+, where an interface pulls as well as it pushes; with the weight r by Boole's rule, which is
 /// exact for it.
-pub fn bilateral<E, S, const N: usize, const M: usize>(
+pub fn bilateral<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(
     p: [S; M],
     radii: Option<[S; 2]>,
-) -> EdgeIntegrals<S, M>
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
+) -> EdgeIntegrals<S, M> {
     if radii.is_some() {
         let mut sum = EdgeIntegrals::of(S::from(0));
         for (i, weight) in [(0, 7), (1, 32), (2, 12), (3, 32), (4, 7)] {
@@ -246,22 +230,19 @@ fn mass<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(a: usize, b
 /// The Bregman distance of 1/2 \[.\]+^2 from `a` to `b`: 1/2 \[b\]+^2 - 1/2 \[a\]+^2 - \[a\]+ (b - a), written as the sum
 /// 1/2 (\[b\]+ - \[a\]+)^2 + \[a\]+ \[-b\]+ of two terms that are never negative, so that nothing cancels. It is the part of
 /// the change of J_h along a step that is not linear.
-pub fn bregman<S: Scalar>(a: S, b: S) -> S {
+fn bregman<S: Scalar>(a: S, b: S) -> S {
     let (positive_a, positive_b) = (positive_part(a), positive_part(b));
     let d = positive_b - positive_a;
     d * d / S::from(2) + positive_a * positive_part(-b)
 }
 
-/// The integral over the edge of the [Bregman distance](bregman) from P to Q, without quadrature error: over the pieces on
+/// The integral over the edge of the Bregman distance from P to Q, without quadrature error: over the pieces on
 /// which neither changes sign; with the weight r where r has these `radii` at the two ends.
-pub fn exact_bregman<E, const N: usize, const M: usize>(
+pub fn exact_bregman<E: Element<N, M>, const N: usize, const M: usize>(
     p: [f64; M],
     q: [f64; M],
     radii: Option<[f64; 2]>,
-) -> f64
-where
-    E: Element<N, M>,
-{
+) -> f64 {
     let mut cuts = Cuts::new();
     cuts.add_roots::<E, N, M>(p);
     cuts.add_roots::<E, N, M>(q);
@@ -271,15 +252,11 @@ where
 }
 
 /// The integral by a Gauss rule on the whole edge.
-pub fn gauss_bregman<E, S, const N: usize, const M: usize>(
+pub fn gauss_bregman<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(
     p: [S; M],
     q: [S; M],
     rule: impl IntoIterator<Item = (S, S)>,
-) -> S
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
+) -> S {
     rule.into_iter().fold(S::from(0), |sum, (s, weight)| {
         let (a, b) = (value_at::<E, S, N, M>(p, s), value_at::<E, S, N, M>(q, s));
         sum + weight * bregman(a, b)
@@ -287,10 +264,7 @@ where
 }
 
 /// The largest value of P on the edge: at an end, or at the vertex of the parabola. NaN if one of them is.
-pub fn maximum<E, const N: usize, const M: usize>(p: [f64; M]) -> f64
-where
-    E: Element<N, M>,
-{
+pub fn maximum<E: Element<N, M>, const N: usize, const M: usize>(p: [f64; M]) -> f64 {
     let [_, b, c] = monomials::<E, N, M>(p);
     // Without a vertex (c = 0) this is 0 or beyond 1: `max` takes the 0 in place of a NaN.
     let vertex = (-b / (2.0 * c)).max(0.0);
@@ -301,10 +275,9 @@ where
 }
 
 /// The places inside (0, 1) where P changes its sign, in no particular order.
-pub fn roots<E, const N: usize, const M: usize>(p: [f64; M]) -> impl Iterator<Item = f64>
-where
-    E: Element<N, M>,
-{
+pub fn roots<E: Element<N, M>, const N: usize, const M: usize>(
+    p: [f64; M],
+) -> impl Iterator<Item = f64> {
     let mut cuts = Cuts::new();
     cuts.add_roots::<E, N, M>(p);
     (2..cuts.len).map(move |i| cuts.at[i])

@@ -156,14 +156,10 @@ pub fn displacement_gradient<S: Scalar, const N: usize, const D: usize>(
 
 /// The element matrix of a(.,.) = int_T sigma(u):eps(v) in blocks: entry (c, d) of block `[i][j]` belongs to v = N_i e_c
 /// and u = N_j e_d. Exact.
-pub fn stiffness<E, S, const N: usize, const M: usize>(
+pub fn stiffness<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(
     triangle: &Triangle<S>,
     material: &Material<S>,
-) -> [[Matrix2<S>; N]; N]
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
+) -> [[Matrix2<S>; N]; N] {
     let barycentric = triangle.barycentric_gradients();
     let area = triangle.double_area() / S::from(2);
     let mut matrix = [[Matrix2::zeros(); N]; N];

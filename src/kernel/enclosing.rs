@@ -24,6 +24,18 @@ pub trait Enclosing: Scalar {
         Ball::between(self.lower(), self.upper())
     }
 
+    /// [`Enclosing::lower`] and [`Enclosing::upper`].
+    #[inline]
+    fn ends(self) -> [f64; 2] {
+        [self.lower(), self.upper()]
+    }
+
+    /// An upper bound of its magnitude.
+    #[inline]
+    fn size(self) -> f64 {
+        self.upper().max(-self.lower())
+    }
+
     /// Returns whether it is known to be positive.
     #[inline]
     fn is_positive(self) -> bool {

@@ -186,15 +186,11 @@ fn bounds_and<const M: usize>(p: [f64; M], m: [f64; M]) -> ([f64; M], [f64; M]) 
 }
 
 /// The integrals by a rule on the whole edge: `rule` yields points in \[0, 1\] with their weights.
-pub fn gauss_friction<E, S, const N: usize, const M: usize>(
+pub fn gauss_friction<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(
     p: [S; M],
     m: [S; M],
     rule: impl IntoIterator<Item = (S, S)>,
-) -> FrictionIntegrals<S, M>
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
+) -> FrictionIntegrals<S, M> {
     let mut sum = FrictionIntegrals::zero();
     for (s, weight) in rule {
         let [p, m] = [p, m].map(|v| value_at::<E, S, N, M>(v, s));
@@ -205,14 +201,11 @@ where
 
 /// The integral over the edge of the [Bregman distance](clip_bregman) from P to Q for the bound m >= 0, without quadrature error:
 /// over the sections on which neither meets the bound.
-pub fn exact_clip_bregman<E, const N: usize, const M: usize>(
+pub fn exact_clip_bregman<E: Element<N, M>, const N: usize, const M: usize>(
     p: [f64; M],
     q: [f64; M],
     m: [f64; M],
-) -> f64
-where
-    E: Element<N, M>,
-{
+) -> f64 {
     let mut cuts = Cuts::new();
     for v in [p, q] {
         let (below, above) = bounds_and(v, m);
@@ -225,16 +218,12 @@ where
 }
 
 /// The integral by a Gauss rule on the whole edge.
-pub fn gauss_clip_bregman<E, S, const N: usize, const M: usize>(
+pub fn gauss_clip_bregman<E: Element<N, M>, S: Scalar, const N: usize, const M: usize>(
     p: [S; M],
     q: [S; M],
     m: [S; M],
     rule: impl IntoIterator<Item = (S, S)>,
-) -> S
-where
-    E: Element<N, M>,
-    S: Scalar,
-{
+) -> S {
     rule.into_iter().fold(S::from(0), |sum, (s, weight)| {
         let [a, b, m] = [p, q, m].map(|v| value_at::<E, S, N, M>(v, s));
         sum + weight * clip_bregman(a, b, m)

@@ -26,10 +26,8 @@
 //! | [`double_double`] | not in the paper: numbers of twice the precision |
 //! | [`enclosing`] | not in the paper: what may be concluded from these |
 
-#[cfg(not(kani))]
 pub mod axial;
 pub mod ball;
-#[cfg(not(kani))]
 pub mod composite;
 pub mod contact;
 pub mod contact_edge;
@@ -42,7 +40,6 @@ pub mod law;
 pub mod material;
 pub mod positive_part;
 pub mod scalar;
-#[cfg(not(kani))]
 pub mod squares;
 pub mod triangle;
 
@@ -57,6 +54,5 @@ pub use law::Response;
 pub use material::{Material, Plane, Stress};
 pub use positive_part::{positive_part, positive_part_slope};
 pub use scalar::Scalar;
-#[cfg(not(kani))]
 pub use squares::Squares;
 pub use triangle::Triangle;

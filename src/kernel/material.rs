@@ -22,9 +22,7 @@ use std::ops::{Add, Div, Mul, Sub};
 use nalgebra::{Matrix2, SMatrix, SVector};
 
 use super::Scalar;
-#[cfg(not(kani))]
 use super::squares::Squares;
-#[cfg(not(kani))]
 use super::triangle::Triangle;
 
 /// Plane strain (no strain across the plane), plane stress (no stress across it), or the meridian of a body of revolution.
@@ -95,7 +93,6 @@ impl<S: Scalar> Material<S> {
 
     /// The material of a body of revolution that acts in its meridian as this one does in plane strain, with Young's modulus `hoop`
     /// along the hoops. An isotropic material has it from lambda and mu.
-    #[cfg(not(kani))]
     #[must_use]
     pub fn of_revolution(self, hoop: S) -> Self {
         let law = match self.law {
@@ -106,7 +103,6 @@ impl<S: Scalar> Material<S> {
     }
 
     /// Converts the material to another number type.
-    #[cfg(not(kani))]
     pub fn map<T>(&self, f: impl Fn(S) -> T) -> Material<T> {
         let law = match self.law {
             Law::Isotropic { lambda, mu } => Law::Isotropic { lambda: f(lambda), mu: f(mu) },
@@ -118,7 +114,6 @@ impl<S: Scalar> Material<S> {
     }
 
     /// The material as it acts in the plane, without what is known across it.
-    #[cfg(not(kani))]
     #[must_use]
     pub fn in_plane(&self) -> Self {
         match self.law {
@@ -128,7 +123,6 @@ impl<S: Scalar> Material<S> {
     }
 
     /// The material that is turned to the left by the angle with this cosine and sine.
-    #[cfg(not(kani))]
     #[must_use]
     pub fn turned(&self, [cosine, sine]: [S; 2]) -> Self {
         let Law::Tensor { across, hoop, .. } = self.law else { return *self };
@@ -176,13 +170,11 @@ impl<S: Scalar> Material<S> {
 
     /// The factors of sigma_xx, sigma_yy and sigma_xy in the stress across the plane, without a hoop strain: nu, nu and 0 where A is
     /// isotropic.
-    #[cfg(not(kani))]
     pub fn across(&self) -> [S; 3] {
         [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map(|unit| self.stress_zz(Stress::new(unit.map(S::from))))
     }
 
     /// Young's modulus along the hoops of a body of revolution whose law is not isotropic.
-    #[cfg(not(kani))]
     pub fn hoop_modulus(&self) -> Option<S> {
         match self.law {
             Law::Tensor { hoop, .. } if self.plane == Plane::Axisymmetric => Some(hoop),
@@ -191,13 +183,11 @@ impl<S: Scalar> Material<S> {
     }
 
     /// Returns whether the law is given by lambda and mu.
-    #[cfg(not(kani))]
     pub fn is_isotropic(&self) -> bool {
         matches!(self.law, Law::Isotropic { .. })
     }
 
     /// C11, C12, C16, C22, C26, C66
-    #[cfg(not(kani))]
     pub fn stiffness(&self) -> [S; 6] {
         match self.law {
             Law::Isotropic { lambda, mu } => {
@@ -230,14 +220,12 @@ impl<S: Scalar> Material<S> {
     }
 
     /// Plane strain, plane stress, or a body of revolution.
-    #[cfg(not(kani))]
     pub fn plane(&self) -> Plane {
         self.plane
     }
 
     /// r at the corners of a triangle of the meridian, if the material is that of a body of revolution: the weight there is r, in the
     /// plane 1.
-    #[cfg(not(kani))]
     pub fn radii<T: Scalar>(&self, triangle: &Triangle<T>) -> Option<[T; 3]> {
         (self.plane == Plane::Axisymmetric).then(|| triangle.vertices.map(|x| x[0]))
     }
@@ -253,11 +241,15 @@ impl<S: Scalar> Material<S> {
 
     /// The acoustic tensor Q(n) of a vector n: d . Q(n) d is the constant of (d . sigma(v) n)^2 <= d . Q(n) d sigma(v):eps(v),
     /// so that |sigma(v) n|^2 is at most its largest eigenvalue times sigma(v):eps(v).
-    #[cfg(not(kani))]
     pub fn acoustic<const D: usize>(&self, n: SVector<S, D>) -> SMatrix<S, D, D> {
+        self.tractions(n, n)
+    }
+
+    /// The tractions on m of sigma(u) for the displacement gradients e_k (x) n, in columns.
+    fn tractions<const D: usize>(&self, m: SVector<S, D>, n: SVector<S, D>) -> SMatrix<S, D, D> {
         let axis = |k: usize| SVector::from_fn(|i, _| S::from(i32::from(i == k)));
         let columns: [SVector<S, D>; D] =
-            std::array::from_fn(|k| self.stress_along(axis(k), n).traction(n));
+            std::array::from_fn(|k| self.stress_along(axis(k), n).traction(m));
         SMatrix::from_fn(|i, k| columns[k][i])
     }
 
@@ -302,7 +294,6 @@ impl<S: Scalar> Material<S> {
     }
 
     /// The stress in the meridian of a body of revolution and the hoop stress, for a displacement gradient there and a hoop strain.
-    #[cfg(not(kani))]
     pub fn stress_of_revolution(&self, gradient: Matrix2<S>, hoop: S) -> (Stress<S>, S) {
         match self.law {
             Law::Isotropic { lambda, mu } => {
@@ -321,7 +312,6 @@ impl<S: Scalar> Material<S> {
     }
 
     /// The stress in the plane and the one across it: `hoop` is the hoop strain of a body of revolution, and of no use in others.
-    #[cfg(not(kani))]
     pub fn state(&self, gradient: Matrix2<S>, hoop: S) -> (Stress<S>, S) {
         if self.plane == Plane::Axisymmetric {
             return self.stress_of_revolution(gradient, hoop);
@@ -331,7 +321,6 @@ impl<S: Scalar> Material<S> {
     }
 
     /// The energies of a strain and of a stress as sums of squares.
-    #[cfg(not(kani))]
     pub fn squares(&self) -> Squares<S> {
         match self.law {
             Law::Isotropic { lambda, mu } => Squares::isotropic(lambda, mu),
@@ -362,7 +351,6 @@ impl<S: Scalar> Material<S> {
     /// The functional of the traction's component along `d`: d . sigma(v) n = s . w for the returned s = (A:(d (x) n)) grad N,
     /// lambda (d . n) grad N + mu ((d . grad N) n + (grad N . n) d) where A is isotropic. With d = n, n a unit vector, it is that
     /// of sigma_n.
-    #[cfg(not(kani))]
     pub fn traction_of_shape<const D: usize>(
         &self,
         gradient: SVector<S, D>,
@@ -394,13 +382,7 @@ impl<S: Scalar> Material<S> {
                 }
                 density
             }
-            Law::Tensor { .. } => {
-                let columns: [SVector<S, D>; D] = std::array::from_fn(|d| {
-                    let axis = SVector::from_fn(|i, _| S::from(i32::from(i == d)));
-                    self.stress_along(axis, g_j).traction(g_i)
-                });
-                SMatrix::from_fn(|c, d| columns[d][c])
-            }
+            Law::Tensor { .. } => self.tractions(g_i, g_j),
         }
     }
 }

@@ -15,29 +15,3 @@ pub fn positive_part<S: Scalar>(a: S) -> S {
 pub fn positive_part_slope<S: Scalar>(a: S) -> S {
     a.split(|_| S::from(0), |_| S::from(1))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn nan_stays_nan() {
-        assert!(positive_part(f64::NAN).is_nan());
-    }
-
-    #[test]
-    fn minus_zero_becomes_plus_zero() {
-        assert_eq!(positive_part(-0.0_f64).to_bits(), 0.0_f64.to_bits());
-    }
-
-    #[test]
-    fn positive_numbers_are_kept_to_the_bit_and_the_others_become_zero() {
-        for a in [f64::MIN_POSITIVE, 5e-324, 1.0, f64::MAX, f64::INFINITY] {
-            assert_eq!(positive_part(a), a);
-            assert_eq!(positive_part(-a), 0.0);
-            assert_eq!(positive_part_slope(a), 1.0);
-            assert_eq!(positive_part_slope(-a), 0.0);
-        }
-        assert_eq!(positive_part_slope(0.0), 0.0);
-    }
-}

@@ -293,7 +293,8 @@ fn the_engine_is_started_in_a_fresh_folder_with_paths_from_the_root() {
         lines[2..],
         ["1", "-P", "-m", "fenicsx", "--ranks", "1", "--out", room, case.to_str().unwrap()]
     );
-    assert_eq!(names(&folder), ["--nx=3", "bin", "here", "notes", "python3"]);
+    assert_eq!(names(&folder), ["--nx=3", "bin", "here", "notes", "out", "python3"]);
+    assert!(names(&folder.join("out/--nx=3")).is_empty(), "the fresh folder is gone");
 }
 
 #[test]
