@@ -271,6 +271,7 @@ mod tests {
     use super::*;
     use crate::contact::{Discretization, EdgeRule};
     use crate::kernel::{Material, Plane};
+    use crate::linear::dense::dot;
     use crate::linear::system::System;
     use crate::model::{Condition, Degree, Diagonal, Problem, Rectangle, SharedFunction};
 
@@ -304,7 +305,6 @@ mod tests {
         let mut columns = vec![vec![0.0; system.numbering.count]; reach.functionals()];
         system.each_functional(|row, i, entry| columns[i][row] += entry);
         columns.iter_mut().for_each(|column| factor.forward(column));
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let largest = columns.iter().map(|c| dot(c, c)).fold(0.0, f64::max);
         for i in 0..columns.len() {
             for j in 0..columns.len() {

@@ -228,6 +228,13 @@ impl<'d, 'p> System<'d, 'p> {
         }
     }
 
+    /// B x
+    pub(crate) fn values(&self, x: &[f64]) -> Vec<f64> {
+        let mut values = vec![0.0; self.functionals()];
+        self.each_functional(|row, i, entry| values[i] += entry * x[row]);
+        values
+    }
+
     /// r <- r + B^T w
     pub(crate) fn add_forces(&self, w: &[f64], r: &mut [f64]) {
         self.each_functional(|row, i, entry| r[row] += entry * w[i]);

@@ -78,7 +78,9 @@ impl<'a, 'd, 'p> Assembled<'a, 'd, 'p> {
                     self.factorizations += 1;
                 }
                 if coercive && matches!(factored, Err(SolveError::NotPositiveDefinite)) {
-                    factored = self.system.factor(None, supported(self.system.d, at));
+                    factored = self
+                        .system
+                        .factor(None, supported(self.system.d, at.stiffness, &at.hessian));
                     self.factorizations += 1;
                     if matches!(factored, Err(SolveError::NotPositiveDefinite)) {
                         return Err(SolveError::Singular);
@@ -179,7 +181,9 @@ impl Full<'_, '_, '_, '_, '_> {
         };
         Ok(newton::largest_eigenvalue(self.d.clone(), |x| {
             let mut force = vec![0.0; x.len()];
-            self.route.system.add_forces(&at.hessian_times(&self.values_of_p0(x)), &mut force);
+            self.route
+                .system
+                .add_forces(&at.hessian_times(&self.route.system.values(x)), &mut force);
             factor.solve(&mut force);
             force
         }))
@@ -200,13 +204,6 @@ impl Full<'_, '_, '_, '_, '_> {
         self.carried = self.may_carry.then_some(sizes);
         self.may_carry
     }
-
-    /// B x
-    fn values_of_p0(&self, x: &[f64]) -> Vec<f64> {
-        let mut values = vec![0.0; self.at.p.len()];
-        self.route.system.each_functional(|row, i, entry| values[i] += entry * x[row]);
-        values
-    }
 }
 
 impl Body for Full<'_, '_, '_, '_, '_> {
@@ -215,12 +212,8 @@ impl Body for Full<'_, '_, '_, '_, '_> {
     }
 
     fn residual(&self, at: &Derivatives) -> Residual {
-        // The rounding of P, through the springs of contact.
-        let mut contact = vec![0.0; self.route.system.numbering.count];
-        let forces = at.magnitudes_times(&self.at.p_magnitudes);
-        self.route.system.each_functional(|row, i, entry| contact[row] += entry.abs() * forces[i]);
         let reference = self.route.reference;
-        let noise = self.at.noise + f64::EPSILON * norm(&contact);
+        let noise = at.noise(self.route.system, self.at);
         Residual { norm: norm(&self.gradient(at)) / reference, noise: noise / reference }
     }
 
@@ -257,7 +250,7 @@ impl Body for Full<'_, '_, '_, '_, '_> {
         let gradient = self.gradient(at);
         let mut d: Vec<f64> = gradient.iter().map(|r| -r).collect();
         self.route.factor(at, norm(&gradient))?.factor.solve(&mut d);
-        let dy = self.values_of_p0(&d);
+        let dy = self.route.system.values(&d);
         let hessian = self.route.factored.as_ref().map_or(&at.hessian[..], |last| &last.springs);
         let slope = dot(&gradient, &d);
         // A d and d^T A d, where (A + B^T Psi'' B) d = -r with the Psi'' that was factored: nothing is lost where A d cancels.

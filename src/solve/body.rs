@@ -7,9 +7,12 @@ use std::ops::Range;
 use nalgebra::DMatrix;
 
 use super::SolveError;
+use super::iterate::Evaluation;
 use crate::contact::discretization::Discretization;
 use crate::contact::piece::Stretch;
 use crate::kernel::{DoubleDouble, Response};
+use crate::linear::dense::norm;
+use crate::linear::system::System;
 
 /// The pieces of Gamma_C as Newton's method needs them.
 pub(crate) trait ContactEnergy {
@@ -172,10 +175,14 @@ pub(super) fn springs_beside_shear(d: &Discretization) -> f64 {
 /// bodies unsolved.
 const SUPPORT: f64 = 1e-6;
 
-/// The Hessian `at` an iterate with a little of the springs of all pieces.
-pub(super) fn supported(edges: &impl ContactEnergy, at: &Derivatives) -> Vec<DMatrix<f64>> {
-    let all = all_springs(edges, at.stiffness);
-    at.hessian.iter().zip(&all.hessian).map(|(h, all)| h + SUPPORT * all).collect()
+/// A Hessian with a little of the springs of all pieces, of this `stiffness`.
+pub(super) fn supported(
+    edges: &impl ContactEnergy,
+    stiffness: f64,
+    hessian: &[DMatrix<f64>],
+) -> Vec<DMatrix<f64>> {
+    let all = all_springs(edges, stiffness);
+    hessian.iter().zip(&all.hessian).map(|(h, all)| h + SUPPORT * all).collect()
 }
 
 /// The derivatives where no spring acts but those that cannot let go.
@@ -203,9 +210,12 @@ impl Derivatives {
         times(&self.hessian, v, |h| h)
     }
 
-    /// The product of the magnitudes of the entries of the Hessian with nodal values.
-    pub(super) fn magnitudes_times(&self, v: &[f64]) -> Vec<f64> {
-        times(&self.hessian, v, f64::abs)
+    /// A norm that rounding alone may give the residual of (8) where its linear part is `at`, with the rounding of P through the springs.
+    pub(super) fn noise(&self, system: &System, at: &Evaluation) -> f64 {
+        let forces = times(&self.hessian, &at.p_magnitudes, f64::abs);
+        let mut contact = vec![0.0; at.linear.len()];
+        system.each_functional(|row, i, entry| contact[row] += entry.abs() * forces[i]);
+        at.noise + f64::EPSILON * norm(&contact)
     }
 
     /// The derivatives at y of springs with this Hessian that pull as well as push.
@@ -281,6 +291,6 @@ mod tests {
         let spring = DMatrix::from_row_slice(2, 2, &[2.0, -2.0, -2.0, 2.0]);
         let at = Derivatives { stiffness: 1.0, gradient: vec![0.0; 2], hessian: vec![spring] };
         assert_eq!(at.hessian_times(&[3.0, 3.0]), [0.0, 0.0]);
-        assert_eq!(at.magnitudes_times(&[3.0, 3.0]), [12.0, 12.0]);
+        assert_eq!(times(&at.hessian, &[3.0, 3.0], f64::abs), [12.0, 12.0]);
     }
 }

@@ -424,9 +424,10 @@ impl<'r, 'a, 'd, 'p> Reduced<'r, 'a, 'd, 'p> {
     /// springs of all pieces is added.
     fn tangent(&self, at: &Derivatives, last: Option<&Tangent>) -> Result<Tangent, SolveError> {
         match self.factored(self.roots(&at.hessian), last) {
-            Err(SolveError::Singular) if !self.of.shift.is_none() => {
-                self.factored(self.roots(&supported(self.route.system.d, at)), None)
-            }
+            Err(SolveError::Singular) if !self.of.shift.is_none() => self.factored(
+                self.roots(&supported(self.route.system.d, at.stiffness, &at.hessian)),
+                None,
+            ),
             tangent => tangent,
         }
     }

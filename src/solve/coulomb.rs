@@ -22,13 +22,13 @@ use nalgebra::{DMatrix, DVector};
 use super::SolveError;
 use super::accuracy::{Pass, Route};
 use super::assembled::Assembled;
-use super::body::{Derivatives, all_springs, derivatives};
+use super::body::{Derivatives, all_springs, derivatives, supported};
 use super::course::Course;
 use super::iterate::{Evaluation, Iterate};
 use super::newton::Until;
 use crate::contact::Law;
 use crate::contact::{Discretization, Piece};
-use crate::linear::dense::norm;
+use crate::linear::dense::{dot, norm};
 use crate::linear::factor::Factor;
 use crate::linear::system::{Factored, System};
 use crate::model::law::Bound;
@@ -69,9 +69,6 @@ const SOFTEST: f64 = 1e-16;
 const FIRST_SHARE: f64 = 0.25;
 const LEAST_SHARE: f64 = 1.0 / 4096.0;
 const STEPS_OF_A_SHARE: usize = 40;
-
-/// The share of the springs of all pieces that is added to a tangent without a factor.
-const SUPPORT: f64 = 1e-6;
 
 impl Discretization<'_> {
     /// Returns whether a piece has Coulomb's friction.
@@ -147,29 +144,12 @@ impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
         (r, terms)
     }
 
-    /// A norm that rounding alone may give the residual, with that of P through the springs.
-    fn noise(&self, at: &Evaluation, terms: &Derivatives) -> f64 {
-        let hessian = terms.hessian.iter().map(DMatrix::abs).collect();
-        let springs = Derivatives { stiffness: 1.0, gradient: Vec::new(), hessian };
-        let forces = springs.hessian_times(&at.p_magnitudes);
-        let mut contact = vec![0.0; at.linear.len()];
-        self.system.each_functional(|row, i, entry| contact[row] += entry.abs() * forces[i]);
-        at.noise + f64::EPSILON * norm(&contact)
-    }
-
     /// The dual norm of a residual.
     fn dual(&mut self, r: &[f64]) -> Result<f64, SolveError> {
         let metric = self.metric()?;
         let mut x = r.to_vec();
         metric.forward(&mut x);
         Ok(norm(&x))
-    }
-
-    /// B x
-    fn functionals(&self, x: &[f64]) -> Vec<f64> {
-        let mut values = vec![0.0; self.system.functionals()];
-        self.system.each_functional(|row, i, entry| values[i] += entry * x[row]);
-        values
     }
 
     /// Newton's step for F.
@@ -192,10 +172,8 @@ impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
         self.factorizations += 1;
         let factored = match self.system.factor(None, springs.clone()) {
             Err(SolveError::NotPositiveDefinite) => {
-                let all = all_springs(self.system.d, 1.0).hessian;
-                springs.iter_mut().zip(&all).for_each(|(h, all)| *h += SUPPORT * all);
                 self.factorizations += 1;
-                self.system.factor(None, springs)?
+                self.system.factor(None, supported(self.system.d, 1.0, &springs))?
             }
             factored => factored?,
         };
@@ -223,9 +201,9 @@ impl<'a, 'd, 'p> Coulomb<'a, 'd, 'p> {
             factor.solve(&mut x);
             x
         };
-        let right = by_pressure(&self.functionals(&d));
+        let right = by_pressure(&self.system.values(&d));
         let times = |z: &[f64]| {
-            let product = by_pressure(&self.functionals(&bent(z)));
+            let product = by_pressure(&self.system.values(&bent(z)));
             z.iter().zip(product).map(|(z, p)| z + p).collect::<Vec<f64>>()
         };
         let z = gmres(times, &right);
@@ -321,13 +299,12 @@ impl Mixing {
             .collect();
         // Least squares by the normal equations, kept definite by a small multiple of their diagonal.
         let count = differences.len();
-        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let square = |i: usize| product(&differences[i], &differences[i]);
+        let square = |i: usize| dot(&differences[i], &differences[i]);
         let matrix = Mat::from_fn(count, count, |i, j| {
             let more = if i == j { 1e-10 * square(i) + f64::MIN_POSITIVE } else { 0.0 };
-            product(&differences[i], &differences[j]) + more
+            dot(&differences[i], &differences[j]) + more
         });
-        let right = Mat::from_fn(count, 1, |i, _| product(&differences[i], &change));
+        let right = Mat::from_fn(count, 1, |i, _| dot(&differences[i], &change));
         let weights = matrix.partial_piv_lu().solve(&right);
         let weights = (0..count).map(|i| weights[(i, 0)]);
         let mut next = last[1].clone();
@@ -494,7 +471,7 @@ impl<'d, 'p> Coulomb<'_, 'd, 'p> {
         let mut sizes = vec![way.size];
         loop {
             let scale = system.size(at.energy.sqrt(), &iterate.rounded());
-            let is_rounding = way.size <= ROUNDING * scale || norm(&r) <= self.noise(at, &terms);
+            let is_rounding = way.size <= ROUNDING * scale || norm(&r) <= terms.noise(system, at);
             if (is_rounding && (way.is_first || way.taken > 0)) || sizes.len() > until.steps {
                 return Ok(None);
             }
@@ -514,7 +491,7 @@ impl<'d, 'p> Coulomb<'_, 'd, 'p> {
                 let next_size = self.dual(&next_r)?;
                 let falls = next_size <= (1.0 - (1.0 - FALLS) * t) * way.size;
                 if falls || (is_near && next_size <= way.size) {
-                    let square = d.iter().map(|d| d * d).sum::<f64>();
+                    let square = dot(&d, &d);
                     halved = next_size <= way.size / 2.0;
                     way.moved = way.moved.max(way.size * way.size);
                     way.softness = way.softness.max(square / (way.size * way.size));
@@ -588,7 +565,7 @@ fn gmres(times: impl Fn(&[f64]) -> Vec<f64>, b: &[f64]) -> Vec<f64> {
         let mut w = times(&basis[k]);
         let mut column = Vec::with_capacity(k + 2);
         for v in &basis {
-            let along: f64 = v.iter().zip(&w).map(|(v, w)| v * w).sum();
+            let along = dot(v, &w);
             w.iter_mut().zip(v).for_each(|(w, v)| *w -= along * v);
             column.push(along);
         }
