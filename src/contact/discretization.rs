@@ -227,7 +227,7 @@ impl<'a> Discretization<'a> {
 
     /// [`Discretization::linear_residual`] of a displacement that is known to more than double precision.
     pub(crate) fn linear_residual_by(&self, u: &(impl Nodal<f64> + ?Sized)) -> Functional {
-        let mut r = self.internal_forces_by(u);
+        let mut r = self.internal_forces_of(|_| true, u);
         for piece in &self.contact {
             let factors = piece.stress_factors(&piece.stress(u));
             piece.each_force(&piece.sigma_n, &factors, |node, f| r.add(node, f, norm_1(f)));
@@ -240,17 +240,22 @@ impl<'a> Discretization<'a> {
 
     /// a(u, v) = int sigma(u):eps(v) for every basis function v.
     pub fn internal_forces(&self, u: &[[f64; 2]]) -> Functional {
-        self.internal_forces_by(u)
+        self.internal_forces_of(|_| true, u)
     }
 
-    fn internal_forces_by(&self, u: &(impl Nodal<f64> + ?Sized)) -> Functional {
+    /// What the triangles with nodes that are `taken` have in [`Discretization::internal_forces`].
+    pub(crate) fn internal_forces_of(
+        &self,
+        taken: impl Fn(&[usize]) -> bool,
+        u: &(impl Nodal<f64> + ?Sized),
+    ) -> Functional {
         let mut forces = Functional::zero(self.space.nodes().len());
         // The lift of no prescribed displacement.
         if u.is_zero() {
             return forces;
         }
-        let all = (|_: &[usize]| true, |triangle| triangle);
-        each_stress(&self.space, &self.problem.material, all, u, |point| {
+        let itself = |triangle| triangle;
+        each_stress(&self.space, &self.problem.material, (taken, itself), u, |point| {
             let &StressPoint { nodal, slopes, gradient, weight, .. } = point;
             let [xx, yy, xy] = point.stress.components();
             let shear = xy * (gradient.m12 + gradient.m21);

@@ -48,32 +48,35 @@ pub fn linear_residual<S: Scalar + From<f64>>(
     pieces: &[Piece<S>],
     u: &[[S; 2]],
 ) -> Vec<[S; 2]> {
-    residual_of(d, pieces, |_| true, u)
+    let nothing = vec![[S::from(0); 2]; u.len()];
+    residual_with(d, pieces, (|_| true, nothing), u)
 }
 
-/// [`linear_residual`] without the stresses of the triangles whose nodes are not `taken`.
-fn residual_of<S: Scalar + From<f64>>(
+/// [`linear_residual`], the triangles whose nodes are not `taken` having these forces.
+fn residual_with<S: Scalar + From<f64>>(
     d: &Discretization,
     pieces: &[Piece<S>],
-    taken: impl Fn(&[usize]) -> bool,
+    (taken, mut forces): (impl Fn(&[usize]) -> bool, Vec<[S; 2]>),
     u: &[[S; 2]],
 ) -> Vec<[S; 2]> {
-    let minus = |l: f64| -<S as From<f64>>::from(l);
-    let mut forces: Vec<[S; 2]> = d.load.iter().map(|l| l.map(minus)).collect();
+    for (force, load) in forces.iter_mut().zip(&d.load) {
+        *force = [0, 1].map(|c| force[c] - <S as From<f64>>::from(load[c]));
+    }
     add_forces_of(&d.space, &d.problem.material, taken, (u, &mut forces));
     pieces.iter().for_each(|piece| piece.add_stresses(u, &mut forces));
     forces
 }
 
-/// A(u, v) - L(v), right for the basis functions of the nodes that are `asked` for, and the values of P(u) at the nodes of each piece,
-/// by double-doubles.
+/// A(u, v) - L(v) for every basis function v, and the values of P(u) at the nodes of each piece, by double-doubles; the triangles whose
+/// nodes are not `taken` have the forces `others`.
 pub fn evaluate(
     d: &Discretization,
     u: &[[DoubleDouble; 2]],
-    asked: impl Fn(usize) -> bool,
+    (taken, others): (impl Fn(&[usize]) -> bool, &[[f64; 2]]),
 ) -> (Vec<[f64; 2]>, Vec<DoubleDouble>) {
     let pieces: Vec<Piece<DoubleDouble>> = d.contact.iter().map(|e| exact_piece(d, e)).collect();
-    let forces = residual_of(d, &pieces, |nodes| nodes.iter().any(|&node| asked(node)), u);
+    let others = others.iter().map(|f| f.map(DoubleDouble::from)).collect();
+    let forces = residual_with(d, &pieces, (taken, others), u);
     let p = pieces.iter().flat_map(|piece| piece.p(u)).collect();
     (forces.into_iter().map(|f| f.map(DoubleDouble::head)).collect(), p)
 }

@@ -26,32 +26,16 @@ pub(super) fn has_few_digits((p, size): (&DoubleDouble, &f64)) -> bool {
     p.head() > 0.0 && p.head() < FEW_DIGITS * f64::EPSILON * size
 }
 
-/// The nodes at which the forces of the body are added up from magnitudes so large that their rounding is too much.
-struct Blurred<'a> {
-    magnitudes: &'a [[f64; 2]],
-    most: f64,
-}
-
 /// The rounding in doubles that all nodes may have together at which forces are not evaluated in double-doubles, in roundings of all
-/// forces: on squares they have some thousands.
-const FEW_ROUNDINGS: f64 = 1e3;
+/// forces: on squares of quadratic elements they have as many.
+const FEW_ROUNDINGS: f64 = 1e4;
 
-impl<'a> Blurred<'a> {
-    fn of(forces: &[[f64; 2]], magnitudes: &'a [[f64; 2]]) -> Self {
-        let all = norm(forces.as_flattened());
-        let most = FEW_ROUNDINGS * all / (forces.as_flattened().len() as f64).sqrt();
-        Blurred { magnitudes, most }
-    }
-
-    fn is(&self, node: usize) -> bool {
-        !self.magnitudes[node].iter().all(|m| *m <= self.most)
-    }
-
-    /// The magnitudes at the other nodes.
-    fn others(&self) -> Vec<[f64; 2]> {
-        let of = |(node, m): (usize, &[f64; 2])| if self.is(node) { [0.0; 2] } else { *m };
-        self.magnitudes.iter().enumerate().map(of).collect()
-    }
+/// Tells at which nodes forces are added up from magnitudes so large that their rounding is too much. A triangle with such a node is
+/// evaluated in double-doubles as a whole: what its stress is rounded by then adds up to nothing over its nodes.
+fn blurred(forces: &[[f64; 2]], magnitudes: &[[f64; 2]]) -> Vec<bool> {
+    let forces = forces.as_flattened();
+    let most = FEW_ROUNDINGS * norm(forces) / (forces.len() as f64).sqrt();
+    magnitudes.iter().map(|m| !m.iter().all(|m| *m <= most)).collect()
 }
 
 /// A displacement.
@@ -136,17 +120,17 @@ impl Iterate {
             p
         };
         let (heads, tails) = (self.rounded(), self.remainder());
-        let Functional { values: mut forces, magnitudes, energy } =
-            d.linear_residual_by(&Parts { heads: &heads, tails: &tails });
+        let u = Parts { heads: &heads, tails: &tails };
+        let Functional { values: forces, magnitudes, energy } = d.linear_residual_by(&u);
         if precisely {
-            let blurred = Blurred::of(&forces, &magnitudes);
-            let (precise, p) = residual::evaluate(d, &self.u, |node| blurred.is(node));
-            let asked = precise.into_iter().enumerate().filter(|(node, _)| blurred.is(*node));
-            asked.for_each(|(node, precise)| forces[node] = precise);
+            let is_blurred = blurred(&forces, &magnitudes);
+            let taken = |nodes: &[usize]| nodes.iter().any(|&node| is_blurred[node]);
+            let others = d.internal_forces_of(|nodes| !taken(nodes), &u);
+            let (forces, p) = residual::evaluate(d, &self.u, (taken, &others.values));
             let p = idle(p);
             // The forces of contact are added to these in doubles, and the loads are doubles.
             let rounded = d.free_norm(&forces).max(d.free_norm(&d.load));
-            let noise = NOISE * f64::EPSILON * (rounded + d.free_norm(&blurred.others()));
+            let noise = NOISE * f64::EPSILON * (rounded + d.free_norm(&others.magnitudes));
             let p_magnitudes = p.iter().map(|p| p.head().abs()).collect();
             let linear = system.numbering.gather(&forces);
             return Evaluation { forces, linear, p, p_magnitudes, energy, noise, precisely };

@@ -309,7 +309,7 @@ fn translation(degree: Degree, more: f64) -> Result<(), String> {
     let third = DoubleDouble::from(1) / DoubleDouble::from(3);
     let mut u = vec![[third, third * third]; d.space.nodes().len()];
     u[0][0] += DoubleDouble::from(more);
-    let (forces, p) = residual::evaluate(&d, &u, |_| true);
+    let (forces, p) = residual::evaluate(&d, &u, (|_| true, &vec![[0.0; 2]; u.len()]));
     let largest = forces.as_flattened().iter().map(|f| f.abs()).fold(0.0, f64::max);
     if !(largest <= 2.0_f64.powi(-90)) {
         return Err(format!("a force of {largest:e}, none was expected"));
@@ -332,7 +332,7 @@ fn precise_as_in_doubles(degree: Degree, digits: f64) -> Result<(), String> {
     let d = discretize(&problem, &method).map_err(text)?;
     for_all(3, field(d.space.nodes().len()), |u| {
         let exact: Vec<[DoubleDouble; 2]> = u.iter().map(|u| u.map(DoubleDouble::from)).collect();
-        let (forces, p) = residual::evaluate(&d, &exact, |_| true);
+        let (forces, p) = residual::evaluate(&d, &exact, (|_| true, &vec![[0.0; 2]; u.len()]));
         let doubles = d.linear_residual(&u);
         for (node, force) in forces.iter().enumerate() {
             for c in 0..2 {
@@ -375,7 +375,7 @@ fn forces_of_flat_cells(degree: Degree, precisely: bool, most: f64) -> Result<()
     let u: Vec<[DoubleDouble; 2]> =
         iterate.rounded().into_iter().map(|u| u.map(DoubleDouble::from)).collect();
     let [found, doubles] = [precisely, false].map(|how| iterate.evaluate(&system, how).forces);
-    let (exact, _) = residual::evaluate(&d, &u, |_| true);
+    let (exact, _) = residual::evaluate(&d, &u, (|_| true, &vec![[0.0; 2]; u.len()]));
     let norm = |f: &[[f64; 2]]| f.as_flattened().iter().map(|f| f * f).sum::<f64>().sqrt();
     let apart: Vec<[f64; 2]> =
         found.iter().zip(&exact).map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
