@@ -210,9 +210,14 @@ impl Derivatives {
         times(&self.hessian, v, |h| h)
     }
 
+    /// The product of the magnitudes of the entries of the Hessian with nodal values.
+    fn magnitudes_times(&self, v: &[f64]) -> Vec<f64> {
+        times(&self.hessian, v, f64::abs)
+    }
+
     /// A norm that rounding alone may give the residual of (8) where its linear part is `at`, with the rounding of P through the springs.
     pub(super) fn noise(&self, system: &System, at: &Evaluation) -> f64 {
-        let forces = times(&self.hessian, &at.p_magnitudes, f64::abs);
+        let forces = self.magnitudes_times(&at.p_magnitudes);
         let mut contact = vec![0.0; at.linear.len()];
         system.each_functional(|row, i, entry| contact[row] += entry.abs() * forces[i]);
         at.noise + f64::EPSILON * norm(&contact)
@@ -291,6 +296,6 @@ mod tests {
         let spring = DMatrix::from_row_slice(2, 2, &[2.0, -2.0, -2.0, 2.0]);
         let at = Derivatives { stiffness: 1.0, gradient: vec![0.0; 2], hessian: vec![spring] };
         assert_eq!(at.hessian_times(&[3.0, 3.0]), [0.0, 0.0]);
-        assert_eq!(times(&at.hessian, &[3.0, 3.0], f64::abs), [12.0, 12.0]);
+        assert_eq!(at.magnitudes_times(&[3.0, 3.0]), [12.0, 12.0]);
     }
 }
