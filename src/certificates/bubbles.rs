@@ -60,11 +60,7 @@ pub(super) fn take_off(
             }
         }
     }
-    if !factor_positive(&mut matrix, UNKNOWNS) {
-        return 0.0;
-    }
-    let rows = matrix.chunks_exact(UNKNOWNS).enumerate();
-    let factor: Vec<f64> = rows.flat_map(|(i, row)| &row[..=i]).copied().collect();
+    let Some(factor) = factor_positive(&mut matrix, UNKNOWNS) else { return 0.0 };
     let area = triangle.double_area() / 2.0;
     let mut c = [0.0; UNKNOWNS];
     for (l, weight, f) in force.iter() {

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector2;
 
+use super::binding::sorted;
 use super::certificate::{
     Certificate, Curved, Cut, Edge, Law, Piece, Role, Shape, exactly, is_oblique, place,
 };
@@ -132,13 +133,8 @@ impl Built {
                 let [a, b] = ends.map(|p| place(&self.certificate, p));
                 let from = arc;
                 arc += length(b - a);
-                line.stations.push(Station {
-                    edge: e,
-                    from,
-                    to: arc,
-                    ends: [a.into(), b.into()],
-                    joined,
-                });
+                let ends_at = [a.into(), b.into()];
+                line.stations.push(Station { edge: e, from, to: arc, ends: ends_at, joined });
                 before = Some((name, ends[1]));
             }
         }
@@ -263,18 +259,15 @@ pub(super) fn build(parts: &ProblemParts, y: &Field, v: &Field) -> Built {
     };
     let ends = edge_ends(mesh);
     add_edges(parts, &ends, &moments, &mut built);
-    let cut_up = |t: usize| {
-        let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let parts_of = |t: usize| {
+        if quartered {
+            return quarters(parts, &data, t, &stress[t], &mut built.certificate);
+        }
+        let places = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let (vertices, edges) = (mesh.triangles()[t], mesh.triangle_edges()[t]);
-        vec![(SubTriangle { vertices, edges, places: unit }, bodies[t])]
+        vec![(SubTriangle { vertices, edges, places }, bodies[t])]
     };
-    let all: Vec<Vec<(SubTriangle, [Vector2<f64>; 3])>> = if quartered {
-        (0..whole.len())
-            .map(|t| quarters(parts, &data, t, &stress[t], &mut built.certificate))
-            .collect()
-    } else {
-        (0..whole.len()).map(cut_up).collect()
-    };
+    let all: Vec<_> = (0..whole.len()).map(parts_of).collect();
     for (t, found) in all.into_iter().enumerate() {
         for (part, body) in found {
             add_part(parts, &data, (t, &stress[t]), (part, body), &mut built);
@@ -327,7 +320,6 @@ fn add_curved(v: &Shape<f64>, certificate: &mut Certificate) {
 pub(super) fn polygon(mesh: &Mesh, certificate: &Certificate) -> Vec<usize> {
     let smooth = SmoothBoundary::new(mesh);
     let curved = mesh.outline().iter().filter(|&&edge| smooth.at_ends(edge).is_some());
-    let sorted = |[a, b]: [usize; 2]| if a < b { [a, b] } else { [b, a] };
     let curved: BTreeSet<[usize; 2]> = curved.map(|&edge| sorted(mesh.ends(edge))).collect();
     let is_curved = |edge: &Edge| {
         let cut =
@@ -335,13 +327,7 @@ pub(super) fn polygon(mesh: &Mesh, certificate: &Certificate) -> Vec<usize> {
         let line = edge.ends.into_iter().find_map(cut).unwrap_or(edge.ends);
         !matches!(edge.role, Role::Inner(_)) && curved.contains(&sorted(line))
     };
-    certificate
-        .edges
-        .iter()
-        .enumerate()
-        .filter(|(_, edge)| is_curved(edge))
-        .map(|(e, _)| e)
-        .collect()
+    (0..certificate.edges.len()).filter(|&e| is_curved(&certificate.edges[e])).collect()
 }
 
 /// The edges of the mesh, or their halves, first all first ones, then all second ones; then the middles of the edges are the first

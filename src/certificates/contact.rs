@@ -111,6 +111,12 @@ impl Side {
         (x - from) / (to - from)
     }
 
+    /// The weights of a quadratic's Bernstein coefficients on the edge in those along the contact.
+    pub(crate) fn blossom(&self) -> [[f64; 3]; 3] {
+        let [s, t] = self.places;
+        [blossom(s, s), blossom(s, t), blossom(t, t)]
+    }
+
     /// The contact has place `x` of the edge inside.
     pub(crate) fn has(&self, x: f64) -> bool {
         let s = self.within(x);
@@ -175,6 +181,11 @@ pub(super) fn overlaps(
         let [[_, before], [start, end]] = two.map(|(side, _)| range(side));
         (two, before.min(end) - start)
     })
+}
+
+/// The weights of a quadratic's Bernstein coefficients in its blossom: each argument takes one step of de Casteljau's.
+pub(super) fn blossom(s: f64, t: f64) -> [f64; 3] {
+    [(1.0 - s) * (1.0 - t), (1.0 - s) * t + s * (1.0 - t), s * t]
 }
 
 fn near_place(x: f64, same: f64) -> f64 {
@@ -691,10 +702,7 @@ impl Contact {
         let number = mesh.number_of(side.edge);
         let bulge = field.bulges.as_ref().map_or(Vector2::zeros(), |all| all[number].into());
         let middle = (a + b) / 2.0 + bulge * 2.0;
-        let [s, t] = side.places;
-        [(s, s), (s, t), (t, t)].map(|(s, t)| {
-            a * ((1.0 - s) * (1.0 - t)) + middle * ((1.0 - s) * t + s * (1.0 - t)) + b * (s * t)
-        })
+        side.blossom().map(|[l, m, n]| a * l + middle * m + b * n)
     }
 
     /// The coefficients of a field along the contact, on a pair less those on the other body.

@@ -169,10 +169,9 @@ impl Sweeps {
                 (0..3).for_each(|k| free[p][k] &= may[k]);
             }
         }
-        let own = |free: [bool; 3]| (0..3).filter(|&k| free[k]).collect();
-        let star = |free| Star {
+        let star = |free: [bool; 3]| Star {
             places: Vec::new(),
-            own: own(free),
+            own: (0..3).filter(|&k| free[k]).collect(),
             edges: Vec::new(),
             factor: Vec::new(),
         };
@@ -283,9 +282,8 @@ impl Star {
                 }
             }
         }
-        if n > 0 && factor_positive(&mut matrix, n) {
-            let rows = matrix.chunks_exact(n).enumerate();
-            self.factor = rows.flat_map(|(i, row)| &row[..=i]).copied().collect();
+        if n > 0 {
+            self.factor = factor_positive(&mut matrix, n).unwrap_or_default();
         }
     }
 }
@@ -397,18 +395,14 @@ fn features(
     // |T|/144 over the moduli
     let roots = [shear, other, bulk].map(|m| (triangle.double_area() / (288.0 * m)).sqrt());
     let mut all = [0.0; FEATURES];
-    let mut rest = all.as_chunks_mut::<3>().0.iter_mut();
-    let mut put = |factor: f64, s: Stress<f64>| {
-        let parts = squares.parts(s);
-        rest.by_ref()
-            .take(1)
-            .for_each(|three| *three = [0, 1, 2].map(|k| factor * roots[k] * parts[k]));
+    let on_part = |[a, b]: [Stress<f64>; 2]| {
+        [(1.5_f64.sqrt(), a + b + tau.centre / 1.5), (0.5_f64.sqrt(), a - b)]
     };
-    for [a, b] in tau.corners {
-        put(1.5_f64.sqrt(), a + b + tau.centre / 1.5);
-        put(0.5_f64.sqrt(), a - b);
+    let stresses = tau.corners.into_iter().flat_map(on_part).chain([(2.0, tau.centre)]);
+    for (three, (factor, s)) in all.as_chunks_mut::<3>().0.iter_mut().zip(stresses) {
+        let parts = squares.parts(s);
+        *three = [0, 1, 2].map(|k| factor * roots[k] * parts[k]);
     }
-    put(2.0, tau.centre);
     all
 }
 
@@ -429,9 +423,9 @@ fn modes([start, end]: [Vector2<f64>; 2], at_end: bool) -> [[Vector2<f64>; 2]; 4
     ]
 }
 
-/// The Cholesky factor of a small positive definite matrix, in its lower half; false if it is
-/// not definite, as for a star whose unknowns are not independent. The diagonal holds the reciprocals.
-pub(super) fn factor_positive(matrix: &mut [f64], n: usize) -> bool {
+/// The lower half of the Cholesky factor of a small positive definite matrix, row by row, which the matrix is overwritten with; none if
+/// it is not definite, as for a star whose unknowns are not independent. The diagonal holds the reciprocals.
+pub(super) fn factor_positive(matrix: &mut [f64], n: usize) -> Option<Vec<f64>> {
     for i in 0..n {
         let (above, row) = matrix.split_at_mut(i * n);
         let row = &mut row[..n];
@@ -443,14 +437,15 @@ pub(super) fn factor_positive(matrix: &mut [f64], n: usize) -> bool {
         }
         let pivot = whole - row[..i].iter().map(|a| a * a).sum::<f64>();
         if !(pivot > 1e-13 * whole) {
-            return false;
+            return None;
         }
         row[i] = 1.0 / pivot.sqrt();
     }
-    true
+    let rows = matrix.chunks_exact(n).enumerate();
+    Some(rows.flat_map(|(i, row)| &row[..=i]).copied().collect())
 }
 
-/// Solves with that factor, of which the rows of the lower half are given, in place.
+/// Solves with that factor, in place.
 pub(super) fn substitute(factor: &[f64], x: &mut [f64]) {
     let n = x.len();
     let mut rest = factor;

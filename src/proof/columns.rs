@@ -72,7 +72,7 @@ impl<'a> Enclosed<'a> {
                 c.iter_mut().zip(&goes_on).filter(|(_, on)| !**on).for_each(|(c, _)| *c = 0.0);
             }
             factor.solve_columns(&mut c, count);
-            left.subtract_product(self.a, &c, count);
+            on_this_processor!(subtract_product(self.a, &c, &mut left, count));
             let mut moved = vec![0.0; count];
             let rows = z.z.chunks_exact_mut(count).zip(c.chunks_exact(count));
             for ((z, c), by) in rows.zip(&self.of_factor) {
@@ -152,13 +152,7 @@ struct Left {
     tails: Vec<f64>,
 }
 
-impl Left {
-    /// Subtracts A c for `count` columns.
-    fn subtract_product(&mut self, a: &LowerTriangle<PreciseBall>, c: &[f64], count: usize) {
-        on_this_processor!(subtract_product(a, c, self, count));
-    }
-}
-
+/// Subtracts A c for `count` columns.
 #[inline(always)]
 fn subtract_product(a: &LowerTriangle<PreciseBall>, c: &[f64], left: &mut Left, count: usize) {
     let row = |i: usize| i * count..(i + 1) * count;

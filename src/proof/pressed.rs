@@ -119,19 +119,12 @@ impl EdgePiece {
             return Self::between_roots(degree, radii, all, (insets, cuts));
         };
         let at = |&(s, weight): &(f64, f64)| {
-            let (shapes, weight) = (
-                degree.edge_values(PreciseBall::from(s)),
-                weighted(radii, s.into(), weight.into()),
-            );
-            let mass = products(weight, &shapes);
-            EdgePiece {
-                ends: [s, s],
-                coefficients: vec![shapes],
-                square: PreciseBall::from(1) / weight,
-                mass,
-            }
+            let shapes = degree.edge_values(PreciseBall::from(s));
+            let weight = weighted(radii, s.into(), weight.into());
+            let (mass, square) = (products(weight, &shapes), PreciseBall::from(1) / weight);
+            EdgePiece { ends: [s, s], coefficients: vec![shapes], square, mass }
         };
-        points.iter().map(at).filter(|piece| piece.least(all) > 0.0).collect()
+        points.iter().map(at).filter(|piece| least(&piece.coefficients, all) > 0.0).collect()
     }
 
     /// Those on which all of these polynomials are positive, as much of the piece as they are.
@@ -190,11 +183,6 @@ impl EdgePiece {
             add(&mut mass, &products(weighted(radii, place(i), weight), &at(i)));
         }
         EdgePiece { ends, coefficients, square, mass }
-    }
-
-    /// The least coefficient of these polynomials, or less.
-    fn least(&self, all: &[Row]) -> f64 {
-        least(&self.coefficients, all)
     }
 }
 
@@ -277,7 +265,7 @@ impl Pressed {
             } else {
                 EdgePiece::positive((degree, &d.rule), line.radii, all, (&[INSET], &[]))
             };
-            pieces.into_iter().map(|piece| (piece.least(all), piece)).collect()
+            pieces.into_iter().map(|piece| (least(&piece.coefficients, all), piece)).collect()
         };
         let [mut pressed, mut sticking]: [Vec<Found>; 2] = Default::default();
         for (edge, line) in lines.iter().enumerate() {
