@@ -61,12 +61,8 @@ impl Built {
     /// The edges of Gamma_C, by their numbers in `parts`, of the triangles where v can't be shown to be outside the obstacle,
     /// and how far it may be inside.
     pub(crate) fn penetrations(&self, parts: &ProblemParts) -> Vec<(usize, f64)> {
-        let found = self.certificate.penetrations();
-        if found.is_empty() {
-            return Vec::new();
-        }
+        let by_edge: BTreeMap<usize, f64> = self.certificate.penetrations().into_iter().collect();
         let mut of: BTreeMap<usize, f64> = BTreeMap::new();
-        let by_edge: BTreeMap<usize, f64> = found.into_iter().collect();
         for (piece, &t) in self.certificate.pieces.iter().zip(&self.origins) {
             for by in piece.edges.iter().filter_map(|e| by_edge.get(e)) {
                 let most = of.entry(t).or_default();
@@ -241,16 +237,13 @@ pub(super) fn build(parts: &ProblemParts, y: &Field, v: &Field) -> Built {
     let mut built = Built {
         certificate: Certificate {
             vertices: mesh.vertices().to_vec(),
-            cuts: Vec::new(),
             displacement: v.vertices.clone(),
             curved: quadratic.then(Curved::default),
             prescribed: parts.prescribed.clone(),
             frames: parts.frames.clone(),
             pieces: Vec::with_capacity(whole.len()),
             edges: Vec::with_capacity(mesh.edge_count()),
-            lifts: Vec::new(),
-            polygon: Vec::new(),
-            facing: BTreeMap::new(),
+            ..Certificate::default()
         },
         origins: Vec::with_capacity(whole.len()),
         oscillation: Oscillation::new(parts, quadratic),

@@ -277,14 +277,6 @@ impl Part {
     fn tractions(&self) -> [[f64; 2]; 2] {
         [self.pressure, self.shear]
     }
-
-    fn pushing(&self) -> [[f64; 2]; 2] {
-        [self.pressure, [0.0; 2]]
-    }
-
-    fn pressed(&self) -> [[f64; 2]; 2] {
-        [[-1.0; 2], [0.0; 2]]
-    }
 }
 
 /// The function with these values at the nodes of an edge, at place `s` of it.
@@ -680,7 +672,10 @@ impl Contact {
     /// int p d . r, p as in [`Contact::force`], and int (p d + q e) . r over side `i` for a motion that is affine along its edge.
     pub(crate) fn against(&self, i: usize, ends: [Vector2<f64>; 2]) -> [f64; 2] {
         let hats = |s: f64| [1.0 - s, s];
-        let of_force = if self.is_tied() { Part::pressed } else { Part::pushing };
+        let of_force: fn(&Part) -> [[f64; 2]; 2] = match self.is_tied() {
+            true => |_| [[-1.0; 2], [0.0; 2]],
+            false => |part| [part.pressure, [0.0; 2]],
+        };
         [of_force, Part::tractions].map(|tractions| {
             let [a, b] = self.moments(i, [0.0, 1.0], hats, tractions);
             a.dot(&ends[0]) + b.dot(&ends[1])
@@ -756,18 +751,15 @@ pub(super) fn even_out(contacts: &mut [Contact]) {
             continue;
         }
         let [pressure, shear] = [0, 1].map(|c| (p[c] * after + q[c] * before) / (before + after));
-        for (n, &(k, j)) in run.iter().enumerate() {
-            for end in 0..2 {
-                if (n == 0 && end == 0) || (n == run.len() - 1 && end == 1) {
-                    continue;
-                }
-                let bound = match contacts[k].is_tied() {
-                    true => f64::INFINITY,
-                    false => contacts[k].bound_at(contacts[k].parts[j].ends[end]),
-                };
-                let part = &mut contacts[k].parts[j];
-                (part.pressure[end], part.shear[end]) = (pressure, shear.clamp(-bound, bound));
-            }
+        // But for the outer ends of the run.
+        let ends = run.iter().flat_map(|&at| [(at, 0), (at, 1)]);
+        for ((k, j), end) in ends.skip(1).take(2 * run.len() - 2) {
+            let bound = match contacts[k].is_tied() {
+                true => f64::INFINITY,
+                false => contacts[k].bound_at(contacts[k].parts[j].ends[end]),
+            };
+            let part = &mut contacts[k].parts[j];
+            (part.pressure[end], part.shear[end]) = (pressure, shear.clamp(-bound, bound));
         }
     }
 }

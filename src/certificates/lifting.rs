@@ -306,8 +306,7 @@ impl<'a> Lifter<'a> {
         [own, own - 1.0]
     }
 
-    /// The value that a demand asks for at a node; at a place where the boundaries contradict one another, with `strict` an
-    /// error.
+    /// The value that a demand asks for at a node.
     fn value(&self, node: usize, demand: &Prescription, target: ForceTarget) -> f64 {
         let x = self.space.nodes()[node];
         if target.boundary.is_some_and(|boundary| boundary != demand.boundary) {

@@ -5,9 +5,8 @@
 //!
 //! M^2 = |C eps(v) - tau|^2 / 4 + int tau_n (v_n - g),   A = int sigma_n (v_n - g) >= 0,   B = int tau_n (u_n - g) >= 0.
 //!
-//! Then |sigma(u) - m|^2 + A + B = M^2 \[Q2\]: the mean stress has about half the bound of theorem 7.2. From it follow
-//!
-//! With a bound s of friction A and B have the integrals of s |v_t| + sigma_t v_t and s |u_t| + tau_t u_t, too.
+//! Then |sigma(u) - m|^2 + A + B = M^2 \[Q2\]: the mean stress has about half the bound of theorem 7.2. With a bound s of friction
+//! A and B have the integrals of s |v_t| + sigma_t v_t and s |u_t| + tau_t u_t, too. From it follow
 //!
 //! - int_S |sigma_n| <= M^2 / d where g - v_n >= d on S, and int_S (g - u_n) <= M^2 / p where tau_n <= -p on S, and
 //!   int_S |u_t| <= M^2 / q where |tau_t| <= s - q ([`Zone`]);
@@ -555,25 +554,19 @@ impl Prover<'_> {
                 return (questions.into_iter().map(why).collect(), Evidence::default(), Vec::new());
             }
         };
-        let (mut evidence, refused) = self.liftings(&lifter, &questions);
+        let (mut evidence, places) = self.liftings(&lifter, &questions);
         let cover = evidence.cover.as_ref().and_then(|w| self.forces.cover(w).ok());
         let between = self.forces.between(&evidence.liftings, cover.as_ref());
         let (by_pairs, limits) = self.dual_pairs(&mut evidence, &between, cover.as_ref());
-        let nearest =
-            |((target, _), ends): (&(ForceTarget, _), &Result<[f64; 2], WrongLifting>)| {
-                let ends = ends.clone().map_err(|error| error.to_string())?;
-                Ok(evidence.nearest(*target, ends, &by_pairs))
-            };
-        let nearest: Vec<_> = evidence.liftings.iter().zip(&between).map(nearest).collect();
-        let mut nearest = nearest.into_iter();
-        let intervals = refused.into_iter().map(|refused| match refused {
-            Some(why) => Err(why),
-            None => nearest.next().unwrap_or_else(|| Err(String::new())),
+        let nearest = |k: usize| {
+            let ends = between[k].clone().map_err(|error| error.to_string())?;
+            Ok(evidence.nearest(evidence.liftings[k].0, ends, &by_pairs))
+        };
+        let found = questions.into_iter().zip(places).flat_map(|(question, place)| {
+            answers(question, acts[question.boundary], place.and_then(nearest))
         });
-        let found = questions.into_iter().zip(intervals);
-        let found =
-            found.flat_map(|(question, ends)| answers(question, acts[question.boundary], ends));
-        (found.collect(), proving(evidence, cover.as_ref(), &between, by_pairs), limits)
+        let found = found.collect();
+        (found, proving(evidence, cover.as_ref(), &between, by_pairs), limits)
     }
 
     /// The numbers of a boundary that are asked for, and how contact acts there.
@@ -617,17 +610,22 @@ impl Prover<'_> {
         (questions, acts)
     }
 
-    /// The displacements w, w0 among them, and for each question why there is none.
-    fn liftings(&self, lifter: &Lifter, questions: &[Question]) -> (Evidence, Vec<Option<String>>) {
+    /// The displacements w, w0 among them, and for each question the place of its own, or why there is none.
+    fn liftings(
+        &self,
+        lifter: &Lifter,
+        questions: &[Question],
+    ) -> (Evidence, Vec<Result<usize, String>>) {
         let lifting = |target| lifter.lifting(target, self.built, self.forces.of);
         let all = ForceTarget { boundary: None, motion: Motion::Along(None) };
         let mut evidence = Evidence { cover: lifting(all).ok(), ..Evidence::default() };
-        let refused = questions.iter().map(|&Question { name, boundary, weight }| {
+        let places = questions.iter().map(|&Question { name, boundary, weight }| {
             let target = ForceTarget { boundary: Some(boundary), motion: name.motion(weight) };
-            lifting(target).map(|w| evidence.liftings.push((target, w))).err()
+            evidence.liftings.push((target, lifting(target)?));
+            Ok(evidence.liftings.len() - 1)
         });
-        let refused = refused.collect();
-        (evidence, refused)
+        let places = places.collect();
+        (evidence, places)
     }
 
     /// Adds dual pairs to the evidence where they say more than the liftings, which prove what forces are `between`; returns

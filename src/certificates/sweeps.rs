@@ -137,6 +137,7 @@ struct StarUnknown {
 
 /// The triangles around a point, whose unknowns there change together: those of the point that are free, then one for each free
 /// edge at it.
+#[derive(Default)]
 struct Star {
     /// Triangle by triangle.
     places: Vec<StarUnknown>,
@@ -169,12 +170,8 @@ impl Sweeps {
                 (0..3).for_each(|k| free[p][k] &= may[k]);
             }
         }
-        let star = |free: [bool; 3]| Star {
-            places: Vec::new(),
-            own: (0..3).filter(|&k| free[k]).collect(),
-            edges: Vec::new(),
-            factor: Vec::new(),
-        };
+        let own = |free: [bool; 3]| (0..3).filter(|&k| free[k]).collect();
+        let star = |free| Star { own: own(free), ..Star::default() };
         let mut stars: Vec<Star> = free.into_iter().map(star).collect();
         for (triangle, piece) in certificate.pieces.iter().enumerate() {
             for (local, &point) in piece.vertices.iter().enumerate() {
@@ -343,28 +340,21 @@ fn energies(
 /// The [`features`] of the stresses of a triangle's unknowns, with edges that go round it.
 fn units(triangle: &Triangle<f64>, material: &Material<f64>) -> [[f64; UNKNOWNS]; FEATURES] {
     let frame = Frame::new(triangle);
-    let mut units = [[0.0; UNKNOWNS]; FEATURES];
-    let (zero, body) = ([[Vector2::zeros(); 2]; 3], [Vector2::zeros(); 3]);
-    let mut put = |k: usize, forces: [[Vector2<f64>; 2]; 3]| {
-        let tau = features(&Composite::new(&frame, &Loads { forces, body }), triangle, material);
-        units.iter_mut().zip(tau).for_each(|(row, value)| row[k] = value);
-    };
-    let mut at_vertices = [zero; 9];
+    let mut all = [[[Vector2::zeros(); 2]; 3]; UNKNOWNS];
     for side in 0..3 {
         let vertices = [1, 2].map(|k| (side + k) % 3);
         let places = vertices.map(|vertex| triangle.vertices[vertex]);
         for (k, vertex) in vertices.into_iter().enumerate() {
-            let modes = modes(places, k == 1);
-            (0..3).for_each(|c| at_vertices[3 * vertex + c][side] = modes[c]);
-            if k == 0 {
-                let mut forces = zero;
-                forces[side] = modes[3];
-                put(9 + side, forces);
-            }
+            let [phi, phi_x, phi_y, own] = modes(places, k == 1);
+            let at_vertex = [phi, phi_x, phi_y].into_iter().zip(&mut all[3 * vertex..]);
+            at_vertex.for_each(|(mode, forces)| forces[side] = mode);
+            all[9 + side][side] = own;
         }
     }
-    for (k, forces) in at_vertices.into_iter().enumerate() {
-        put(k, forces);
+    let (mut units, body) = ([[0.0; UNKNOWNS]; FEATURES], [Vector2::zeros(); 3]);
+    for (k, forces) in all.into_iter().enumerate() {
+        let tau = features(&Composite::new(&frame, &Loads { forces, body }), triangle, material);
+        units.iter_mut().zip(tau).for_each(|(row, value)| row[k] = value);
     }
     units
 }

@@ -36,7 +36,7 @@ pub(crate) struct NotHeld {
 }
 
 /// The solutions of a body that contact holds: with u those u + sum_j x_j b_j with row . (x + b . u) <= bound.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Slides {
     /// b_j, fields with orthonormal nodal values: the motions that contact does not stop.
     pub(crate) basis: Vec<Vec<[f64; 2]>>,
@@ -285,13 +285,7 @@ impl Slides {
         let fields: Vec<_> = motions.iter().map(|motion| motion.field(parts, space)).collect();
         let basis = orthonormal(fields.iter().cloned());
         let along = fields.iter().map(|field| basis.iter().map(|b| inner(b, field)).collect());
-        Slides {
-            motions: motions.into_iter().zip(along).collect(),
-            basis,
-            bounds: Vec::new(),
-            stopping: Vec::new(),
-            idle: Vec::new(),
-        }
+        Slides { motions: motions.into_iter().zip(along).collect(), basis, ..Slides::default() }
     }
 
     /// A motion that leads from u to a solution away from all obstacles that do not press it, if there is one.

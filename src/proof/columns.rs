@@ -134,6 +134,7 @@ impl Columns {
 }
 
 /// Calls `f` with the row, the column and the entry of both triangles.
+#[inline(always)]
 fn each_entry(a: &LowerTriangle<PreciseBall>, mut f: impl FnMut(usize, usize, PreciseBall)) {
     for (j, ends) in a.starts.windows(2).enumerate() {
         for k in ends[0]..ends[1] {
@@ -157,15 +158,11 @@ struct Left {
 fn subtract_product(a: &LowerTriangle<PreciseBall>, c: &[f64], left: &mut Left, count: usize) {
     let row = |i: usize| i * count..(i + 1) * count;
     let Left { heads, tails } = left;
-    for (j, ends) in a.starts.windows(2).enumerate() {
-        for k in ends[0]..ends[1] {
-            let (i, entry) = (a.rows[k], a.values[k].centre());
-            subtract(&mut heads[row(i)], &mut tails[row(i)], entry, &c[row(j)]);
-            if i != j {
-                subtract(&mut heads[row(j)], &mut tails[row(j)], entry, &c[row(i)]);
-            }
-        }
-    }
+    each_entry(
+        a,
+        #[inline(always)]
+        |i, j, a| subtract(&mut heads[row(i)], &mut tails[row(i)], a.centre(), &c[row(j)]),
+    );
     for (head, tail) in heads.iter_mut().zip(tails) {
         let sum = DoubleDouble::sum(*head, *tail);
         (*head, *tail) = (sum.head(), sum.tail());

@@ -3,8 +3,7 @@
 //!
 //! With B the functionals, A = L L^T, Z = L^-1 B^T, G = Z^T Z and H0 the derivative of the terms of contact and friction where
 //! the state (open, stick, slip) is certain, J0 = A + B^T H0 B. Newton's map v - J0^-1 F(v) moves u~ by at most `step`, and
-//! brings two fields within R
-//! of u~ nearer to each other by a factor of at most
+//! brings two fields within R of u~ nearer to each other by a factor of at most
 //!
 //! q(R) = sum over the pieces of |E| / gamma times the integral of what J0^-1 makes of the forces by which the terms may differ from those
 //! of H0 at a point, for P that changes by what a field of norm R does there.
@@ -321,7 +320,7 @@ fn possible(law: Law, has: impl Fn(Region) -> bool) -> Vec<Terms> {
     }
 }
 
-/// The contributions of a piece to eta and H0.
+/// The contributions of a piece to q and H0.
 struct OnPiece<'a> {
     piece: &'a Piece<PreciseBall>,
     p: Row,
@@ -878,8 +877,7 @@ fn mass(d: &Discretization, piece: &Piece<PreciseBall>) -> DMatrix<f64> {
 }
 
 /// C^T M C, and a bound of its error: M are the integrals of `weight`(mu) N_a N_b / gamma of the functionals that feel
-/// Coulomb's friction. Its
-/// largest eigenvalue is at least that of G^(1/2) M G^(1/2).
+/// Coulomb's friction. Its largest eigenvalue is at least that of G^(1/2) M G^(1/2).
 fn of_friction(
     d: &Discretization,
     pieces: &Lines,
@@ -1006,13 +1004,12 @@ fn power(n: usize, times: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
     use super::*;
     use crate::contact::Friction;
     use crate::kernel::{Material, Plane};
     use crate::model::quadrature::gauss;
-    use crate::model::{Condition, Diagonal, Mesh, Problem, Rectangle};
+    use crate::model::{Condition, Diagonal, Problem, Rectangle};
+    use crate::proof::intervals::tests::ring;
 
     /// Numbers between -1 and 1.
     fn draws(seed: f64) -> impl FnMut() -> f64 {
@@ -1096,26 +1093,11 @@ mod tests {
         assert!(are_too_many(2_001, 10) && are_too_many(2_000, 100_001));
     }
 
-    /// A ring on a floor, from 0.1 to 1.1 off its axis.
-    fn ring() -> Problem {
-        let cells = Rectangle { width: 1.0, height: 1.0, nx: 1, ny: 1, diagonal: Diagonal::Right };
-        let mesh = cells.mesh().unwrap();
-        let named = ["top", "bottom"].map(|name| {
-            let ends = mesh.edges_of(name).unwrap().iter().map(|&edge| mesh.ends(edge));
-            (name.to_owned(), ends.collect())
-        });
-        let places = mesh.vertices().iter().map(|[x, y]| [x + 0.1, *y]).collect();
-        let ring = Mesh::new(places, mesh.triangles().to_vec(), BTreeMap::from(named)).unwrap();
-        Problem::of(ring, Material::lame(1.3, 0.7, Plane::Axisymmetric))
-            .with("top", Condition::clamped())
-            .with("bottom", Condition::contact(|_| 0.0))
-    }
-
     /// Pressed at one end of the edge for sure, and hardly at the other: there the radii are those of that half at points, and the largest
     /// one between them.
     #[test]
     fn what_is_uncertain_at_points_has_their_radii() {
-        let problem = ring();
+        let problem = ring(1, Condition::clamped());
         let on_edge = |rule: EdgeRule, [inner, outer]: [f64; 2]| {
             let d = Discretization::new(&problem, Degree::One, |c| c.limit() / 2.0, rule).unwrap();
             let lines = Lines::new(&d);

@@ -233,8 +233,7 @@ fn mean_weight(materials: &Materials, t: usize, triangle: &Triangle<f64>) -> f64
 }
 
 /// The constraints by the hoop strain of a body of revolution, on the mean of v_r on each triangle. Two of each part are
-/// enough, one near either end
-/// along the axis, where the bound is least.
+/// enough, one near either end along the axis, where the bound is least.
 fn hoops(mesh: &Mesh, materials: &Materials, part: &[usize], count: usize) -> Vec<Hold> {
     let height = |t: usize| mesh.triangle(t).vertices.iter().map(|x| x[1]).sum::<f64>();
     let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; count];

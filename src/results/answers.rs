@@ -206,8 +206,7 @@ pub(crate) fn recovered_pressure(d: &Discretization, p: &[Vec<DoubleDouble>]) ->
 }
 
 /// The recovered pressure on the pieces of a pair of bodies, by the hats of whole edges of the body that has more of them: a
-/// piece
-/// may be far shorter than any edge, and lambda^h jumps from one to the next.
+/// piece may be far shorter than any edge, and lambda^h jumps from one to the next.
 fn recover_between(
     d: &Discretization,
     p: &[Vec<DoubleDouble>],
