@@ -407,11 +407,8 @@ impl Over {
         let by_bulge = self.between(edge);
         let shift = |k: usize| {
             let d = edge.directions[k];
-            let change = if k == 0 {
-                [d, d / 2.0, Vector2::zeros()]
-            } else {
-                [Vector2::zeros(), d / 2.0, d]
-            };
+            let mut change = [Vector2::zeros(), d / 2.0, Vector2::zeros()];
+            change[2 * k] = d;
             let step = self.step(edge, &change);
             let force = length(edge.on_edge(0)[k]);
             (k, step, modulus * step * step + 4.0 * force * step)

@@ -262,13 +262,11 @@ impl Profile {
             let place = (centroid / reach).clamp(1.0 / 3.0, 2.0 / 3.0);
             [mean * (4.0 - 6.0 * place), mean * (6.0 * place - 2.0)].map(|p| p.min(0.0))
         };
+        let ends = if turned { [ends[1], ends[0]] } else { ends };
         match (reach < 1.0, turned) {
-            (false, false) => Profile::whole(ends),
-            (false, true) => Profile::whole([ends[1], ends[0]]),
+            (false, _) => Profile::whole(ends),
             (true, false) => Profile { cut: Some(reach), values: [ends, [0.0; 2]] },
-            (true, true) => {
-                Profile { cut: Some(1.0 - reach), values: [[0.0; 2], [ends[1], ends[0]]] }
-            }
+            (true, true) => Profile { cut: Some(1.0 - reach), values: [[0.0; 2], ends] },
         }
     }
 }
