@@ -34,6 +34,36 @@ pub(super) struct Built {
     pub(crate) divisions: Vec<Division>,
 }
 
+/// The boundaries of the problem on the edges of a certificate.
+pub(super) struct Line {
+    pub(crate) names: Vec<String>,
+    /// The boundary of each edge, by its place among the names.
+    pub(crate) of: Vec<Option<usize>>,
+    /// The edges of Gamma_C, along it.
+    pub(crate) stations: Vec<Station>,
+}
+
+/// An edge of Gamma_C along its boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Station {
+    pub(crate) edge: usize,
+    /// Arc length at its ends.
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    pub(crate) ends: [[f64; 2]; 2],
+    /// The edge starts where the edge before it ends.
+    pub(crate) joined: bool,
+}
+
+/// The edges of a certificate along those of a mesh, each with the places where it begins and ends there.
+struct Along(BTreeMap<usize, Vec<(usize, [f64; 2])>>);
+
+impl Along {
+    fn of(&self, whole: usize) -> &[(usize, [f64; 2])] {
+        self.0.get(&whole).map_or(&[], Vec::as_slice)
+    }
+}
+
 impl Built {
     /// A displacement of the mesh on the pieces: given at the vertices, and at the middles of the edges if it is quadratic.
     pub(crate) fn shape<S: Enclosing>(&self, mesh: &Mesh, nodal: &[[f64; 2]]) -> Shape<S> {
@@ -72,30 +102,7 @@ impl Built {
         let contact = parts.contact.iter().enumerate();
         contact.filter_map(|(k, edge)| Some((k, *of.get(&edge.edge.triangle)?))).collect()
     }
-}
 
-/// The boundaries of the problem on the edges of a certificate.
-pub(super) struct Line {
-    pub(crate) names: Vec<String>,
-    /// The boundary of each edge, by its place among the names.
-    pub(crate) of: Vec<Option<usize>>,
-    /// The edges of Gamma_C, along it.
-    pub(crate) stations: Vec<Station>,
-}
-
-/// An edge of Gamma_C along its boundary.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Station {
-    pub(crate) edge: usize,
-    /// Arc length at its ends.
-    pub(crate) from: f64,
-    pub(crate) to: f64,
-    pub(crate) ends: [[f64; 2]; 2],
-    /// The edge starts where the edge before it ends.
-    pub(crate) joined: bool,
-}
-
-impl Built {
     /// Where the boundaries of the problem are on the edges of the certificate.
     pub(crate) fn line(&self, parts: &ProblemParts) -> Line {
         let (mesh, edges) = (parts.mesh, &self.certificate.edges);
@@ -136,18 +143,7 @@ impl Built {
         }
         line
     }
-}
 
-/// The edges of a certificate along those of a mesh, each with the places where it begins and ends there.
-struct Along(BTreeMap<usize, Vec<(usize, [f64; 2])>>);
-
-impl Along {
-    fn of(&self, whole: usize) -> &[(usize, [f64; 2])] {
-        self.0.get(&whole).map_or(&[], Vec::as_slice)
-    }
-}
-
-impl Built {
     /// The edges of the certificate along those of the outline.
     fn along(&self, mesh: &Mesh) -> Along {
         let (count, halves) = (mesh.edge_count(), if self.quartered { 2 } else { 1 });
