@@ -230,8 +230,8 @@ fn move_apart(
         let ease = 1.0 / parts.material(side.edge.triangle).mu();
         let along = mean * Contact::sign(i);
         let mut add = |at: Result<usize, usize>, along: Vector2<f64>, [a, m, b]: [f64; 3]| {
-            let change = side.blossom().map(|[l, n, o]| {
-                let shape = a * l + m * n + b * o;
+            let change = side.blossom().map(|[p, q, r]| {
+                let shape = a * p + m * q + b * r;
                 along * (shape * Contact::sign(i))
             });
             unknowns.push((at, along, on_parts(contact, &change, &[0.0; 3]), ease));

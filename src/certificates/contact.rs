@@ -695,7 +695,7 @@ impl Contact {
         let number = mesh.number_of(side.edge);
         let bulge = field.bulges.as_ref().map_or(Vector2::zeros(), |all| all[number].into());
         let middle = (a + b) / 2.0 + bulge * 2.0;
-        side.blossom().map(|[l, m, n]| a * l + middle * m + b * n)
+        side.blossom().map(|[p, q, r]| a * p + middle * q + b * r)
     }
 
     /// The coefficients of a field along the contact, on a pair less those on the other body.

@@ -129,7 +129,8 @@ impl Grip {
         self.bounded.iter().map(|row| norm(row)).fold(0.0, f64::max)
     }
 
-    /// The motion that the loads drive, or would if they were changed a little; `None` if friction and the rows `normal` hold the body. The loads and `bounded` are divided by `unit`.
+    /// The motion that the loads drive, or would if they were changed a little; `None` if friction and the rows `normal` hold the
+    /// body. The loads and `bounded` are divided by `unit`.
     pub(super) fn driven(
         &self,
         normal: &[Vec<f64>],
