@@ -151,7 +151,8 @@ fn springs(piece: &Piece) -> DMatrix<f64> {
 pub(super) fn factored(
     space: &Space,
     materials: &Materials,
-    (prescribed, frames): (&[[Option<f64>; 2]], BTreeMap<usize, [f64; 2]>),
+    prescribed: &[[Option<f64>; 2]],
+    frames: BTreeMap<usize, [f64; 2]>,
     tied: &[Piece],
 ) -> Result<(Numbering, Factor), SolveError> {
     let neighbours = Neighbours::across(space, tied);
@@ -273,8 +274,8 @@ impl<'a> Lifter<'a> {
         for (node, c) in pins(&fields, |node, _| !demands.contains_key(&node)) {
             prescribed[node][c] = Some(0.0);
         }
-        let free = (&*prescribed, frames);
-        let factored = factored(&space, &parts.problem.material, free, &parts.tied);
+        let materials = &parts.problem.material;
+        let factored = factored(&space, materials, &prescribed, frames, &parts.tied);
         let (numbering, factor) = factored.map_err(|error| {
             format!("no displacement of least energy to prove forces with: {error}")
         })?;

@@ -60,8 +60,8 @@ pub(super) fn displacement(
     for (node, c) in pins(&fields, is_free) {
         prescribed[node][c] = Some(0.0);
     }
-    let free = (&*prescribed, constraints.frames().clone());
-    let factored = factored(&space, &parts.problem.material, free, &[]);
+    let (materials, frames) = (&parts.problem.material, constraints.frames().clone());
+    let factored = factored(&space, materials, &prescribed, frames, &[]);
     let (numbering, factor) = factored.map_err(|error| {
         CertifyError::Unsupported(format!("no displacement under the contact pressures: {error}"))
     })?;
@@ -69,7 +69,7 @@ pub(super) fn displacement(
     // The second time for what the first one has rounded.
     for _ in 0..2 {
         let mut internal = vec![[0.0; 2]; y.len()];
-        add_internal_forces(&space, &parts.problem.material, &y, &mut internal);
+        add_internal_forces(&space, materials, &y, &mut internal);
         let left: Vec<[f64; 2]> =
             forces.iter().zip(internal).map(|(f, i)| [f[0] - i[0], f[1] - i[1]]).collect();
         let mut x = numbering.gather(&left);
