@@ -29,6 +29,8 @@ use crate::model::mesh::bisection::Refinement;
 use crate::model::{BoundaryEdge, Condition, Degree, Mesh, Problem, Space};
 use crate::quote::quoted;
 use crate::results::Solution;
+#[cfg(feature = "files")]
+use crate::results::answers::unknown;
 use crate::solve::{Course, Method, Phase, Settings, SolveError, Times, solve_along};
 
 /// The share of the square of the bound that the marked triangles have. With more, levels are fewer and grow faster.
@@ -69,11 +71,6 @@ pub struct AdaptedLevel {
     /// Half the width of what the force lies between over its middle, if a force is the target.
     #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Option::is_none"))]
     pub force: Option<f64>,
-}
-
-#[cfg(feature = "files")]
-fn unknown() -> f64 {
-    f64::NAN
 }
 
 #[cfg(feature = "files")]
@@ -334,13 +331,10 @@ fn finer(
 /// The interval of a boundary's contact force, or why it is not known.
 fn force_of(certified: &Continuous, boundary: &str) -> Result<[f64; 2], String> {
     let mut all = certified.quantities.list.iter();
-    let is = |q: &&super::quantities::Quantity| {
-        q.name == Name::ContactForce && q.boundary == boundary && q.weight.is_none()
-    };
-    all.find(is).map_or_else(
-        || Err(format!("there is no contact on {}", quoted(boundary, '\''))),
-        |quantity| quantity.interval.clone(),
-    )
+    let force =
+        all.find(|q| q.name == Name::ContactForce && q.boundary == boundary && q.weight.is_none());
+    let none = || format!("there is no contact on {}", quoted(boundary, '\''));
+    force.ok_or_else(none)?.interval.clone()
 }
 
 /// Half the width of that over its middle.
@@ -402,15 +396,11 @@ pub fn marked(indicators: &[f64]) -> Vec<usize> {
     order.sort_by(|a, b| indicators[*b].total_cmp(&indicators[*a]));
     let whole: f64 = order.iter().map(share).sum();
     let mut sum = 0.0;
-    let mut count = 0;
-    for t in &order {
+    let last = order.iter().position(|t| {
         sum += share(t);
-        count += 1;
-        if sum >= THETA * whole && whole > 0.0 {
-            break;
-        }
-    }
-    order.truncate(count);
+        sum >= THETA * whole && whole > 0.0
+    });
+    order.truncate(last.map_or(order.len(), |last| last + 1));
     order
 }
 

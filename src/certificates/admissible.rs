@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 
 use super::certificate::{is_oblique, turned};
-use super::contact::Contact;
+use super::contact::{Contact, Part, blossom};
 use super::field::Field;
 use super::parts::{Free, ProblemParts, held_along};
 use crate::model::mesh::length;
@@ -228,19 +228,13 @@ fn move_apart(
     let mut unknowns = Vec::with_capacity(6);
     for (i, side) in contact.sides.iter().enumerate() {
         let ease = 1.0 / parts.material(side.edge.triangle).mu();
-        let [s, t] = side.places;
-        let blossom = |[a, m, b]: [f64; 3]| {
-            [(s, s), (s, t), (t, t)].map(|(s, t)| {
-                a * (1.0 - s) * (1.0 - t) + m * ((1.0 - s) * t + s * (1.0 - t)) + b * s * t
-            })
-        };
         let along = mean * Contact::sign(i);
-        let mut add = |at: Result<usize, usize>, along: Vector2<f64>, shape: [f64; 3]| {
-            let change = blossom(shape).map(|n| along * (n * Contact::sign(i)));
-            let effects = |ends| coefficients(&change, &d, &[0.0; 3], ends);
-            let effects: Vec<f64> =
-                contact.parts.iter().flat_map(|part| effects(part.ends)).collect();
-            unknowns.push((at, along, effects, ease));
+        let mut add = |at: Result<usize, usize>, along: Vector2<f64>, [a, m, b]: [f64; 3]| {
+            let change = side.blossom().map(|[p, q, r]| {
+                let shape = a * p + m * q + b * r;
+                along * (shape * Contact::sign(i))
+            });
+            unknowns.push((at, along, on_parts(contact, &change, &[0.0; 3]), ease));
         };
         for (vertex, shape) in
             mesh.ends(side.edge).into_iter().zip([[1.0, 0.5, 0.0], [0.0, 0.5, 1.0]])
@@ -256,12 +250,7 @@ fn move_apart(
             add(Err(number), along, [0.0, 2.0, 0.0]);
         }
     }
-    let jump = |field: &Field| {
-        let jump = contact.jump(mesh, field);
-        let of_part = |ends| coefficients(&jump, &d, &gap, ends);
-        contact.parts.iter().flat_map(|part| of_part(part.ends)).collect::<Vec<f64>>()
-    };
-    let mut over = jump(field);
+    let mut over = on_parts(contact, &contact.jump(mesh, field), &gap);
     let mut moved = false;
     for j in 0..over.len() {
         let beyond = over[j] + margin;
@@ -351,6 +340,12 @@ struct Over {
     margin: f64,
 }
 
+/// The [`coefficients`] of v . d - g on all parts of an edge.
+fn on_parts(edge: &Contact, v: &[Vector2<f64>; 3], g: &[f64; 3]) -> Vec<f64> {
+    let of_part = |part: &Part| coefficients(v, &edge.directions, g, part.ends);
+    edge.parts.iter().flat_map(of_part).collect()
+}
+
 /// The Bernstein coefficients of v . d - g on the part of an edge from s to t, for v and g by their own on the whole edge; of degree 3,
 /// or of degree 2 where d does not turn.
 fn coefficients(
@@ -359,11 +354,9 @@ fn coefficients(
     g: &[f64; 3],
     [s, t]: [f64; 2],
 ) -> Vec<f64> {
-    // Each argument of the blossom takes one step of de Casteljau's.
-    let weights = |a: f64, b: f64| [(1.0 - a) * (1.0 - b), (1.0 - a) * b + a * (1.0 - b), a * b];
     let v =
-        |a: f64, b: f64| -> Vector2<f64> { v.iter().zip(weights(a, b)).map(|(v, w)| *v * w).sum() };
-    let g = |a: f64, b: f64| g.iter().zip(weights(a, b)).map(|(g, w)| g * w).sum::<f64>();
+        |a: f64, b: f64| -> Vector2<f64> { v.iter().zip(blossom(a, b)).map(|(v, w)| *v * w).sum() };
+    let g = |a: f64, b: f64| g.iter().zip(blossom(a, b)).map(|(g, w)| g * w).sum::<f64>();
     if d[0] == d[1] {
         return [(s, s), (s, t), (t, t)].map(|(a, b)| v(a, b).dot(&d[0]) - g(a, b)).to_vec();
     }
@@ -384,20 +377,18 @@ impl Over {
         let (d, [g, h]) = (edge.directions, edge.gap);
         let middle = (v[0] + v[1]) / 2.0 + bulge * 2.0;
         let gap = [g, (g + h) / 2.0 + 2.0 * edge.gap_bulge, h];
-        let of_part = |part| coefficients(&[v[0], middle, v[1]], &d, &gap, part);
         let tilted = if d.into_iter().any(|d| is_oblique(d.into())) { size } else { 0.0 };
         let largest = v[0].dot(&d[0]).abs() + v[1].dot(&d[1]).abs() + bulge.dot(&d[0]).abs();
         let scale = largest + tilted + g.abs() + h.abs() + edge.gap_bulge.abs();
         Over {
-            coefficients: edge.parts.iter().map(|part| part.ends).flat_map(of_part).collect(),
+            coefficients: on_parts(edge, &[v[0], middle, v[1]], &gap),
             margin: 64.0 * f64::EPSILON * scale + further,
         }
     }
 
     /// The least multiple of a change of v with these coefficients that makes all negative where the change is not 0.
     fn step(&self, edge: &Contact, change: &[Vector2<f64>; 3]) -> f64 {
-        let of_part = |part| coefficients(change, &edge.directions, &[0.0; 3], part);
-        let effects = edge.parts.iter().map(|part| part.ends).flat_map(of_part);
+        let effects = on_parts(edge, change, &[0.0; 3]);
         let all = self.coefficients.iter().zip(effects);
         let steps = all.filter(|(_, effect)| *effect > 1e-6);
         steps.fold(0.0, |step: f64, (c, effect)| step.max((c + 2.0 * self.margin) / effect))
@@ -416,11 +407,8 @@ impl Over {
         let by_bulge = self.between(edge);
         let shift = |k: usize| {
             let d = edge.directions[k];
-            let change = if k == 0 {
-                [d, d / 2.0, Vector2::zeros()]
-            } else {
-                [Vector2::zeros(), d / 2.0, d]
-            };
+            let mut change = [Vector2::zeros(), d / 2.0, Vector2::zeros()];
+            change[2 * k] = d;
             let step = self.step(edge, &change);
             let force = length(edge.on_edge(0)[k]);
             (k, step, modulus * step * step + 4.0 * force * step)

@@ -148,13 +148,11 @@ fn corners(certificate: &Certificate, points: &[usize]) -> Vec<usize> {
         None => vec![p],
         Some(cut) => certificate.cuts[cut].ends.to_vec(),
     };
-    let mut all: Vec<usize> = points.iter().flat_map(of).collect();
-    all.sort_unstable();
-    all.dedup();
-    all
+    let all: BTreeSet<usize> = points.iter().flat_map(of).collect();
+    all.into_iter().collect()
 }
 
-fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
+pub(super) fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
 
@@ -277,9 +275,7 @@ fn named(
         }
     }
     let mut names: BTreeMap<(usize, usize), Vec<&str>> = BTreeMap::new();
-    for &BoundaryEdge { triangle, local } in mesh.outline() {
-        names.insert((triangle, local), Vec::new());
-    }
+    names.extend(mesh.outline().iter().map(|edge| ((edge.triangle, edge.local), Vec::new())));
     for name in mesh.boundary_names() {
         // Curves inside the body are no boundaries.
         for &BoundaryEdge { triangle, local } in mesh.edges_of(name).unwrap_or_default() {
@@ -372,14 +368,9 @@ impl Comparison<'_> {
     fn points(&self) -> Result<(), Difference> {
         let Certificate { prescribed, frames, .. } = self.certificate;
         for (k, (found, expected)) in prescribed.iter().zip(&self.parts.prescribed).enumerate() {
-            for c in 0..2 {
-                self.same(
-                    "vertex",
-                    k,
-                    ("displacement", self.lengths),
-                    found[c].as_slice(),
-                    expected[c].as_slice(),
-                )?;
+            for (found, expected) in found.iter().zip(expected) {
+                let of = ("displacement", self.lengths);
+                self.same("vertex", k, of, found.as_slice(), expected.as_slice())?;
             }
             let [found, expected] = [frames.get(&k), self.parts.frames.get(&k)]
                 .map(|d| d.filter(|_| k < prescribed.len()).map_or(&[][..], |d| &d[..]));
@@ -531,8 +522,7 @@ impl Comparison<'_> {
         let contact = parts.contact_at(line, (s + t) / 2.0);
         for &(k, i) in &parts.lines[line] {
             let [from, to] = parts.contact[k].sides[i].places;
-            let (low, high) = (from.min(to), from.max(to));
-            let of = [low, high];
+            let of = [from.min(to), from.max(to)];
             if !(if contact == Some((k, i)) { is_in([s, t], of) } else { is_off([s, t], of) }) {
                 return Err(outside("edge", e, "is in contact in part, or with several"));
             }

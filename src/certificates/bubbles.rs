@@ -60,11 +60,7 @@ pub(super) fn take_off(
             }
         }
     }
-    if !factor_positive(&mut matrix, UNKNOWNS) {
-        return 0.0;
-    }
-    let rows = matrix.chunks_exact(UNKNOWNS).enumerate();
-    let factor: Vec<f64> = rows.flat_map(|(i, row)| &row[..=i]).copied().collect();
+    let Some(factor) = factor_positive(&mut matrix, UNKNOWNS) else { return 0.0 };
     let area = triangle.double_area() / 2.0;
     let mut c = [0.0; UNKNOWNS];
     for (l, weight, f) in force.iter() {
@@ -224,47 +220,6 @@ mod tests {
         let found = take_off(&T, &Material::lame(lambda, mu, Plane::Strain), &mut force);
         // A system of nine equations.
         assert_relative_eq!(found, square.sqrt(), max_relative = 1e-10);
-    }
-
-    /// int f' . w <= |B| |w|_a for fields w, of which those with eps(w) near C^-1 B come near.
-    #[test]
-    fn the_stress_bounds_the_work_of_the_force() {
-        let material = Material::lame(1.3, 0.7, Plane::Strain);
-        let mut f = force(|p| Vector2::new(p.x * p.x - p.x * p.y, 0.3 * p.y * p.y));
-        less_affine(&mut f);
-        let given = f.clone();
-        let norm = take_off(&T, &material, &mut f);
-        let mut best: f64 = 0.0;
-        for k in 0..60 {
-            let a = |n: usize| f64::from(((k * 7 + n as i32 * 13) * 31) % 17 - 8) / 8.0;
-            let powers = |p: Vector2<f64>| [p.x * p.x, p.x * p.y, p.y * p.y];
-            let w = |p: Vector2<f64>| {
-                Vector2::from([0, 1].map(|c| (0..3).map(|n| a(3 * c + n) * powers(p)[n]).sum()))
-            };
-            let gradient = |p: Vector2<f64>| {
-                nalgebra::Matrix2::from_fn(|c, d| {
-                    let [x, y] = p.into();
-                    let slopes = if d == 0 { [2.0 * x, y, 0.0] } else { [0.0, x, 2.0 * y] };
-                    (0..3).map(|n| a(3 * c + n) * slopes[n]).sum()
-                })
-            };
-            let (mut work, mut energy) = (0.0, 0.0);
-            for (l, weight, f) in &given {
-                let p = T.point(*l);
-                work += weight * f.dot(&w(p));
-                energy += weight * material.stress(gradient(p)).matrix().dot(&gradient(p));
-            }
-            best = best.max(work.abs() / energy.sqrt());
-        }
-        assert!(best <= norm, "{best} {norm}");
-        // Not by much: the worst w is no quadratic.
-        assert!(best > 0.2 * norm, "{best} {norm}");
-        let twice: Vec<_> = given.iter().map(|&(l, w, f)| (l, w, f * 2.0)).collect();
-        assert_relative_eq!(
-            take_off(&T, &material, &mut twice.clone()),
-            2.0 * norm,
-            max_relative = 1e-9
-        );
     }
 
     #[test]

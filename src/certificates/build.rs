@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector2;
 
+use super::binding::sorted;
 use super::certificate::{
     Certificate, Curved, Cut, Edge, Law, Piece, Role, Shape, exactly, is_oblique, place,
 };
@@ -31,6 +32,36 @@ pub(super) struct Built {
     /// Its triangles are quarters of those of the mesh.
     quartered: bool,
     pub(crate) divisions: Vec<Division>,
+}
+
+/// The boundaries of the problem on the edges of a certificate.
+pub(super) struct Line {
+    pub(crate) names: Vec<String>,
+    /// The boundary of each edge, by its place among the names.
+    pub(crate) of: Vec<Option<usize>>,
+    /// The edges of Gamma_C, along it.
+    pub(crate) stations: Vec<Station>,
+}
+
+/// An edge of Gamma_C along its boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Station {
+    pub(crate) edge: usize,
+    /// Arc length at its ends.
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    pub(crate) ends: [[f64; 2]; 2],
+    /// The edge starts where the edge before it ends.
+    pub(crate) joined: bool,
+}
+
+/// The edges of a certificate along those of a mesh, each with the places where it begins and ends there.
+struct Along(BTreeMap<usize, Vec<(usize, [f64; 2])>>);
+
+impl Along {
+    fn of(&self, whole: usize) -> &[(usize, [f64; 2])] {
+        self.0.get(&whole).map_or(&[], Vec::as_slice)
+    }
 }
 
 impl Built {
@@ -60,12 +91,8 @@ impl Built {
     /// The edges of Gamma_C, by their numbers in `parts`, of the triangles where v can't be shown to be outside the obstacle,
     /// and how far it may be inside.
     pub(crate) fn penetrations(&self, parts: &ProblemParts) -> Vec<(usize, f64)> {
-        let found = self.certificate.penetrations();
-        if found.is_empty() {
-            return Vec::new();
-        }
+        let by_edge: BTreeMap<usize, f64> = self.certificate.penetrations().into_iter().collect();
         let mut of: BTreeMap<usize, f64> = BTreeMap::new();
-        let by_edge: BTreeMap<usize, f64> = found.into_iter().collect();
         for (piece, &t) in self.certificate.pieces.iter().zip(&self.origins) {
             for by in piece.edges.iter().filter_map(|e| by_edge.get(e)) {
                 let most = of.entry(t).or_default();
@@ -75,30 +102,7 @@ impl Built {
         let contact = parts.contact.iter().enumerate();
         contact.filter_map(|(k, edge)| Some((k, *of.get(&edge.edge.triangle)?))).collect()
     }
-}
 
-/// The boundaries of the problem on the edges of a certificate.
-pub(super) struct Line {
-    pub(crate) names: Vec<String>,
-    /// The boundary of each edge, by its place among the names.
-    pub(crate) of: Vec<Option<usize>>,
-    /// The edges of Gamma_C, along it.
-    pub(crate) stations: Vec<Station>,
-}
-
-/// An edge of Gamma_C along its boundary.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Station {
-    pub(crate) edge: usize,
-    /// Arc length at its ends.
-    pub(crate) from: f64,
-    pub(crate) to: f64,
-    pub(crate) ends: [[f64; 2]; 2],
-    /// The edge starts where the edge before it ends.
-    pub(crate) joined: bool,
-}
-
-impl Built {
     /// Where the boundaries of the problem are on the edges of the certificate.
     pub(crate) fn line(&self, parts: &ProblemParts) -> Line {
         let (mesh, edges) = (parts.mesh, &self.certificate.edges);
@@ -132,30 +136,14 @@ impl Built {
                 let [a, b] = ends.map(|p| place(&self.certificate, p));
                 let from = arc;
                 arc += length(b - a);
-                line.stations.push(Station {
-                    edge: e,
-                    from,
-                    to: arc,
-                    ends: [a.into(), b.into()],
-                    joined,
-                });
+                let ends_at = [a.into(), b.into()];
+                line.stations.push(Station { edge: e, from, to: arc, ends: ends_at, joined });
                 before = Some((name, ends[1]));
             }
         }
         line
     }
-}
 
-/// The edges of a certificate along those of a mesh, each with the places where it begins and ends there.
-struct Along(BTreeMap<usize, Vec<(usize, [f64; 2])>>);
-
-impl Along {
-    fn of(&self, whole: usize) -> &[(usize, [f64; 2])] {
-        self.0.get(&whole).map_or(&[], Vec::as_slice)
-    }
-}
-
-impl Built {
     /// The edges of the certificate along those of the outline.
     fn along(&self, mesh: &Mesh) -> Along {
         let (count, halves) = (mesh.edge_count(), if self.quartered { 2 } else { 1 });
@@ -245,16 +233,13 @@ pub(super) fn build(parts: &ProblemParts, y: &Field, v: &Field) -> Built {
     let mut built = Built {
         certificate: Certificate {
             vertices: mesh.vertices().to_vec(),
-            cuts: Vec::new(),
             displacement: v.vertices.clone(),
             curved: quadratic.then(Curved::default),
             prescribed: parts.prescribed.clone(),
             frames: parts.frames.clone(),
             pieces: Vec::with_capacity(whole.len()),
             edges: Vec::with_capacity(mesh.edge_count()),
-            lifts: Vec::new(),
-            polygon: Vec::new(),
-            facing: BTreeMap::new(),
+            ..Certificate::default()
         },
         origins: Vec::with_capacity(whole.len()),
         oscillation: Oscillation::new(parts, quadratic),
@@ -263,18 +248,15 @@ pub(super) fn build(parts: &ProblemParts, y: &Field, v: &Field) -> Built {
     };
     let ends = edge_ends(mesh);
     add_edges(parts, &ends, &moments, &mut built);
-    let cut_up = |t: usize| {
-        let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let parts_of = |t: usize| {
+        if quartered {
+            return quarters(parts, &data, t, &stress[t], &mut built.certificate);
+        }
+        let places = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let (vertices, edges) = (mesh.triangles()[t], mesh.triangle_edges()[t]);
-        vec![(SubTriangle { vertices, edges, places: unit }, bodies[t])]
+        vec![(SubTriangle { vertices, edges, places }, bodies[t])]
     };
-    let all: Vec<Vec<(SubTriangle, [Vector2<f64>; 3])>> = if quartered {
-        (0..whole.len())
-            .map(|t| quarters(parts, &data, t, &stress[t], &mut built.certificate))
-            .collect()
-    } else {
-        (0..whole.len()).map(cut_up).collect()
-    };
+    let all: Vec<_> = (0..whole.len()).map(parts_of).collect();
     for (t, found) in all.into_iter().enumerate() {
         for (part, body) in found {
             add_part(parts, &data, (t, &stress[t]), (part, body), &mut built);
@@ -327,7 +309,6 @@ fn add_curved(v: &Shape<f64>, certificate: &mut Certificate) {
 pub(super) fn polygon(mesh: &Mesh, certificate: &Certificate) -> Vec<usize> {
     let smooth = SmoothBoundary::new(mesh);
     let curved = mesh.outline().iter().filter(|&&edge| smooth.at_ends(edge).is_some());
-    let sorted = |[a, b]: [usize; 2]| if a < b { [a, b] } else { [b, a] };
     let curved: BTreeSet<[usize; 2]> = curved.map(|&edge| sorted(mesh.ends(edge))).collect();
     let is_curved = |edge: &Edge| {
         let cut =
@@ -335,13 +316,7 @@ pub(super) fn polygon(mesh: &Mesh, certificate: &Certificate) -> Vec<usize> {
         let line = edge.ends.into_iter().find_map(cut).unwrap_or(edge.ends);
         !matches!(edge.role, Role::Inner(_)) && curved.contains(&sorted(line))
     };
-    certificate
-        .edges
-        .iter()
-        .enumerate()
-        .filter(|(_, edge)| is_curved(edge))
-        .map(|(e, _)| e)
-        .collect()
+    (0..certificate.edges.len()).filter(|&e| is_curved(&certificate.edges[e])).collect()
 }
 
 /// The edges of the mesh, or their halves, first all first ones, then all second ones; then the middles of the edges are the first

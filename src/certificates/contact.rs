@@ -111,6 +111,12 @@ impl Side {
         (x - from) / (to - from)
     }
 
+    /// The weights of a quadratic's Bernstein coefficients on the edge in those along the contact.
+    pub(crate) fn blossom(&self) -> [[f64; 3]; 3] {
+        let [s, t] = self.places;
+        [blossom(s, s), blossom(s, t), blossom(t, t)]
+    }
+
     /// The contact has place `x` of the edge inside.
     pub(crate) fn has(&self, x: f64) -> bool {
         let s = self.within(x);
@@ -175,6 +181,11 @@ pub(super) fn overlaps(
         let [[_, before], [start, end]] = two.map(|(side, _)| range(side));
         (two, before.min(end) - start)
     })
+}
+
+/// The weights of a quadratic's Bernstein coefficients in its blossom: each argument takes one step of de Casteljau's.
+pub(super) fn blossom(s: f64, t: f64) -> [f64; 3] {
+    [(1.0 - s) * (1.0 - t), (1.0 - s) * t + s * (1.0 - t), s * t]
 }
 
 fn near_place(x: f64, same: f64) -> f64 {
@@ -251,13 +262,11 @@ impl Profile {
             let place = (centroid / reach).clamp(1.0 / 3.0, 2.0 / 3.0);
             [mean * (4.0 - 6.0 * place), mean * (6.0 * place - 2.0)].map(|p| p.min(0.0))
         };
+        let ends = if turned { [ends[1], ends[0]] } else { ends };
         match (reach < 1.0, turned) {
-            (false, false) => Profile::whole(ends),
-            (false, true) => Profile::whole([ends[1], ends[0]]),
+            (false, _) => Profile::whole(ends),
             (true, false) => Profile { cut: Some(reach), values: [ends, [0.0; 2]] },
-            (true, true) => {
-                Profile { cut: Some(1.0 - reach), values: [[0.0; 2], [ends[1], ends[0]]] }
-            }
+            (true, true) => Profile { cut: Some(1.0 - reach), values: [[0.0; 2], ends] },
         }
     }
 }
@@ -265,14 +274,6 @@ impl Profile {
 impl Part {
     fn tractions(&self) -> [[f64; 2]; 2] {
         [self.pressure, self.shear]
-    }
-
-    fn pushing(&self) -> [[f64; 2]; 2] {
-        [self.pressure, [0.0; 2]]
-    }
-
-    fn pressed(&self) -> [[f64; 2]; 2] {
-        [[-1.0; 2], [0.0; 2]]
     }
 }
 
@@ -669,7 +670,10 @@ impl Contact {
     /// int p d . r, p as in [`Contact::force`], and int (p d + q e) . r over side `i` for a motion that is affine along its edge.
     pub(crate) fn against(&self, i: usize, ends: [Vector2<f64>; 2]) -> [f64; 2] {
         let hats = |s: f64| [1.0 - s, s];
-        let of_force = if self.is_tied() { Part::pressed } else { Part::pushing };
+        let of_force: fn(&Part) -> [[f64; 2]; 2] = match self.is_tied() {
+            true => |_| [[-1.0; 2], [0.0; 2]],
+            false => |part| [part.pressure, [0.0; 2]],
+        };
         [of_force, Part::tractions].map(|tractions| {
             let [a, b] = self.moments(i, [0.0, 1.0], hats, tractions);
             a.dot(&ends[0]) + b.dot(&ends[1])
@@ -691,10 +695,7 @@ impl Contact {
         let number = mesh.number_of(side.edge);
         let bulge = field.bulges.as_ref().map_or(Vector2::zeros(), |all| all[number].into());
         let middle = (a + b) / 2.0 + bulge * 2.0;
-        let [s, t] = side.places;
-        [(s, s), (s, t), (t, t)].map(|(s, t)| {
-            a * ((1.0 - s) * (1.0 - t)) + middle * ((1.0 - s) * t + s * (1.0 - t)) + b * (s * t)
-        })
+        side.blossom().map(|[p, q, r]| a * p + middle * q + b * r)
     }
 
     /// The coefficients of a field along the contact, on a pair less those on the other body.
@@ -748,18 +749,15 @@ pub(super) fn even_out(contacts: &mut [Contact]) {
             continue;
         }
         let [pressure, shear] = [0, 1].map(|c| (p[c] * after + q[c] * before) / (before + after));
-        for (n, &(k, j)) in run.iter().enumerate() {
-            for end in 0..2 {
-                if (n == 0 && end == 0) || (n == run.len() - 1 && end == 1) {
-                    continue;
-                }
-                let bound = match contacts[k].is_tied() {
-                    true => f64::INFINITY,
-                    false => contacts[k].bound_at(contacts[k].parts[j].ends[end]),
-                };
-                let part = &mut contacts[k].parts[j];
-                (part.pressure[end], part.shear[end]) = (pressure, shear.clamp(-bound, bound));
-            }
+        // But for the outer ends of the run.
+        let ends = run.iter().flat_map(|&at| [(at, 0), (at, 1)]);
+        for ((k, j), end) in ends.skip(1).take(2 * run.len() - 2) {
+            let bound = match contacts[k].is_tied() {
+                true => f64::INFINITY,
+                false => contacts[k].bound_at(contacts[k].parts[j].ends[end]),
+            };
+            let part = &mut contacts[k].parts[j];
+            (part.pressure[end], part.shear[end]) = (pressure, shear.clamp(-bound, bound));
         }
     }
 }

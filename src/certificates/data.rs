@@ -115,10 +115,9 @@ impl Traction<'_> {
         }
     }
 
-    /// int_E t phi for both ends of an edge with the scaled normal N.
-    pub(crate) fn moments(&self, ends: [[f64; 2]; 2], normal: Vector2<f64>) -> [Vector2<f64>; 2] {
-        let length = length(normal);
-        let unit = (normal / length).into();
+    /// int_E t phi for both ends of an edge.
+    pub(crate) fn moments(&self, ends: [[f64; 2]; 2]) -> [Vector2<f64>; 2] {
+        let (length, unit) = length_and_normal(ends);
         let mut moments = [Vector2::zeros(); 2];
         self.rule().on_edge(ends, [], |point| {
             let t = Vector2::from(self.at(point.x, unit));
@@ -134,8 +133,7 @@ impl Traction<'_> {
         if self.is_affine() {
             return ends.map(|x| self.at(x, unit));
         }
-        let normal = Vector2::new(ends[1][1] - ends[0][1], ends[0][0] - ends[1][0]);
-        force_of(&self.moments(ends, normal)).map(|f| f.map(|f| f / length))
+        force_of(&self.moments(ends)).map(|f| f.map(|f| f / length))
     }
 
     /// t_h as the role of an edge.

@@ -24,7 +24,7 @@ use crate::linear::matrix::{LowerTriangle, Neighbours, Numbering};
 use crate::linear::ordering::nested_dissection;
 use crate::model::mesh::length;
 use crate::model::rigid::{Parts, free_motions, pins};
-use crate::model::{BoundaryEdge, Degree, Problem, Space};
+use crate::model::{BoundaryEdge, Degree, Materials, Problem, Space};
 use crate::solve::SolveError;
 
 /// w . direction is prescribed at a node, because of an edge of this boundary.
@@ -96,13 +96,8 @@ fn on_contact(
                 s => d * (1.0 - s) + e * s,
             }
         };
-        Some(OnContact {
-            edge,
-            boundary,
-            side: i,
-            contact: k,
-            directions: [0.0, 1.0, 0.5].map(direction),
-        })
+        let directions = [0.0, 1.0, 0.5].map(direction);
+        Some(OnContact { edge, boundary, side: i, contact: k, directions })
     };
     parts.lines.iter().filter_map(of_line).collect()
 }
@@ -152,6 +147,26 @@ fn springs(piece: &Piece) -> DMatrix<f64> {
     piece.contribution(&EdgeRule::Exact, &vec![0.0; piece.p0.len()]).tangent * STIFFNESS
 }
 
+/// The factor of a(.,.), with the springs between these bodies, for the components that are not prescribed, in their frames.
+pub(super) fn factored(
+    space: &Space,
+    materials: &Materials,
+    prescribed: &[[Option<f64>; 2]],
+    frames: BTreeMap<usize, [f64; 2]>,
+    tied: &[Piece],
+) -> Result<(Numbering, Factor), SolveError> {
+    let neighbours = Neighbours::across(space, tied);
+    let order = nested_dissection(space.nodes(), &neighbours);
+    let numbering = Numbering::new(&order, prescribed, frames);
+    let mut matrix = LowerTriangle::zero(&numbering, &neighbours);
+    matrix.add_stiffness(space, materials, &numbering)?;
+    for piece in tied {
+        matrix.add_contact_springs(&numbering, piece, &springs(piece))?;
+    }
+    let factor = Factor::new(&matrix)?;
+    Ok((numbering, factor))
+}
+
 /// The demands of supports, closed contact and friction at each node; those of Gamma_D first.
 fn demands(
     parts: &ProblemParts,
@@ -160,17 +175,13 @@ fn demands(
     open: &[bool],
 ) -> BTreeMap<usize, Vec<Prescription>> {
     let mut demands: BTreeMap<usize, Vec<Prescription>> = BTreeMap::new();
-    let mut add = |edge: BoundaryEdge,
-                   boundary: usize,
-                   what: What,
-                   of: &dyn Fn(usize) -> Vec<Vector2<f64>>| {
-        for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
-            let at_node = demands.entry(node).or_default();
-            for direction in of(a) {
-                let demand = Prescription { direction, boundary, what };
-                if !at_node.contains(&demand) {
-                    at_node.push(demand);
-                }
+    // Along a direction at each node, or one for all.
+    let mut add = |edge: BoundaryEdge, boundary: usize, what: What, of: [Vector2<f64>; 3]| {
+        for (node, direction) in space.edge_nodes(edge).into_iter().zip(of) {
+            let (at_node, demand) =
+                (demands.entry(node).or_default(), Prescription { direction, boundary, what });
+            if !at_node.contains(&demand) {
+                at_node.push(demand);
             }
         }
     };
@@ -179,12 +190,13 @@ fn demands(
             let e = parts.mesh.number_of(edge);
             match parts.boundary.get(&e) {
                 Some(&Boundary::Held(held, _)) => {
-                    let axes = [Vector2::x(), Vector2::y()];
-                    let held: Vec<_> = (0..2).filter(|&c| held[c]).map(|c| axes[c]).collect();
-                    add(edge, boundary, What::Support, &|_| held.clone());
+                    let axes = [Vector2::x(), Vector2::y()].into_iter().zip(held);
+                    for (axis, _) in axes.filter(|(_, held)| *held) {
+                        add(edge, boundary, What::Support, [axis; 3]);
+                    }
                 }
                 Some(&Boundary::Supported(d, ..)) => {
-                    add(edge, boundary, What::Support, &|_| vec![d.into()]);
+                    add(edge, boundary, What::Support, [d.into(); 3]);
                 }
                 _ => {}
             }
@@ -193,12 +205,12 @@ fn demands(
     let is_closed = |k: usize| !parts.contact[k].is_tied() && !open[k];
     let has_friction = |k: usize| parts.contact[k].has_friction();
     for OnContact { edge, boundary, side, directions, .. } in on_contact(parts, names, is_closed) {
-        add(edge, boundary, What::Along(side), &|a| vec![directions[a]]);
+        add(edge, boundary, What::Along(side), directions);
     }
     // Open or not, as friction with a given bound acts across gaps.
     for OnContact { edge, boundary, side, directions, .. } in on_contact(parts, names, has_friction)
     {
-        add(edge, boundary, What::Across(side), &|a| vec![turned(directions[a])]);
+        add(edge, boundary, What::Across(side), directions.map(turned));
     }
     demands
 }
@@ -262,17 +274,9 @@ impl<'a> Lifter<'a> {
         for (node, c) in pins(&fields, |node, _| !demands.contains_key(&node)) {
             prescribed[node][c] = Some(0.0);
         }
-        let neighbours = Neighbours::across(&space, &parts.tied);
-        let order = nested_dissection(space.nodes(), &neighbours);
-        let numbering = Numbering::new(&order, &prescribed, frames);
-        let mut matrix = LowerTriangle::zero(&numbering, &neighbours);
-        let mut assembled = matrix.add_stiffness(&space, &parts.problem.material, &numbering);
-        for piece in &parts.tied {
-            assembled = assembled
-                .and_then(|()| matrix.add_contact_springs(&numbering, piece, &springs(piece)));
-        }
-        let factor = assembled.map_err(SolveError::from).and_then(|()| Factor::new(&matrix));
-        let factor = factor.map_err(|error| {
+        let materials = &parts.problem.material;
+        let factored = factored(&space, materials, &prescribed, frames, &parts.tied);
+        let (numbering, factor) = factored.map_err(|error| {
             format!("no displacement of least energy to prove forces with: {error}")
         })?;
         let shares = vec![[1.0, 0.0]; names.len()];
@@ -303,8 +307,7 @@ impl<'a> Lifter<'a> {
         [own, own - 1.0]
     }
 
-    /// The value that a demand asks for at a node; at a place where the boundaries contradict one another, with `strict` an
-    /// error.
+    /// The value that a demand asks for at a node.
     fn value(&self, node: usize, demand: &Prescription, target: ForceTarget) -> f64 {
         let x = self.space.nodes()[node];
         if target.boundary.is_some_and(|boundary| boundary != demand.boundary) {
@@ -450,32 +453,30 @@ impl<'a> Lifter<'a> {
         let at_rest = |values: &[Option<f64>; 2]| values.map(|value| value.map(|_| 0.0));
         let mut prescribed: Vec<[Option<f64>; 2]> = parts.prescribed.iter().map(at_rest).collect();
         let mut boundary = BTreeMap::new();
-        for (&e, what) in &parts.boundary {
-            boundary.insert(
-                e,
-                match *what {
-                    Boundary::Held(held, _) => Boundary::Held(held, [0.0; 2]),
-                    Boundary::Supported(d, ..) => Boundary::Supported(d, 0.0, None),
-                    Boundary::Contact(line) if parts.lines[line].iter().any(|&(k, _)| !open[k]) => {
-                        let (k, _) = parts.lines[line][0];
-                        if parts.contact[k].is_pair() {
-                            return Err("the force is one between two bodies".to_owned());
-                        }
-                        let [d, e] = parts.contact[k].directions;
-                        if is_oblique(d.into()) || d != e {
-                            return Err("contact does not act along an axis".to_owned());
-                        }
-                        let held = [d[0] != 0.0, d[1] != 0.0];
-                        for vertex in mesh.ends(parts.contact[k].edge) {
-                            for c in (0..2).filter(|&c| held[c]) {
-                                prescribed[vertex][c] = Some(w.vertices[vertex][c]);
-                            }
-                        }
-                        Boundary::Held(held, [0.0; 2])
+        for (&edge, what) in &parts.boundary {
+            let without_loads = match *what {
+                Boundary::Held(held, _) => Boundary::Held(held, [0.0; 2]),
+                Boundary::Supported(d, ..) => Boundary::Supported(d, 0.0, None),
+                Boundary::Contact(line) if parts.lines[line].iter().any(|&(k, _)| !open[k]) => {
+                    let contact = &parts.contact[parts.lines[line][0].0];
+                    if contact.is_pair() {
+                        return Err("the force is one between two bodies".to_owned());
                     }
-                    Boundary::Loaded(_) | Boundary::Free | Boundary::Contact(_) => Boundary::Free,
-                },
-            );
+                    let [d, e] = contact.directions;
+                    if is_oblique(d.into()) || d != e {
+                        return Err("contact does not act along an axis".to_owned());
+                    }
+                    let held = [d[0] != 0.0, d[1] != 0.0];
+                    for vertex in mesh.ends(contact.edge) {
+                        for c in (0..2).filter(|&c| held[c]) {
+                            prescribed[vertex][c] = Some(w.vertices[vertex][c]);
+                        }
+                    }
+                    Boundary::Held(held, [0.0; 2])
+                }
+                Boundary::Loaded(_) | Boundary::Free | Boundary::Contact(_) => Boundary::Free,
+            };
+            boundary.insert(edge, without_loads);
         }
         let problem = Problem::of(mesh.clone(), parts.problem.material.clone());
         let cuts =

@@ -316,23 +316,18 @@ fn pushed_out(
     if parts.contact.iter().any(|contact| contact.is_tied() || contact.turns()) {
         start.bulges.get_or_insert_with(|| vec![[0.0; 2]; parts.mesh.edge_count()]);
     }
-    let mut further = vec![0.0; parts.contact.len()];
-    let mut outside = || {
+    let (mut further, mut pushes) = (vec![0.0; parts.contact.len()], 0);
+    loop {
         let v = admissible::admissible(parts, &start, &further);
         let mut built = build::build(parts, y, &v);
         tie::tie(&mut built.certificate)?;
         let found = built.penetrations(parts);
-        found.iter().for_each(|&(k, by)| further[k] += 2.0 * by);
-        Ok::<_, CertifyError>((v, built, found.is_empty()))
-    };
-    let (mut v, mut built, mut is_out) = outside()?;
-    for _ in 0..PUSHES {
-        if is_out {
-            break;
+        if found.is_empty() || pushes == PUSHES {
+            return Ok((v, built));
         }
-        (v, built, is_out) = outside()?;
+        found.iter().for_each(|&(k, by)| further[k] += 2.0 * by);
+        pushes += 1;
     }
-    Ok((v, built))
 }
 
 /// J(u) lies between these; the energy of friction is not in J(v), and data outside the exact class leave nothing to say.
@@ -395,14 +390,14 @@ fn distances(mesh: &Mesh, built: &Built, w: &[[f64; 2]]) -> Vec<f64> {
     let ends = w.split_at(mesh.vertices().len()).0;
     let affine = certificate.curved.is_none() && ends.len() == w.len();
     let (v, w) = (certificate.shape::<Ball>(), built.shape::<Ball>(mesh, w));
-    let minus = |a: &[Vector2<Ball>], b: &[Vector2<Ball>]| {
-        a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>()
+    let minus = |a: Vec<Vector2<Ball>>, b: Vec<Vector2<Ball>>| -> Vec<Vector2<Ball>> {
+        a.into_iter().zip(b).map(|(a, b)| a - b).collect()
     };
     let bulges = match (v.bulges, w.bulges) {
-        (Some(v), Some(w)) => Some(minus(&v, &w)),
+        (Some(v), Some(w)) => Some(minus(v, w)),
         (v, w) => v.or(w),
     };
-    let difference = Shape { points: minus(&v.points, &w.points), bulges };
+    let difference = Shape { points: minus(v.points, w.points), bulges };
     let places = certificate.places::<Ball>();
     let distance = |(piece, &t): (&Piece, &usize)| {
         let same = |k: &usize| {

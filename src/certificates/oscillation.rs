@@ -15,7 +15,7 @@
 //!
 //! All integrals above are by quadrature, so a bound that contains one is not rigorous: [`Oscillation::reason`] says so.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use nalgebra::{Matrix2, Vector2};
@@ -42,22 +42,20 @@ pub(super) struct Oscillation {
 impl Oscillation {
     /// `quadratic` tells whether v is, so that it follows data of degree 2.
     pub(crate) fn new(parts: &ProblemParts, quadratic: bool) -> Self {
-        let (given, between) = (given(parts, quadratic), parts.known_at_nodes(quadratic));
+        let given = given(parts, quadratic);
         let inexact = given.iter().filter_map(|given| {
             let degree = given.degree?;
             let exact = given.functions.iter().all(|f| is_within(f, degree));
             let class = if degree == 2 { "quadratic" } else { "affine" };
             (!exact).then(|| format!("{} is not known to be {class}", given.name))
         });
-        let inexact: Vec<String> = inexact.collect();
-        let measured = (!inexact.is_empty())
-            .then(|| format!("{}: its oscillation is measured by quadrature", inexact.join("; ")));
-        let named = (!between.is_empty()).then(|| {
-            let names: Vec<String> = between.iter().map(|name| quoted(name, '\'')).collect();
+        let measured = joined(inexact, "; ", |all| {
+            format!("{all}: its oscillation is measured by quadrature")
+        });
+        let class = if quadratic { "affine and quadratic" } else { "affine" };
+        let named = on_boundaries(parts.known_at_nodes(quadratic), |all| {
             format!(
-                "the problem that is bounded has on {} a direction and a gap that are {} between its vertices",
-                names.join(", "),
-                if quadratic { "affine and quadratic" } else { "affine" }
+                "the problem that is bounded has on {all} a direction and a gap that are {class} between its vertices"
             )
         });
         let cancelled = given.iter().flat_map(|Given { name, functions, vertices, .. }| {
@@ -67,28 +65,21 @@ impl Oscillation {
                 format!("{name} is known to within {off:.0e} only, as its terms cancel")
             })
         });
-        let cancelled: Vec<String> = cancelled.collect();
-        let cancelled = (!cancelled.is_empty()).then(|| {
-            format!("{}: the problem that is bounded has what doubles leave", cancelled.join("; "))
+        let cancelled = joined(cancelled, "; ", |all| {
+            format!("{all}: the problem that is bounded has what doubles leave")
         });
-        let moved: Vec<String> = parts.moved().iter().map(|name| quoted(name, '\'')).collect();
-        let moved = (!moved.is_empty()).then(|| {
+        let moved = on_boundaries(parts.moved(), |all| {
             format!(
-                "nodes that face those of {} to within a millionth of the longest edge there are taken to do so exactly",
-                moved.join(", ")
+                "nodes that face those of {all} to within a millionth of the longest edge there are taken to do so exactly"
             )
         });
-        let rough: Vec<String> = parts.rough().into_iter().map(|name| quoted(name, '\'')).collect();
-        let rough = (!rough.is_empty()).then(|| {
+        let rough = on_boundaries(parts.rough(), |all| {
             format!(
-                "the problem that is bounded has on {} a bound of friction that is affine between nodes",
-                rough.join(", ")
+                "the problem that is bounded has on {all} a bound of friction that is affine between nodes"
             )
         });
-        let reasons = measured.into_iter().chain(named).chain(moved).chain(rough).chain(cancelled);
-        let reasons: Vec<String> = reasons.collect();
-        let reason = (!reasons.is_empty()).then(|| reasons.join("; "));
-        Oscillation { reason, lifts: BTreeMap::new() }
+        let reasons = [measured, named, moved, rough, cancelled].into_iter().flatten();
+        Oscillation { reason: joined(reasons, "; ", |all| all), lifts: BTreeMap::new() }
     }
 
     /// Puts the oscillation of the data into the pieces of a certificate; `origins` are their triangles in the mesh, of which
@@ -109,16 +100,27 @@ impl Oscillation {
         self.lifts = lifts(parts, certificate.curved.is_some());
         let lift = |(&t, &norm): (&usize, &f64)| Lift { corners: parts.mesh.triangles()[t], norm };
         certificate.lifts = self.lifts.iter().map(lift).collect();
-        let pieces: Vec<f64> = certificate
-            .pieces
-            .iter()
-            .zip(origins)
-            .map(|(piece, &t)| loads(parts, data, certificate, (piece, &whole), t))
-            .collect();
-        for (piece, oscillation) in certificate.pieces.iter_mut().zip(pieces) {
-            piece.oscillation = oscillation;
+        for (k, &t) in origins.iter().enumerate() {
+            let piece = &certificate.pieces[k];
+            let oscillation = loads(parts, data, certificate, (piece, &whole), t);
+            certificate.pieces[k].oscillation = oscillation;
         }
     }
+}
+
+/// The sentence about some parts, one after the other; none if there are none.
+fn joined(
+    parts: impl Iterator<Item = String>,
+    separator: &str,
+    sentence: impl FnOnce(String) -> String,
+) -> Option<String> {
+    let parts: Vec<String> = parts.collect();
+    (!parts.is_empty()).then(|| sentence(parts.join(separator)))
+}
+
+/// The sentence about some boundaries.
+fn on_boundaries(names: BTreeSet<&str>, sentence: impl FnOnce(String) -> String) -> Option<String> {
+    joined(names.into_iter().map(|name| quoted(name, '\'')), ", ", sentence)
 }
 
 /// Functions that a problem gives.
@@ -334,22 +336,21 @@ pub(super) fn lifts(parts: &ProblemParts, quadratic: bool) -> BTreeMap<usize, f6
                 f.at(at(s)) - between(s, ends.map(|x| f.at(x))) - 4.0 * s * (1.0 - s) * bulge
             };
             let [x, y, left] = [Vector2::x(), Vector2::y(), Vector2::new(-normal.y, normal.x)];
-            let given: Vec<(Vector2<f64>, &SharedFunction)> = match condition {
-                Condition::Displacement(u) | Condition::Mixed { displacement: u, .. } => {
-                    [x, y].into_iter().zip(u).filter_map(|(d, f)| Some((d, f.as_ref()?))).collect()
+            let given = match condition {
+                Condition::Displacement([u, v]) | Condition::Mixed { displacement: [u, v], .. } => {
+                    [(x, u.as_ref()), (y, v.as_ref())]
                 }
-                Condition::Support { normal: along, tangential: across } => [normal, left]
-                    .into_iter()
-                    .zip([along, across])
-                    .filter_map(|(d, f)| Some((d, f.as_ref()?)))
-                    .collect(),
+                Condition::Support { normal: along, tangential: across } => {
+                    [(normal, along.as_ref()), (left, across.as_ref())]
+                }
                 Condition::Contact { gap } if !turning.contains(name.as_str()) => {
-                    vec![(normal, gap)]
+                    [(normal, Some(gap)), (left, None)]
                 }
                 _ => continue,
             };
             let is_followed = |f: &SharedFunction| is_within(f, if quadratic { 2 } else { 1 });
-            let lacking: Vec<_> = given.into_iter().filter(|(_, f)| !is_followed(f)).collect();
+            let given = given.into_iter().filter_map(|(d, f)| Some((d, f?)));
+            let lacking: Vec<_> = given.filter(|(_, f)| !is_followed(f)).collect();
             if lacking.is_empty() {
                 continue;
             }

@@ -16,17 +16,14 @@ use nalgebra::Vector2;
 use super::contact::{Contact, Side};
 use super::data::Data;
 use super::errors::CertifyError;
+use super::lifting::factored;
 use super::parts::{Boundary, ProblemParts};
 use super::tractions::load;
 use crate::contact::residual::add_internal_forces;
 use crate::linear::dense::{dot, inner, singular_vectors};
-use crate::linear::factor::Factor;
-use crate::linear::matrix::{LowerTriangle, Neighbours, Numbering};
-use crate::linear::ordering::nested_dissection;
 use crate::model::constraints::Constraints;
 use crate::model::rigid::{FreeMotion, Parts, pins};
 use crate::model::{BoundaryEdge, Degree, Space};
-use crate::solve::SolveError;
 
 /// No pressure changes by more than this part of itself: it stays one.
 const MOST: f64 = 0.5;
@@ -63,20 +60,16 @@ pub(super) fn displacement(
     for (node, c) in pins(&fields, is_free) {
         prescribed[node][c] = Some(0.0);
     }
-    let neighbours = Neighbours::new(&space);
-    let order = nested_dissection(space.nodes(), &neighbours);
-    let numbering = Numbering::new(&order, &prescribed, constraints.frames().clone());
-    let mut matrix = LowerTriangle::zero(&numbering, &neighbours);
-    let assembled = matrix.add_stiffness(&space, &parts.problem.material, &numbering);
-    let factor = assembled.map_err(SolveError::from).and_then(|()| Factor::new(&matrix));
-    let factor = factor.map_err(|error| {
+    let (materials, frames) = (&parts.problem.material, constraints.frames().clone());
+    let factored = factored(&space, materials, &prescribed, frames, &[]);
+    let (numbering, factor) = factored.map_err(|error| {
         CertifyError::Unsupported(format!("no displacement under the contact pressures: {error}"))
     })?;
     let mut y = near.to_vec();
     // The second time for what the first one has rounded.
     for _ in 0..2 {
         let mut internal = vec![[0.0; 2]; y.len()];
-        add_internal_forces(&space, &parts.problem.material, &y, &mut internal);
+        add_internal_forces(&space, materials, &y, &mut internal);
         let left: Vec<[f64; 2]> =
             forces.iter().zip(internal).map(|(f, i)| [f[0] - i[0], f[1] - i[1]]).collect();
         let mut x = numbering.gather(&left);
@@ -93,22 +86,18 @@ pub(super) fn displacement(
 fn loads(parts: &ProblemParts, space: &Space) -> Vec<[f64; 2]> {
     let (mesh, data) = (parts.mesh, Data::new(parts.problem));
     let mut forces = vec![[0.0; 2]; space.nodes().len()];
-    let mut add = |node: usize, force: Vector2<f64>| {
-        (0..2).for_each(|c| forces[node][c] += force[c]);
-    };
     for (t, nodes) in space.elements().enumerate() {
         let triangle = mesh.triangle(t);
         let body = data.body_on(t, &triangle);
         for (l, &node) in nodes[..3].iter().enumerate() {
-            add(node, load(&body, &triangle, l));
+            add(&mut forces[node], load(&body, &triangle, l));
         }
         for (l, &middle) in nodes[3..].iter().enumerate() {
             // int f 4 l_j l_k = |T| / 15 (f_i + 2 f_j + 2 f_k); half of it is taken from the hat functions of j and k.
             let [j, k] = [(l + 1) % 3, (l + 2) % 3];
             let force = (body[l] + body[j] * 2.0 + body[k] * 2.0) * (triangle.double_area() / 30.0);
-            add(middle, force);
-            add(nodes[j], force / -2.0);
-            add(nodes[k], force / -2.0);
+            add(&mut forces[middle], force);
+            [j, k].into_iter().for_each(|l| add(&mut forces[nodes[l]], force / -2.0));
         }
     }
     for &edge in mesh.outline() {
@@ -119,8 +108,7 @@ fn loads(parts: &ProblemParts, space: &Space) -> Vec<[f64; 2]> {
             }
             _ => continue,
         };
-        let ends = mesh.ends(edge).map(|vertex| mesh.vertices()[vertex]);
-        let [a, b] = traction.moments(ends, mesh.triangle(edge.triangle).scaled_normal(edge.local));
+        let [a, b] = traction.moments(mesh.places_of_ends(edge));
         // Of an affine traction.
         add_on_edge(space, edge, [a, b, (a + b) * (2.0 / 3.0)], &mut forces);
     }
@@ -140,8 +128,12 @@ fn add_on_edge(
         _ => vec![a - bubble / 2.0, b - bubble / 2.0, bubble],
     };
     for (node, moment) in nodes.into_iter().zip(moments) {
-        (0..2).for_each(|c| forces[node][c] += moment[c]);
+        add(&mut forces[node], moment);
     }
+}
+
+fn add(sum: &mut [f64; 2], force: Vector2<f64>) {
+    (0..2).for_each(|c| sum[c] += force[c]);
 }
 
 /// Multiplies the pressures so that their work on the motions makes up for what the loads do.

@@ -5,16 +5,15 @@
 //!
 //! M^2 = |C eps(v) - tau|^2 / 4 + int tau_n (v_n - g),   A = int sigma_n (v_n - g) >= 0,   B = int tau_n (u_n - g) >= 0.
 //!
-//! Then |sigma(u) - m|^2 + A + B = M^2 \[Q2\]: the mean stress has about half the bound of theorem 7.2. From it follow
-//!
-//! With a bound s of friction A and B have the integrals of s |v_t| + sigma_t v_t and s |u_t| + tau_t u_t, too.
+//! Then |sigma(u) - m|^2 + A + B = M^2 \[Q2\]: the mean stress has about half the bound of theorem 7.2. With a bound s of friction
+//! A and B have the integrals of s |v_t| + sigma_t v_t and s |u_t| + tau_t u_t, too. From it follow
 //!
 //! - int_S |sigma_n| <= M^2 / d where g - v_n >= d on S, and int_S (g - u_n) <= M^2 / p where tau_n <= -p on S, and
 //!   int_S |u_t| <= M^2 / q where |tau_t| <= s - q ([`Zone`]);
 //! - for every w in H^1 the functional R(w) = L(w) - int sigma(u) : eps(w), which is the force of the body on what holds it,
 //!   in the mean with w on the boundary, lies within M |w|_a of L(w) - int m : eps(w) \[Q3\].
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 #[cfg(feature = "files")]
@@ -37,7 +36,7 @@ use crate::contact::Law;
 use crate::kernel::{Ball, Enclosing};
 use crate::linear::dense::least_squares;
 use crate::model::Degree;
-use crate::results::Solution;
+use crate::results::{ContactBoundary, Solution};
 
 /// The quantities that a certificate proves beside the bound.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -178,31 +177,28 @@ pub(super) fn zones<S: Enclosing>(
     for (boundary, name) in line.names.iter().enumerate() {
         let stations: Vec<Station> =
             line.stations.iter().copied().filter(|s| line.of[s.edge] == Some(boundary)).collect();
-        let is_tied = |s: &Station| matches!(certificate.edges[s.edge].role, Role::Contact { law, .. } if law.is_tied());
-        if stations.iter().any(is_tied) {
+        let contact = |s: &Station| match certificate.edges[s.edge].role {
+            Role::Contact { pressure, law, .. } => (pressure.map(|p| -p), law),
+            _ => ([0.0; 2], certificate::Law::Contact),
+        };
+        let (all, laws): (Vec<_>, Vec<_>) = stations.iter().map(contact).unzip();
+        if laws.iter().any(|law| law.is_tied()) {
             continue;
         }
-        let pressure = |s: &Station| match certificate.edges[s.edge].role {
-            Role::Contact { pressure, .. } => pressure.map(|p| -p),
-            _ => [0.0; 2],
-        };
         // By how much friction could bear more: affine less convex, so that the least is at an end.
-        let margin = |s: &Station| match certificate.edges[s.edge].role {
-            Role::Contact { law: certificate::Law::Friction { shear, bound }, .. } => {
+        let margin = |law: &certificate::Law| match law {
+            certificate::Law::Friction { shear, bound } => {
                 let at = |k: usize| (bound[k] - shear[k].abs()).next_down();
                 at(0).min(at(1))
             }
             _ => 0.0,
         };
-        let margins: Vec<f64> = stations.iter().map(margin).collect();
+        let margins: Vec<f64> = laws.iter().map(margin).collect();
         let gaps: Vec<f64> =
             stations.iter().map(|s| smallest(&certificate.gap(s.edge, state))).collect();
-        let pressures: Vec<f64> =
-            stations.iter().map(|s| pressure(s)[0].min(pressure(s)[1])).collect();
-        let force: f64 = stations
-            .iter()
-            .map(|s| (pressure(s)[0] + pressure(s)[1]) / 2.0 * (s.to - s.from))
-            .sum();
+        let pressures: Vec<f64> = all.iter().map(|[p, q]| p.min(*q)).collect();
+        let forces = stations.iter().zip(&all).map(|(s, [p, q])| (p + q) / 2.0 * (s.to - s.from));
+        let force: f64 = forces.sum();
         let bent = beyond_rigid(certificate, state, &stations);
         let mut add = |sizes: &[f64], limit: fn(f64) -> Limit, telling: &dyn Fn(f64) -> f64| {
             let largest = sizes.iter().copied().fold(0.0, f64::max);
@@ -241,25 +237,16 @@ fn beyond_rigid<S: Enclosing>(
         ends.iter().map(|&p| (state.points[p].map(middle), state.v.points[p].map(middle))).unzip();
     let count = places.len() as f64;
     let centre = places.iter().sum::<Vector2<f64>>() / count;
-    let column = |of: &dyn Fn(Vector2<f64>) -> Vector2<f64>| -> Vec<f64> {
-        places.iter().flat_map(|&x| <[f64; 2]>::from(of(x - centre))).collect()
+    let column = |of: fn(Vector2<f64>) -> [f64; 2]| -> Vec<f64> {
+        places.iter().flat_map(|&x| of(x - centre)).collect()
     };
-    let motions = [
-        column(&|_| Vector2::x()),
-        column(&|_| Vector2::y()),
-        column(&|x| Vector2::new(-x.y, x.x)),
-    ];
+    let motions = [|_| [1.0, 0.0], |_| [0.0, 1.0], |x: Vector2<f64>| [-x.y, x.x]].map(column);
     let all: Vec<f64> = v.iter().flat_map(|&v| <[f64; 2]>::from(v)).collect();
     let weights = least_squares(motions.to_vec(), &all);
-    let left = |k: usize| {
-        let of = |c: usize| -> f64 {
-            let moved: f64 =
-                motions.iter().zip(&weights).map(|(motion, w)| w * motion[2 * k + c]).sum();
-            all[2 * k + c] - moved
-        };
-        of(0).hypot(of(1))
-    };
-    (0..places.len()).map(left).fold(0.0, f64::max)
+    let moved =
+        |k: usize| motions.iter().zip(&weights).map(|(motion, w)| w * motion[k]).sum::<f64>();
+    let left: Vec<f64> = all.iter().enumerate().map(|(k, v)| v - moved(k)).collect();
+    left.chunks_exact(2).map(|v| v[0].hypot(v[1])).fold(0.0, f64::max)
 }
 
 /// The stretches of stations, from the first to before the last, that have a property and hang together.
@@ -321,15 +308,13 @@ pub(super) fn prove(
 
 /// The value of the discrete solution.
 fn value(solution: &Solution, name: Name, boundary: &str) -> f64 {
-    let contact = solution.boundaries.iter().find(|b| b.boundary == boundary);
-    let of_contact =
-        |get: &dyn Fn(&crate::results::ContactBoundary) -> f64| contact.map_or(0.0, get);
-    let quantities = &solution.quantities;
+    let (quantities, none) = (&solution.quantities, ContactBoundary::default());
+    let contact = solution.boundaries.iter().find(|b| b.boundary == boundary).unwrap_or(&none);
     match name {
-        Name::ContactForce => of_contact(&|b| b.force),
-        Name::ContactComponent(c) => of_contact(&|b| b.resultant[c]),
-        Name::ContactMoment => of_contact(&|b| b.moment),
-        Name::PeakPressure => of_contact(&|b| b.peak_pressure),
+        Name::ContactForce => contact.force,
+        Name::ContactComponent(c) => contact.resultant[c],
+        Name::ContactMoment => contact.moment,
+        Name::PeakPressure => contact.peak_pressure,
         Name::Reaction(c) => quantities.reactions.get(boundary).map_or(0.0, |r| r[c]),
         Name::ReactionMoment => quantities.reaction_moments.get(boundary).copied().unwrap_or(0.0),
     }
@@ -350,7 +335,7 @@ const PRICE: f64 = 0.1;
 
 /// The edges of Gamma_C where v is off the obstacle by half of what it is at most on that boundary, and by so much that
 /// little force is possible there: w may be free.
-fn open(parts: &ProblemParts, v: &Field, mean: Mean) -> Vec<bool> {
+fn open<'a>(parts: &'a ProblemParts, v: &Field, mean: Mean) -> Vec<bool> {
     let gaps: Vec<f64> = parts
         .contact
         .iter()
@@ -368,16 +353,13 @@ fn open(parts: &ProblemParts, v: &Field, mean: Mean) -> Vec<bool> {
         let of = parts.contact.iter().filter(|edge| &*edge.boundary == boundary);
         of.map(|edge| -edge.force()).sum()
     };
-    let names: BTreeSet<&str> = parts.contact.iter().map(|edge| &*edge.boundary).collect();
-    let least: BTreeMap<&str, f64> = names
-        .into_iter()
-        .map(|name| (name, (largest(name) / 2.0).max(mean.square / (PRICE * force(name)))))
-        .collect();
-    let is_open = |(k, &gap): (usize, &f64)| {
-        !parts.contact[k].is_tied()
-            && least.get(&*parts.contact[k].boundary).is_some_and(|&l| gap > 0.0 && gap >= l)
+    let least = |name: &str| (largest(name) / 2.0).max(mean.square / (PRICE * force(name)));
+    let mut known: BTreeMap<&str, f64> = BTreeMap::new();
+    let is_open = |(edge, &gap): (&'a Contact, &f64)| {
+        let least = *known.entry(&*edge.boundary).or_insert_with(|| least(&edge.boundary));
+        !edge.is_tied() && gap > 0.0 && gap >= least
     };
-    gaps.iter().enumerate().map(is_open).collect()
+    parts.contact.iter().zip(&gaps).map(is_open).collect()
 }
 
 /// The edges of Gamma_C that are not pressed from end to end, but for so many next to those that are; where `beyond` is
@@ -572,25 +554,19 @@ impl Prover<'_> {
                 return (questions.into_iter().map(why).collect(), Evidence::default(), Vec::new());
             }
         };
-        let (mut evidence, refused) = self.liftings(&lifter, &questions);
+        let (mut evidence, places) = self.liftings(&lifter, &questions);
         let cover = evidence.cover.as_ref().and_then(|w| self.forces.cover(w).ok());
         let between = self.forces.between(&evidence.liftings, cover.as_ref());
         let (by_pairs, limits) = self.dual_pairs(&mut evidence, &between, cover.as_ref());
-        let nearest =
-            |((target, _), ends): (&(ForceTarget, _), &Result<[f64; 2], WrongLifting>)| {
-                let ends = ends.clone().map_err(|error| error.to_string())?;
-                Ok(evidence.nearest(*target, ends, &by_pairs))
-            };
-        let nearest: Vec<_> = evidence.liftings.iter().zip(&between).map(nearest).collect();
-        let mut nearest = nearest.into_iter();
-        let intervals = refused.into_iter().map(|refused| match refused {
-            Some(why) => Err(why),
-            None => nearest.next().unwrap_or_else(|| Err(String::new())),
+        let nearest = |k: usize| {
+            let ends = between[k].clone().map_err(|error| error.to_string())?;
+            Ok(evidence.nearest(evidence.liftings[k].0, ends, &by_pairs))
+        };
+        let found = questions.into_iter().zip(places).flat_map(|(question, place)| {
+            answers(question, acts[question.boundary], place.and_then(nearest))
         });
-        let found = questions.into_iter().zip(intervals);
-        let found =
-            found.flat_map(|(question, ends)| answers(question, acts[question.boundary], ends));
-        (found.collect(), proving(evidence, cover.as_ref(), &between, by_pairs), limits)
+        let found = found.collect();
+        (found, proving(evidence, cover.as_ref(), &between, by_pairs), limits)
     }
 
     /// The numbers of a boundary that are asked for, and how contact acts there.
@@ -634,17 +610,22 @@ impl Prover<'_> {
         (questions, acts)
     }
 
-    /// The displacements w, w0 among them, and for each question why there is none.
-    fn liftings(&self, lifter: &Lifter, questions: &[Question]) -> (Evidence, Vec<Option<String>>) {
+    /// The displacements w, w0 among them, and for each question the place of its own, or why there is none.
+    fn liftings(
+        &self,
+        lifter: &Lifter,
+        questions: &[Question],
+    ) -> (Evidence, Vec<Result<usize, String>>) {
         let lifting = |target| lifter.lifting(target, self.built, self.forces.of);
         let all = ForceTarget { boundary: None, motion: Motion::Along(None) };
         let mut evidence = Evidence { cover: lifting(all).ok(), ..Evidence::default() };
-        let refused = questions.iter().map(|&Question { name, boundary, weight }| {
+        let places = questions.iter().map(|&Question { name, boundary, weight }| {
             let target = ForceTarget { boundary: Some(boundary), motion: name.motion(weight) };
-            lifting(target).map(|w| evidence.liftings.push((target, w))).err()
+            evidence.liftings.push((target, lifting(target)?));
+            Ok(evidence.liftings.len() - 1)
         });
-        let refused = refused.collect();
-        (evidence, refused)
+        let places = places.collect();
+        (evidence, places)
     }
 
     /// Adds dual pairs to the evidence where they say more than the liftings, which prove what forces are `between`; returns

@@ -137,6 +137,7 @@ struct StarUnknown {
 
 /// The triangles around a point, whose unknowns there change together: those of the point that are free, then one for each free
 /// edge at it.
+#[derive(Default)]
 struct Star {
     /// Triangle by triangle.
     places: Vec<StarUnknown>,
@@ -170,12 +171,7 @@ impl Sweeps {
             }
         }
         let own = |free: [bool; 3]| (0..3).filter(|&k| free[k]).collect();
-        let star = |free| Star {
-            places: Vec::new(),
-            own: own(free),
-            edges: Vec::new(),
-            factor: Vec::new(),
-        };
+        let star = |free| Star { own: own(free), ..Star::default() };
         let mut stars: Vec<Star> = free.into_iter().map(star).collect();
         for (triangle, piece) in certificate.pieces.iter().enumerate() {
             for (local, &point) in piece.vertices.iter().enumerate() {
@@ -283,9 +279,8 @@ impl Star {
                 }
             }
         }
-        if n > 0 && factor_positive(&mut matrix, n) {
-            let rows = matrix.chunks_exact(n).enumerate();
-            self.factor = rows.flat_map(|(i, row)| &row[..=i]).copied().collect();
+        if n > 0 {
+            self.factor = factor_positive(&mut matrix, n).unwrap_or_default();
         }
     }
 }
@@ -345,28 +340,21 @@ fn energies(
 /// The [`features`] of the stresses of a triangle's unknowns, with edges that go round it.
 fn units(triangle: &Triangle<f64>, material: &Material<f64>) -> [[f64; UNKNOWNS]; FEATURES] {
     let frame = Frame::new(triangle);
-    let mut units = [[0.0; UNKNOWNS]; FEATURES];
-    let (zero, body) = ([[Vector2::zeros(); 2]; 3], [Vector2::zeros(); 3]);
-    let mut put = |k: usize, forces: [[Vector2<f64>; 2]; 3]| {
-        let tau = features(&Composite::new(&frame, &Loads { forces, body }), triangle, material);
-        units.iter_mut().zip(tau).for_each(|(row, value)| row[k] = value);
-    };
-    let mut at_vertices = [zero; 9];
+    let mut all = [[[Vector2::zeros(); 2]; 3]; UNKNOWNS];
     for side in 0..3 {
         let vertices = [1, 2].map(|k| (side + k) % 3);
         let places = vertices.map(|vertex| triangle.vertices[vertex]);
         for (k, vertex) in vertices.into_iter().enumerate() {
-            let modes = modes(places, k == 1);
-            (0..3).for_each(|c| at_vertices[3 * vertex + c][side] = modes[c]);
-            if k == 0 {
-                let mut forces = zero;
-                forces[side] = modes[3];
-                put(9 + side, forces);
-            }
+            let [phi, phi_x, phi_y, own] = modes(places, k == 1);
+            let at_vertex = [phi, phi_x, phi_y].into_iter().zip(&mut all[3 * vertex..]);
+            at_vertex.for_each(|(mode, forces)| forces[side] = mode);
+            all[9 + side][side] = own;
         }
     }
-    for (k, forces) in at_vertices.into_iter().enumerate() {
-        put(k, forces);
+    let (mut units, body) = ([[0.0; UNKNOWNS]; FEATURES], [Vector2::zeros(); 3]);
+    for (k, forces) in all.into_iter().enumerate() {
+        let tau = features(&Composite::new(&frame, &Loads { forces, body }), triangle, material);
+        units.iter_mut().zip(tau).for_each(|(row, value)| row[k] = value);
     }
     units
 }
@@ -397,18 +385,14 @@ fn features(
     // |T|/144 over the moduli
     let roots = [shear, other, bulk].map(|m| (triangle.double_area() / (288.0 * m)).sqrt());
     let mut all = [0.0; FEATURES];
-    let mut rest = all.as_chunks_mut::<3>().0.iter_mut();
-    let mut put = |factor: f64, s: Stress<f64>| {
-        let parts = squares.parts(s);
-        rest.by_ref()
-            .take(1)
-            .for_each(|three| *three = [0, 1, 2].map(|k| factor * roots[k] * parts[k]));
+    let on_part = |[a, b]: [Stress<f64>; 2]| {
+        [(1.5_f64.sqrt(), a + b + tau.centre / 1.5), (0.5_f64.sqrt(), a - b)]
     };
-    for [a, b] in tau.corners {
-        put(1.5_f64.sqrt(), a + b + tau.centre / 1.5);
-        put(0.5_f64.sqrt(), a - b);
+    let stresses = tau.corners.into_iter().flat_map(on_part).chain([(2.0, tau.centre)]);
+    for (three, (factor, s)) in all.as_chunks_mut::<3>().0.iter_mut().zip(stresses) {
+        let parts = squares.parts(s);
+        *three = [0, 1, 2].map(|k| factor * roots[k] * parts[k]);
     }
-    put(2.0, tau.centre);
     all
 }
 
@@ -429,9 +413,9 @@ fn modes([start, end]: [Vector2<f64>; 2], at_end: bool) -> [[Vector2<f64>; 2]; 4
     ]
 }
 
-/// The Cholesky factor of a small positive definite matrix, in its lower half; false if it is
-/// not definite, as for a star whose unknowns are not independent. The diagonal holds the reciprocals.
-pub(super) fn factor_positive(matrix: &mut [f64], n: usize) -> bool {
+/// The lower half of the Cholesky factor of a small positive definite matrix, row by row, which the matrix is overwritten with; none if
+/// it is not definite, as for a star whose unknowns are not independent. The diagonal holds the reciprocals.
+pub(super) fn factor_positive(matrix: &mut [f64], n: usize) -> Option<Vec<f64>> {
     for i in 0..n {
         let (above, row) = matrix.split_at_mut(i * n);
         let row = &mut row[..n];
@@ -443,14 +427,15 @@ pub(super) fn factor_positive(matrix: &mut [f64], n: usize) -> bool {
         }
         let pivot = whole - row[..i].iter().map(|a| a * a).sum::<f64>();
         if !(pivot > 1e-13 * whole) {
-            return false;
+            return None;
         }
         row[i] = 1.0 / pivot.sqrt();
     }
-    true
+    let rows = matrix.chunks_exact(n).enumerate();
+    Some(rows.flat_map(|(i, row)| &row[..=i]).copied().collect())
 }
 
-/// Solves with that factor, of which the rows of the lower half are given, in place.
+/// Solves with that factor, in place.
 pub(super) fn substitute(factor: &[f64], x: &mut [f64]) {
     let n = x.len();
     let mut rest = factor;

@@ -49,12 +49,8 @@ pub(super) fn moments(
     let mut fans = vec![Vec::new(); mesh.vertices().len()];
     for t in 0..corners.len() {
         for local in 0..3 {
-            let [first, second] = &mut owners[edges[t][local]];
-            if first.is_none() {
-                *first = Some((t, local))
-            } else {
-                *second = Some((t, local))
-            }
+            let owner = &mut owners[edges[t][local]];
+            owner[usize::from(owner[0].is_some())] = Some((t, local));
             fans[corners[t][local]].push((t, local));
         }
     }
@@ -66,7 +62,7 @@ pub(super) fn moments(
         let normal = triangles[t].scaled_normal(local);
         let ends = [1, 2].map(|k| corners[t][(local + k) % 3]);
         let mean = mean_moments(corners, stress, owner, (ends, normal));
-        (known[e], moments[e]) = prescribed(parts, e, (ends, normal), mean);
+        (known[e], moments[e]) = prescribed(parts, e, ends, mean);
     }
     let averaged = moments.clone();
     let (owners, averaged, known) = (&owners, &averaged, &known);
@@ -105,7 +101,7 @@ fn mean_moments(
 fn prescribed(
     parts: &ProblemParts,
     e: usize,
-    (ends, normal): ([usize; 2], Vector2<f64>),
+    ends: [usize; 2],
     mean: [Vector2<f64>; 2],
 ) -> (Known, [Vector2<f64>; 2]) {
     let places = ends.map(|vertex| parts.mesh.vertices()[vertex]);
@@ -113,23 +109,18 @@ fn prescribed(
     match parts.boundary.get(&e) {
         None => (Known::Nothing, mean),
         Some(Boundary::Held(held, _)) => {
-            let (mut known, mut moments) = (Known::Nothing, mean);
-            for c in (0..2).filter(|&c| !held[c]) {
-                let mut across = Vector2::zeros();
-                across[c] = 1.0;
-                known = Known::Along(across);
-                moments.iter_mut().for_each(|m| m[c] = 0.0);
-            }
-            (known, moments)
+            let Some(c) = (0..2).find(|&c| !held[c]) else { return (Known::Nothing, mean) };
+            let across = [Vector2::x(), Vector2::y()][c];
+            (Known::Along(across), mean.map(|m| m - across * m[c]))
         }
         Some(&Boundary::Supported(d, _, traction)) => {
             let across = turned(Vector2::from(d));
-            let given = traction.map(|traction| traction.moments(places, normal));
+            let given = traction.map(|traction| traction.moments(places));
             let given = given.unwrap_or_default();
             (Known::Along(across), [0, 1].map(|k| with_along(across, given[k], mean[k])))
         }
         Some(Boundary::Free) => (Known::All, zero),
-        Some(Boundary::Loaded(traction)) => (Known::All, traction.moments(places, normal)),
+        Some(Boundary::Loaded(traction)) => (Known::All, traction.moments(places)),
         Some(&Boundary::Contact(line)) => {
             let on_line = parts.lines[line].iter().map(|&(k, i)| parts.contact[k].on_edge(i));
             (Known::All, on_line.fold(zero, |[p, q], [a, b, _]| [p + a, q + b]))
@@ -167,24 +158,13 @@ const PARALLEL: f64 = 1e-6;
 /// The vector that has the given products with the first two of these that are not parallel, and as much of `otherwise` as
 /// they leave.
 fn combined(
-    demands: impl Iterator<Item = (Vector2<f64>, f64)>,
+    mut demands: impl Iterator<Item = (Vector2<f64>, f64)>,
     otherwise: impl FnOnce() -> Vector2<f64>,
 ) -> Vector2<f64> {
-    let mut first: Option<(Vector2<f64>, f64)> = None;
-    for (k, value) in demands {
-        match first {
-            None => first = Some((k, value)),
-            Some((l, other)) => {
-                let sine = l.perp(&k);
-                if sine.abs() > PARALLEL {
-                    return (turned(l) * value - turned(k) * other) / sine;
-                }
-            }
-        }
-    }
-    match first {
-        Some((k, value)) => with_along(k, k * value, otherwise()),
-        None => otherwise(),
+    let Some((l, other)) = demands.next() else { return otherwise() };
+    match demands.find(|(k, _)| l.perp(k).abs() > PARALLEL) {
+        Some((k, value)) => (turned(l) * value - turned(k) * other) / l.perp(&k),
+        None => with_along(l, l * other, otherwise()),
     }
 }
 
@@ -262,7 +242,8 @@ fn go_round(a: usize, fan: &[(usize, usize)], around: &Around, moments: &mut [[V
             signs.push(around.moment(a, t, e));
         }
         let last = edges.len() - 1;
-        let ring = edges[0] == edges[last];
+        // Of a ring the last edge is the first one.
+        let count = if edges[0] == edges[last] { last } else { last + 1 };
         // What the moment on edge i, near its target or equal to it, says of X_0.
         let offset_at = |i: usize| around.averaged[edges[i]][signs[i].0] * signs[i].1 - sums[i];
         let demands = [0, last].into_iter().flat_map(|i| {
@@ -270,7 +251,6 @@ fn go_round(a: usize, fan: &[(usize, usize)], around: &Around, moments: &mut [[V
             along.map(move |along| along.map(|k| (k, k.dot(&offset_at(i)))))
         });
         let offset = combined(demands.flatten(), || {
-            let count = if ring { last } else { last + 1 };
             let (mut weighted, mut weights) = (Vector2::zeros(), 0.0);
             for (i, &e) in edges.iter().enumerate().take(count) {
                 let normal = match around.owners[e][0] {
@@ -283,7 +263,7 @@ fn go_round(a: usize, fan: &[(usize, usize)], around: &Around, moments: &mut [[V
             }
             weighted / weights
         });
-        for i in 0..if ring { last } else { last + 1 } {
+        for i in 0..count {
             let moment = &mut moments[edges[i]][signs[i].0];
             let free = (offset + sums[i]) * signs[i].1;
             *moment = match around.known[edges[i]] {

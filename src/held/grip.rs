@@ -9,10 +9,10 @@
 //! non-negative least squares with one more equation for each e. With Coulomb's friction the cone of the c_i is that of
 //! c_i + mu r_t and c_i - mu r_t: what friction can do at a node grows with what presses there.
 
-use super::solvability::{MARGIN, jumps, moves, nnls_residual};
+use super::solvability::{Left, MARGIN, jumps, moves, nnls_residual, on_the_verge};
 use crate::contact::Law;
 use crate::contact::piece::Piece;
-use crate::linear::dense::{dot, norm, singular_vectors};
+use crate::linear::dense::{dot, norm};
 use crate::model::law::Bound;
 use crate::model::rigid::{FreeMotion, NEGLIGIBLE, Parts};
 use crate::model::space::Space;
@@ -129,15 +129,15 @@ impl Grip {
         self.bounded.iter().map(|row| norm(row)).fold(0.0, f64::max)
     }
 
-    /// The motion that the loads drive, or would if they were changed a little, and which of both; `None` if friction and the rows
-    /// `normal` hold the body. The loads and `bounded` are divided by `unit`.
+    /// The motion that the loads drive, or would if they were changed a little; `None` if friction and the rows `normal` hold the
+    /// body. The loads and `bounded` are divided by `unit`.
     pub(super) fn driven(
         &self,
         normal: &[Vec<f64>],
         loads: &[f64],
         unit: f64,
         none: f64,
-    ) -> Option<(Vec<f64>, bool)> {
+    ) -> Option<Left> {
         let (count, grips) = (loads.len(), self.bounded.len());
         let extended = |row: &[f64], k: Option<usize>| {
             let mut all = row.to_vec();
@@ -170,14 +170,7 @@ impl Grip {
         }
         let all: Vec<Vec<f64>> =
             normal.iter().chain(&self.cones).chain(&bounded).cloned().collect();
-        let directions = singular_vectors(&all, count);
-        directions.into_iter().filter(|(value, _)| *value > none).find_map(|(_, direction)| {
-            [-MARGIN, MARGIN].into_iter().find_map(|by| {
-                let changed: Vec<f64> =
-                    loads.iter().zip(&direction).map(|(l, d)| l + by * d).collect();
-                left(&changed).map(|motion| (motion, false))
-            })
-        })
+        on_the_verge(&all, none, loads, left).map(|motion| (motion, false))
     }
 }
 

@@ -36,7 +36,7 @@ pub(crate) struct NotHeld {
 }
 
 /// The solutions of a body that contact holds: with u those u + sum_j x_j b_j with row . (x + b . u) <= bound.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Slides {
     /// b_j, fields with orthonormal nodal values: the motions that contact does not stop.
     pub(crate) basis: Vec<Vec<[f64; 2]>>,
@@ -193,26 +193,24 @@ pub(crate) fn slides(
         let unit = [scale, strength].into_iter().find(|&size| size > 0.0).unwrap_or(1.0);
         let loads: Vec<f64> = fields.iter().map(|r| work(|w| w, r) / unit).collect();
         let none = negligible(&all(&edges), count, rounding);
+        let not_held = |(weights, driven): Left| {
+            let motion = parts.combined(of_part, &weights);
+            let drive = work(|w| w, &motion.field(parts, space)) / motion.size();
+            NotHeld { drive: driven.then_some(drive), motions: vec![motion] }
+        };
         if let Some(grip) = grip {
             let smooth = edges.iter().filter(|(e, _)| !grip.with_cones.contains(e));
             let normal: Vec<Vec<f64>> = smooth.flat_map(|(_, rows)| rows.clone()).collect();
-            if let Some((weights, driven)) = grip.driven(&normal, &loads, unit, none) {
-                let motion = parts.combined(of_part, &weights);
-                let drive = work(|w| w, &motion.field(parts, space)) / motion.size();
-                return Err(NotHeld { drive: driven.then_some(drive), motions: vec![motion] });
+            if let Some(left) = grip.driven(&normal, &loads, unit, none) {
+                return Err(not_held(left));
             }
             let rows = [all(&edges), grip.rows()].concat();
             let free = null_space(&rows, count, |value, _| value > none);
             sliding.extend(free.iter().map(|weights| parts.combined(of_part, weights)));
             continue;
         }
-        let kept = press(edges.clone(), &loads, none).map_err(|left| match left {
-            Some((weights, driven)) => {
-                let motion = parts.combined(of_part, &weights);
-                let drive = work(|w| w, &motion.field(parts, space)) / motion.size();
-                NotHeld { drive: driven.then_some(drive), motions: vec![motion] }
-            }
-            None => NotHeld { motions: of_part.clone(), drive: None },
+        let kept = press(edges.clone(), &loads, none).map_err(|left| {
+            left.map_or_else(|| NotHeld { motions: of_part.clone(), drive: None }, &not_held)
         })?;
         for (i, rows) in &edges {
             idle[*i] = rows.iter().any(|row| norm(row) > none) && kept.iter().all(|(k, _)| k != i);
@@ -226,17 +224,36 @@ pub(crate) fn slides(
 /// The number of a contact edge and its rows c_i.
 pub(super) type EdgeRows = (usize, Vec<Vec<f64>>);
 
+/// A motion on which the body leaves, and whether the loads drive it: on the verge they do next to no work.
+pub(super) type Left = (Vec<f64>, bool);
+
+/// The motion on which the body leaves where the loads are changed a little within the span of these rows, of which those below `none`
+/// are zero; `left` tells of changed loads.
+pub(super) fn on_the_verge(
+    rows: &[Vec<f64>],
+    none: f64,
+    loads: &[f64],
+    left: impl Fn(&[f64]) -> Option<Vec<f64>>,
+) -> Option<Vec<f64>> {
+    let directions = singular_vectors(rows, loads.len());
+    directions.into_iter().filter(|(value, _)| *value > none).find_map(|(_, direction)| {
+        let changed = |by: f64| -> Vec<f64> {
+            loads.iter().zip(&direction).map(|(l, d)| l + by * d).collect()
+        };
+        [-MARGIN, MARGIN].into_iter().find_map(|by| left(&changed(by)))
+    })
+}
+
 /// The edges that may press: `loads` are the work of a pressure on whole edges among them, given by their rows, of which
 /// those below `none` are zero, and still so if they are changed a little within the span of these rows.
 ///
 /// # Errors
-/// The motion on which the body leaves, and whether the loads drive it: on the verge they do next to no work. Nothing where
-/// no edge can press.
+/// The motion on which the body leaves. Nothing where no edge can press.
 fn press(
     mut edges: Vec<EdgeRows>,
     loads: &[f64],
     none: f64,
-) -> Result<Vec<EdgeRows>, Option<(Vec<f64>, bool)>> {
+) -> Result<Vec<EdgeRows>, Option<Left>> {
     for (_, edge) in &mut edges {
         edge.retain(|row| norm(row) > none);
     }
@@ -249,16 +266,8 @@ fn press(
             let driven = verge.is_none();
             return Err(Some((verge.unwrap_or(motion), driven)));
         }
-        let directions = singular_vectors(&rows, loads.len());
-        let directions = directions.into_iter().filter(|(value, _)| *value > none);
-        let leaves = directions.into_iter().find_map(|(_, direction)| {
-            [-MARGIN, MARGIN].into_iter().find_map(|by| {
-                let changed: Vec<f64> =
-                    loads.iter().zip(&direction).map(|(l, d)| l + by * d).collect();
-                nnls_residual(&rows, &changed, NEGLIGIBLE)
-            })
-        });
-        let Some(motion) = leaves else { break };
+        let left = |changed: &[f64]| nnls_residual(&rows, changed, NEGLIGIBLE);
+        let Some(motion) = on_the_verge(&rows, none, loads, left) else { break };
         // No pressure that does the work of the loads acts where this motion leaves the obstacle.
         let before = edges.len();
         let stays = |row: &Vec<f64>| dot(row, &motion) >= -NO_ANGLE * norm(row) * norm(&motion);
@@ -276,13 +285,7 @@ impl Slides {
         let fields: Vec<_> = motions.iter().map(|motion| motion.field(parts, space)).collect();
         let basis = orthonormal(fields.iter().cloned());
         let along = fields.iter().map(|field| basis.iter().map(|b| inner(b, field)).collect());
-        Slides {
-            motions: motions.into_iter().zip(along).collect(),
-            basis,
-            bounds: Vec::new(),
-            stopping: Vec::new(),
-            idle: Vec::new(),
-        }
+        Slides { motions: motions.into_iter().zip(along).collect(), basis, ..Slides::default() }
     }
 
     /// A motion that leads from u to a solution away from all obstacles that do not press it, if there is one.

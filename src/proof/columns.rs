@@ -72,7 +72,7 @@ impl<'a> Enclosed<'a> {
                 c.iter_mut().zip(&goes_on).filter(|(_, on)| !**on).for_each(|(c, _)| *c = 0.0);
             }
             factor.solve_columns(&mut c, count);
-            left.subtract_product(self.a, &c, count);
+            on_this_processor!(subtract_product(self.a, &c, &mut left, count));
             let mut moved = vec![0.0; count];
             let rows = z.z.chunks_exact_mut(count).zip(c.chunks_exact(count));
             for ((z, c), by) in rows.zip(&self.of_factor) {
@@ -134,6 +134,7 @@ impl Columns {
 }
 
 /// Calls `f` with the row, the column and the entry of both triangles.
+#[inline(always)]
 fn each_entry(a: &LowerTriangle<PreciseBall>, mut f: impl FnMut(usize, usize, PreciseBall)) {
     for (j, ends) in a.starts.windows(2).enumerate() {
         for k in ends[0]..ends[1] {
@@ -152,26 +153,16 @@ struct Left {
     tails: Vec<f64>,
 }
 
-impl Left {
-    /// Subtracts A c for `count` columns.
-    fn subtract_product(&mut self, a: &LowerTriangle<PreciseBall>, c: &[f64], count: usize) {
-        on_this_processor!(subtract_product(a, c, self, count));
-    }
-}
-
+/// Subtracts A c for `count` columns.
 #[inline(always)]
 fn subtract_product(a: &LowerTriangle<PreciseBall>, c: &[f64], left: &mut Left, count: usize) {
     let row = |i: usize| i * count..(i + 1) * count;
     let Left { heads, tails } = left;
-    for (j, ends) in a.starts.windows(2).enumerate() {
-        for k in ends[0]..ends[1] {
-            let (i, entry) = (a.rows[k], a.values[k].centre());
-            subtract(&mut heads[row(i)], &mut tails[row(i)], entry, &c[row(j)]);
-            if i != j {
-                subtract(&mut heads[row(j)], &mut tails[row(j)], entry, &c[row(i)]);
-            }
-        }
-    }
+    each_entry(
+        a,
+        #[inline(always)]
+        |i, j, a| subtract(&mut heads[row(i)], &mut tails[row(i)], a.centre(), &c[row(j)]),
+    );
     for (head, tail) in heads.iter_mut().zip(tails) {
         let sum = DoubleDouble::sum(*head, *tail);
         (*head, *tail) = (sum.head(), sum.tail());

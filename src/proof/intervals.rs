@@ -223,8 +223,7 @@ impl EnclosedResidual {
     }
 
     /// Encloses the reported quantities, with |u~ - u^h|_A <= `rho`, |u~ - u^h|_a <= `radius`, the norm of gamma^{1/2}
-    /// (lambda~ - lambda^h) at most
-    /// `pressure`, and displacements at the nodes with their bounds.
+    /// (lambda~ - lambda^h) at most `pressure`, and displacements at the nodes with their bounds.
     pub(crate) fn intervals(
         &self,
         d: &Discretization,
@@ -343,7 +342,7 @@ fn range(ball: PreciseBall) -> Range {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::contact::EdgeRule;
     use crate::kernel::{Material, Plane};
@@ -378,20 +377,25 @@ mod tests {
         }
     }
 
-    /// Widens a ring as a whole, so that hoops alone are strained.
-    #[test]
-    fn the_energy_of_hoops_in_doubles_is_within_what_is_said_of_its_rounding() {
-        let cells = Rectangle { width: 1.0, height: 1.0, nx: 4, ny: 4, diagonal: Diagonal::Right };
-        let mesh = cells.mesh().unwrap();
+    /// A ring on a floor, from 0.1 to 1.1 off its axis, of so many cells along both sides.
+    pub(crate) fn ring(count: usize, top: Condition) -> Problem {
+        let (nx, ny, diagonal) = (count, count, Diagonal::Right);
+        let mesh = Rectangle { width: 1.0, height: 1.0, nx, ny, diagonal }.mesh().unwrap();
         let named = ["top", "bottom"].map(|name| {
             let ends = mesh.edges_of(name).unwrap().iter().map(|&edge| mesh.ends(edge));
             (name.to_owned(), ends.collect())
         });
         let ring = mesh.vertices().iter().map(|[x, y]| [x + 0.1, *y]).collect();
         let ring = Mesh::new(ring, mesh.triangles().to_vec(), BTreeMap::from(named)).unwrap();
-        let problem = Problem::of(ring, Material::lame(1.3, 0.7, Plane::Axisymmetric))
-            .with("top", Condition::roller())
-            .with("bottom", Condition::contact(|_| 0.0));
+        Problem::of(ring, Material::lame(1.3, 0.7, Plane::Axisymmetric))
+            .with("top", top)
+            .with("bottom", Condition::contact(|_| 0.0))
+    }
+
+    /// Widens a ring as a whole, so that hoops alone are strained.
+    #[test]
+    fn the_energy_of_hoops_in_doubles_is_within_what_is_said_of_its_rounding() {
+        let problem = ring(4, Condition::roller());
         let (mut widest, load) = (0.0_f64, vec![[PreciseBall::from(0); 2]; 81]);
         for degree in [Degree::One, Degree::Two] {
             let d = Discretization::new(&problem, degree, |c| c.limit() / 2.0, EdgeRule::Exact);

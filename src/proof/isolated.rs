@@ -3,8 +3,7 @@
 //!
 //! With B the functionals, A = L L^T, Z = L^-1 B^T, G = Z^T Z and H0 the derivative of the terms of contact and friction where
 //! the state (open, stick, slip) is certain, J0 = A + B^T H0 B. Newton's map v - J0^-1 F(v) moves u~ by at most `step`, and
-//! brings two fields within R
-//! of u~ nearer to each other by a factor of at most
+//! brings two fields within R of u~ nearer to each other by a factor of at most
 //!
 //! q(R) = sum over the pieces of |E| / gamma times the integral of what J0^-1 makes of the forces by which the terms may differ from those
 //! of H0 at a point, for P that changes by what a field of norm R does there.
@@ -164,7 +163,7 @@ impl Body<'_, '_, '_> {
             }
         }
         // The mean of an entry and its mirror is off by no more than the larger of their errors, as G is symmetric.
-        let mean = Mat::from_fn(count, count, |i, j| (g[(i, j)] + g[(j, i)]) / 2.0);
+        let mean = mean_with_mirror(&g);
         let by = |i: usize, j: usize| up(radii[(i, j)] + sizes[i] * rests[j]);
         let by = Mat::from_fn(count, count, |i, j| {
             by(i, j).max(by(j, i)) + f64::EPSILON * mean[(i, j)].abs()
@@ -321,7 +320,7 @@ fn possible(law: Law, has: impl Fn(Region) -> bool) -> Vec<Terms> {
     }
 }
 
-/// The contributions of a piece to eta and H0.
+/// The contributions of a piece to q and H0.
 struct OnPiece<'a> {
     piece: &'a Piece<PreciseBall>,
     p: Row,
@@ -349,9 +348,8 @@ impl<'a> OnPiece<'a> {
         let pressed = pressed.map_or_else(Vec::new, |(_, rows)| rows.clone());
         let mut found: Vec<(EdgePiece, Terms)> = Vec::new();
         let mut add = |positive: &[Row], terms: Terms| {
-            found.extend(
-                EdgePiece::all_positive(d, piece, positive).into_iter().map(|part| (part, terms)),
-            );
+            let parts = EdgePiece::all_positive(d, piece, positive).into_iter();
+            found.extend(parts.map(|part| (part, terms)));
         };
         match law {
             Law::Friction(bound) => {
@@ -437,16 +435,18 @@ impl<'a> OnPiece<'a> {
                 let ends = ends.chain(sure.iter().map(|(ends, _)| ends));
                 let mut cuts: Vec<f64> = ends.flatten().copied().chain([0.0, 1.0]).collect();
                 cuts.sort_unstable_by(f64::total_cmp);
-                let radius = self
-                    .piece
-                    .radii
-                    .map_or(1.0, |radii| radii.iter().map(|r| r.upper()).fold(0.0, larger));
+                let radius = self.largest_radius();
                 let stretches = cuts.windows(2).filter(|cut| cut[0] < cut[1]);
                 let of = |cut: &[f64]| ((cut[1] - cut[0]) * radius, most([cut[0], cut[1]]));
                 stretches.map(of).fold([0.0; 2], plus)
             }
         };
         sum.map(|sum| up(self.weight * sum * (1.0 + 1e-12)))
+    }
+
+    /// The largest weight r along the piece; 1 in the plane.
+    fn largest_radius(&self) -> f64 {
+        self.piece.radii.map_or(1.0, |radii| radii.iter().map(|r| r.upper()).fold(0.0, larger))
     }
 
     /// Bounds what the body does under the forces by which the block of H0, and these `springs`, are rounded: entries are rounded
@@ -465,8 +465,7 @@ impl<'a> OnPiece<'a> {
     fn pressure(&self) -> f64 {
         let (n, t) = (self.reach.normal, self.reach.across);
         let mu = coefficient(self.piece).unwrap_or(0.0);
-        let radius =
-            self.piece.radii.map_or(1.0, |radii| radii.iter().map(|r| r.upper()).fold(0.0, larger));
+        let radius = self.largest_radius();
         up(self.weight * radius * (n * n + (mu * n + t) * (mu * n + t)) * (1.0 + 1e-12))
     }
 }
@@ -484,14 +483,24 @@ fn largest_eigenvalue(piece: &Piece<PreciseBall>, of: &Compliance) -> f64 {
     up(most * between * between * (1.0 + 1e-12))
 }
 
+/// s M + t
+fn combined(m: &Mat<f64>, s: f64, t: f64) -> Mat<f64> {
+    Mat::from_fn(m.nrows(), m.ncols(), |i, j| s * m[(i, j)] + if i == j { t } else { 0.0 })
+}
+
+/// M x
+fn times(m: &Mat<f64>, x: &[f64]) -> Vec<f64> {
+    let row = |i: usize| x.iter().enumerate().map(|(j, x)| m[(i, j)] * x).sum();
+    (0..m.nrows()).map(row).collect()
+}
+
 /// Returns whether a symmetric matrix is positive definite, proved in floating point: Cholesky's method runs to its end on the
 /// matrix less a multiple of 1 that is larger than what rounding can do (Rump, BIT 46, 2006) and than `off`, what the matrix is off.
 fn is_positive_definite(matrix: &Mat<f64>, off: f64) -> bool {
     let n = matrix.nrows();
     let trace: f64 = (0..n).map(|i| matrix[(i, i)]).sum();
     let shift = up(off + 2.0 * (n + 3) as f64 * f64::EPSILON * trace.abs());
-    let shifted = Mat::from_fn(n, n, |i, j| matrix[(i, j)] - if i == j { shift } else { 0.0 });
-    shift.is_finite() && shifted.llt(Side::Lower).is_ok()
+    shift.is_finite() && combined(matrix, 1.0, -shift).llt(Side::Lower).is_ok()
 }
 
 /// The length of a column, to a rounding error.
@@ -541,11 +550,10 @@ impl Root {
         let trace: f64 = (0..n).map(|i| g[(i, i)].abs()).sum();
         let mut shift = 4.0 * (off + (n + 8) as f64 * f64::EPSILON * trace);
         for _ in 0..6 {
-            let shifted = Mat::from_fn(n, n, |i, j| g[(i, j)] + if i == j { shift } else { 0.0 });
+            let shifted = combined(&g, 1.0, shift);
             if let Ok(llt) = shifted.llt(Side::Lower) {
                 let c = llt.L().to_owned();
-                let product = &c * c.transpose();
-                let rest = Mat::from_fn(n, n, |i, j| shifted[(i, j)] - product[(i, j)]);
+                let rest = &shifted - &c * c.transpose();
                 let size = frobenius(&c);
                 let rounding = 2.0 * (n + 8) as f64 * f64::EPSILON * size * size;
                 if row_sum(&rest) + rounding + off <= shift * (1.0 - 1e-9) {
@@ -588,10 +596,7 @@ impl Root {
         let n = self.c.nrows();
         let h = self.scaled(blocks);
         let hg = &h * &self.g;
-        let with_one = |m: &Mat<f64>, sign: f64| {
-            Mat::from_fn(n, n, |i, j| sign * m[(i, j)] + if i == j { 1.0 } else { 0.0 })
-        };
-        let k = with_one(&hg, 1.0).partial_piv_lu().solve(&h);
+        let k = combined(&hg, 1.0, 1.0).partial_piv_lu().solve(&h);
         let hgk = &hg * &k;
         let [c, size_h, size_g, size_k] = [&self.c, &h, &self.g, &k].map(magnitudes);
         let products = (&size_h * &size_g) * &size_k;
@@ -614,13 +619,13 @@ impl Root {
         let by_g = (0..n).map(|j| of_e(j, &by_h) * by_k[j]).sum::<f64>() * (1.0 + 1e-9);
         let left = up(frobenius(&(c.transpose() * (&most * &c))) * (1.0 + rounding) + by_g);
         let (y, off) = self.around(&k);
-        let norm = up(longest(&with_one(&y, -1.0))? + off).max(1.0);
+        let norm = up(longest(&combined(&y, -1.0, 1.0))? + off).max(1.0);
         if !(left < 1.0) {
             return None;
         }
         // C^T (1 - K G)
-        let answers = self.c.transpose() * with_one(&(&k * &self.g), -1.0);
-        let sizes = c.transpose() * with_one(&(&size_k * &size_g), 1.0);
+        let answers = self.c.transpose() * combined(&(&k * &self.g), -1.0, 1.0);
+        let sizes = c.transpose() * combined(&(&size_k * &size_g), 1.0, 1.0);
         let by_k = columns(&k);
         let slack = (0..n)
             .map(|j| {
@@ -681,8 +686,7 @@ impl Inverse {
     fn times(&self, w: &[PreciseBall], [rho, rest]: [f64; 2]) -> f64 {
         let n = self.forces.nrows();
         let heads: Vec<f64> = w.iter().map(|w| w.head()).collect();
-        let image = (0..n).map(|i| (0..n).map(|j| self.forces[(i, j)] * heads[j]).sum());
-        let image = norm(&image.collect::<Vec<f64>>());
+        let image = norm(&times(&self.forces, &heads));
         let off: Vec<f64> =
             w.iter().map(|w| up(w.radius() + w.head().abs() * f64::EPSILON)).collect();
         let by_radius = frobenius(&self.forces) * norm(&off);
@@ -697,16 +701,17 @@ impl Inverse {
 fn longest(matrix: &Mat<f64>) -> Option<f64> {
     let (n, size) = (matrix.ncols(), frobenius(matrix));
     let square = matrix.transpose() * matrix;
-    let times = |x: &[f64]| -> Vec<f64> {
-        (0..n).map(|i| (0..n).map(|j| square[(i, j)] * x[j]).sum()).collect()
-    };
     let rounding = 2.0 * (n + 8) as f64 * f64::EPSILON * size * size;
-    let near = power(n, times).max(f64::MIN_POSITIVE);
+    let near = power(n, |x| times(&square, x)).max(f64::MIN_POSITIVE);
     [1.01, 1.1, 1.5, 2.0, 4.0].into_iter().find_map(|more| {
         let most = up(near * more + rounding);
-        let less = Mat::from_fn(n, n, |i, j| if i == j { most } else { 0.0 } - square[(i, j)]);
-        is_positive_definite(&less, rounding).then(|| up(most.sqrt()))
+        is_positive_definite(&combined(&square, -1.0, most), rounding).then(|| up(most.sqrt()))
     })
+}
+
+fn mean_with_mirror(matrix: &Mat<f64>) -> Mat<f64> {
+    let mean = |i: usize, j: usize| (matrix[(i, j)] + matrix[(j, i)]) / 2.0;
+    Mat::from_fn(matrix.nrows(), matrix.ncols(), mean)
 }
 
 fn magnitudes(matrix: &Mat<f64>) -> Mat<f64> {
@@ -864,18 +869,15 @@ pub(super) fn isolate(
 fn mass(d: &Discretization, piece: &Piece<PreciseBall>) -> DMatrix<f64> {
     let nodes = piece.degree.nodes_per_edge();
     let mut mass = DMatrix::zeros(nodes, nodes);
-    let whole = EdgePiece::all_positive(d, piece, &[]);
-    for (part, a, b) in
-        whole.iter().flat_map(|part| (0..nodes * nodes).map(move |k| (part, k / nodes, k % nodes)))
-    {
-        mass[(a, b)] += piece.weight().head() * part.mass[a][b].head();
+    for part in EdgePiece::all_positive(d, piece, &[]) {
+        let of_part = |a: usize, b: usize| piece.weight().head() * part.mass[a][b].head();
+        mass += DMatrix::from_fn(nodes, nodes, of_part);
     }
     mass
 }
 
 /// C^T M C, and a bound of its error: M are the integrals of `weight`(mu) N_a N_b / gamma of the functionals that feel
-/// Coulomb's friction. Its
-/// largest eigenvalue is at least that of G^(1/2) M G^(1/2).
+/// Coulomb's friction. Its largest eigenvalue is at least that of G^(1/2) M G^(1/2).
 fn of_friction(
     d: &Discretization,
     pieces: &Lines,
@@ -893,19 +895,13 @@ fn of_friction(
     };
     let blocks: Vec<DMatrix<f64>> = pieces.iter().map(block).collect();
     let (inner, off) = root.around(&root.scaled(&blocks));
-    let n = inner.nrows();
-    let mean = Mat::from_fn(n, n, |i, j| (inner[(i, j)] + inner[(j, i)]) / 2.0);
-    (mean, up(off * (1.0 + 1e-9)))
+    (mean_with_mirror(&inner), up(off * (1.0 + 1e-9)))
 }
 
 /// Returns whether 1 - `by` M is surely positive definite, where M is off by `off`.
 fn is_below_one(m: &Mat<f64>, off: f64, by: f64) -> bool {
-    let n = m.nrows();
-    let less = Mat::from_fn(n, n, |i, j| {
-        let entry = by * m[(i, j)];
-        if i == j { 1.0 - entry } else { -entry }
-    });
-    is_positive_definite(&less, up(by * off * (1.0 + 1e-9) + n as f64 * f64::EPSILON))
+    let rounding = m.nrows() as f64 * f64::EPSILON;
+    is_positive_definite(&combined(m, -by, 1.0), up(by * off * (1.0 + 1e-9) + rounding))
 }
 
 /// Returns whether there is exactly one solution, whatever the loads: 1 - (1/4) G^(1/2) M G^(1/2) is positive definite, M being the
@@ -919,13 +915,10 @@ fn is_unique(d: &Discretization, pieces: &Lines, root: &Root) -> bool {
 /// 0 where none is proved.
 fn limits(d: &Discretization, pieces: &Lines, compliance: &Compliance, root: &Root) -> [f64; 2] {
     let (inner, off) = of_friction(d, pieces, root, |_| 1.0);
-    let n = inner.nrows();
-    let times = |x: &[f64]| -> Vec<f64> {
-        (0..n).map(|i| (0..n).map(|j| inner[(i, j)] * x[j]).sum()).collect()
-    };
     // The largest eigenvalue, and a little more: proved is what the factor says.
     let is_proved = |&most: &f64| most > 0.0 && is_below_one(&inner, off, 1.0 / most);
-    let Some(largest) = enlarged(power(n, times)).find(is_proved) else { return [0.0; 2] };
+    let largest = enlarged(power(inner.nrows(), |x| times(&inner, x))).find(is_proved);
+    let Some(largest) = largest else { return [0.0; 2] };
     let first = 2.0 / largest.sqrt() * (1.0 - 4.0 * f64::EPSILON);
     let second = coupling(d, pieces, compliance).map_or(0.0, |c| {
         let c = c.max(f64::EPSILON);
@@ -1011,13 +1004,12 @@ fn power(n: usize, times: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
     use super::*;
     use crate::contact::Friction;
     use crate::kernel::{Material, Plane};
     use crate::model::quadrature::gauss;
-    use crate::model::{Condition, Diagonal, Mesh, Problem, Rectangle};
+    use crate::model::{Condition, Diagonal, Problem, Rectangle};
+    use crate::proof::intervals::tests::ring;
 
     /// Numbers between -1 and 1.
     fn draws(seed: f64) -> impl FnMut() -> f64 {
@@ -1034,11 +1026,6 @@ mod tests {
         let n = g.nrows();
         let by = Mat::from_fn(n, n, |i, j| 1e-14 * (g[(i, i)] * g[(j, j)]).sqrt());
         Compliance { entry: largest(&by), off: row_sum(&by), g, by }
-    }
-
-    fn length(matrix: &Mat<f64>, x: &[f64]) -> f64 {
-        let row = |i: usize| (0..x.len()).map(|j| matrix[(i, j)] * x[j]).sum::<f64>();
-        norm(&(0..matrix.nrows()).map(row).collect::<Vec<f64>>())
     }
 
     #[test]
@@ -1066,10 +1053,7 @@ mod tests {
             let exact = whole.partial_piv_lu().solve(&one);
             let inverse = Root::new(&compliance(&z)).unwrap().inverse(&blocks).unwrap();
             let square = exact.transpose() * &exact;
-            let times = |x: &[f64]| -> Vec<f64> {
-                (0..rows).map(|i| (0..rows).map(|j| square[(i, j)] * x[j]).sum()).collect()
-            };
-            let found = power(rows, times).sqrt();
+            let found = power(rows, |x| times(&square, x)).sqrt();
             let close = |most: f64, found: f64| {
                 // The control: nothing much smaller would be true.
                 assert!(most >= found * (1.0 - 1e-6) && most <= 1.1 * found, "{most} {found}");
@@ -1077,16 +1061,14 @@ mod tests {
             close(inverse.bound(), found.max(1.0));
             let answers = &exact * &z;
             for j in 0..n {
-                let mut unit = vec![0.0; n];
-                unit[j] = 1.0;
-                close(length(&inverse.answers, &unit) + inverse.slack[j], length(&answers, &unit));
+                let most = length_of(&inverse.answers, j) + inverse.slack[j];
+                close(most, length_of(&answers, j));
             }
             let t: Vec<f64> = (0..rows).map(|_| next()).collect();
-            let w: Vec<PreciseBall> = (0..n)
-                .map(|j| PreciseBall::from((0..rows).map(|i| z[(i, j)] * t[i]).sum::<f64>()))
-                .collect();
-            let most = inverse.times(&w, [norm(&t), 1e-12]);
-            assert!(most >= length(&exact, &t) && most <= 3.0 * (norm(&t) + length(&exact, &t)));
+            let w = times(&z.transpose().to_owned(), &t).into_iter().map(PreciseBall::from);
+            let most = inverse.times(&w.collect::<Vec<_>>(), [norm(&t), 1e-12]);
+            let found = norm(&times(&exact, &t));
+            assert!(most >= found && most <= 3.0 * (norm(&t) + found));
         }
     }
 
@@ -1098,8 +1080,7 @@ mod tests {
         let root = Root::new(&of).unwrap();
         let more = &root.c * root.c.transpose();
         let above = |share: f64| {
-            let less = Mat::from_fn(8, 8, |i, j| more[(i, j)] - root.g[(i, j)] * share);
-            is_positive_definite(&less, row_sum(&root.by))
+            is_positive_definite(&(&more - &combined(&root.g, share, 0.0)), row_sum(&root.by))
         };
         assert!(above(1.0) && !above(1.0 + 1e-9));
     }
@@ -1112,26 +1093,11 @@ mod tests {
         assert!(are_too_many(2_001, 10) && are_too_many(2_000, 100_001));
     }
 
-    /// A ring on a floor, from 0.1 to 1.1 off its axis.
-    fn ring() -> Problem {
-        let cells = Rectangle { width: 1.0, height: 1.0, nx: 1, ny: 1, diagonal: Diagonal::Right };
-        let mesh = cells.mesh().unwrap();
-        let named = ["top", "bottom"].map(|name| {
-            let ends = mesh.edges_of(name).unwrap().iter().map(|&edge| mesh.ends(edge));
-            (name.to_owned(), ends.collect())
-        });
-        let places = mesh.vertices().iter().map(|[x, y]| [x + 0.1, *y]).collect();
-        let ring = Mesh::new(places, mesh.triangles().to_vec(), BTreeMap::from(named)).unwrap();
-        Problem::of(ring, Material::lame(1.3, 0.7, Plane::Axisymmetric))
-            .with("top", Condition::clamped())
-            .with("bottom", Condition::contact(|_| 0.0))
-    }
-
     /// Pressed at one end of the edge for sure, and hardly at the other: there the radii are those of that half at points, and the largest
     /// one between them.
     #[test]
     fn what_is_uncertain_at_points_has_their_radii() {
-        let problem = ring();
+        let problem = ring(1, Condition::clamped());
         let on_edge = |rule: EdgeRule, [inner, outer]: [f64; 2]| {
             let d = Discretization::new(&problem, Degree::One, |c| c.limit() / 2.0, rule).unwrap();
             let lines = Lines::new(&d);
@@ -1303,9 +1269,7 @@ mod tests {
         let identity = Mat::<f64>::identity(n, n);
         let inverse = |m: &Mat<f64>| m.llt(Side::Lower).unwrap().solve(&identity);
         let [normal, across] = [0, 1].map(|k| inverse(&(block(k, k) + inverse(&w))));
-        let largest = |m: Mat<f64>| {
-            power(n, |x| (0..n).map(|i| (0..n).map(|j| m[(i, j)] * x[j]).sum()).collect())
-        };
+        let largest = |m: Mat<f64>| power(n, |x| times(&m, x));
         [largest(&w * block(1, 1)), largest(normal * block(0, 1) * across * block(1, 0))]
     }
 

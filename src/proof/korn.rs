@@ -17,7 +17,6 @@ use std::collections::BTreeMap;
 
 use faer::Mat;
 use faer::linalg::solvers::Solve;
-use nalgebra::DMatrix;
 
 use crate::kernel::ball::larger;
 use crate::kernel::{Ball, Triangle};
@@ -234,8 +233,7 @@ fn mean_weight(materials: &Materials, t: usize, triangle: &Triangle<f64>) -> f64
 }
 
 /// The constraints by the hoop strain of a body of revolution, on the mean of v_r on each triangle. Two of each part are
-/// enough, one near either end
-/// along the axis, where the bound is least.
+/// enough, one near either end along the axis, where the bound is least.
 fn hoops(mesh: &Mesh, materials: &Materials, part: &[usize], count: usize) -> Vec<Hold> {
     let height = |t: usize| mesh.triangle(t).vertices.iter().map(|x| x[1]).sum::<f64>();
     let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; count];
@@ -346,7 +344,9 @@ fn motions_of_roots(
     let weighted = doubles.iter().enumerate().map(|(k, c)| c / most[k / unknowns]);
     let chosen = independent(weighted.collect(), unknowns)?;
     // With M q = t and any R: q = R t + (1 - R M) q. R is the inverse of M in doubles.
-    let inverse = inverse(&chosen.iter().map(|&i| &doubles[unknowns * i..]).collect::<Vec<_>>());
+    let matrix = Mat::from_fn(unknowns, unknowns, |i, j| doubles[unknowns * chosen[i] + j]);
+    let one = Mat::<f64>::identity(unknowns, unknowns);
+    let inverse = matrix.partial_piv_lu().solve(&one);
     let off = (0..unknowns).map(|i| {
         let entry = |j: usize| {
             let unit = Ball::from(i32::from(i == j));
@@ -369,14 +369,6 @@ fn motions_of_roots(
     let bound = |q: &[f64]| SAFETY * ((q[0] + rest).hypot(q[1] + rest) + q[2] + rest);
     let bounds: Vec<f64> = image.chunks_exact(3).map(bound).collect();
     bounds.iter().all(|bound| bound.is_finite()).then_some(bounds)
-}
-
-/// The inverse of a matrix with these rows, in doubles.
-fn inverse(rows: &[&[f64]]) -> DMatrix<f64> {
-    let n = rows.len();
-    let lu = Mat::from_fn(n, n, |i, j| rows[i][j]).partial_piv_lu();
-    let inverse = lu.solve(Mat::<f64>::identity(n, n));
-    DMatrix::from_fn(n, n, |i, j| inverse[(i, j)])
 }
 
 /// As many of these rows as they are long that are far from dependent, one after the other.

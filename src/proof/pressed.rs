@@ -35,8 +35,7 @@ fn weighted(radii: Radii, place: PreciseBall, weight: PreciseBall) -> PreciseBal
     radii.map_or(weight, |radii| weight * edge_integral::radius(radii, place))
 }
 
-/// The maximum on \[0, 1\] of the square of a polynomial with `count` coefficients whose square has the integral 1 with the
-/// weight r:
+/// The maximum on \[0, 1\] of the square of a polynomial with `count` coefficients whose square has the integral 1 with the weight r:
 /// count^2 over the smaller r; or, as r is at least its larger value times the distance from the other end, count^2 (count + 1)^2 / 2
 /// over that (docs/theory.md, 11.5).
 fn most_in_revolution(count: usize, radii: [PreciseBall; 2]) -> f64 {
@@ -103,9 +102,6 @@ pub struct Pressed {
 /// A stretch with the least that P is on it, or is within the bound of friction.
 type Measured = (f64, EdgePiece);
 
-/// Candidates for S of one component on a piece: the piece, the numbers of the component's values, and stretches of the piece.
-type Found = (usize, Range<usize>, Vec<Measured>);
-
 impl EdgePiece {
     /// The pieces of an edge on which all of these polynomials are positive; of a stretch the first of the `insets`, in parts of the
     /// stretch, is left out at a root or a further cut with which they are.
@@ -119,19 +115,12 @@ impl EdgePiece {
             return Self::between_roots(degree, radii, all, (insets, cuts));
         };
         let at = |&(s, weight): &(f64, f64)| {
-            let (shapes, weight) = (
-                degree.edge_values(PreciseBall::from(s)),
-                weighted(radii, s.into(), weight.into()),
-            );
-            let mass = products(weight, &shapes);
-            EdgePiece {
-                ends: [s, s],
-                coefficients: vec![shapes],
-                square: PreciseBall::from(1) / weight,
-                mass,
-            }
+            let shapes = degree.edge_values(PreciseBall::from(s));
+            let weight = weighted(radii, s.into(), weight.into());
+            let (mass, square) = (products(weight, &shapes), PreciseBall::from(1) / weight);
+            EdgePiece { ends: [s, s], coefficients: vec![shapes], square, mass }
         };
-        points.iter().map(at).filter(|piece| piece.least(all) > 0.0).collect()
+        points.iter().map(at).filter(|piece| least(&piece.coefficients, all) > 0.0).collect()
     }
 
     /// Those on which all of these polynomials are positive, as much of the piece as they are.
@@ -190,11 +179,6 @@ impl EdgePiece {
             add(&mut mass, &products(weighted(radii, place(i), weight), &at(i)));
         }
         EdgePiece { ends, coefficients, square, mass }
-    }
-
-    /// The least coefficient of these polynomials, or less.
-    fn least(&self, all: &[Row]) -> f64 {
-        least(&self.coefficients, all)
     }
 }
 
@@ -277,9 +261,9 @@ impl Pressed {
             } else {
                 EdgePiece::positive((degree, &d.rule), line.radii, all, (&[INSET], &[]))
             };
-            pieces.into_iter().map(|piece| (piece.least(all), piece)).collect()
+            pieces.into_iter().map(|piece| (least(&piece.coefficients, all), piece)).collect()
         };
-        let [mut pressed, mut sticking]: [Vec<Found>; 2] = Default::default();
+        let (mut parts, mut sticking) = (Vec::new(), Vec::new());
         for (edge, line) in lines.iter().enumerate() {
             let p = line.p(u);
             for (response, values) in line.responses() {
@@ -289,20 +273,14 @@ impl Pressed {
                     }
                     Response::Unilateral => positive(line, &[p[values.clone()].to_vec()]),
                 };
-                pressed.push((edge, values, pieces));
+                parts.extend(PressedPart::new((edge, line), values, &pieces, rho));
             }
             if let Some(within) = stuck(line, &p) {
-                sticking.push((edge, degree.nodes_per_edge()..p.len(), positive(line, &within)));
+                let (across, pieces) = (degree.nodes_per_edge()..p.len(), positive(line, &within));
+                sticking.extend(PressedPart::new((edge, line), across, &pieces, rho));
             }
         }
-        let parts_of = |all: &[Found]| -> Vec<PressedPart> {
-            let part = |(edge, values, pieces): &Found| {
-                PressedPart::new((*edge, &lines[*edge]), values.clone(), pieces, rho)
-            };
-            all.iter().filter_map(part).collect()
-        };
-        let mut parts = parts_of(&pressed);
-        parts.extend(parts_of(&sticking));
+        parts.append(&mut sticking);
         Pressed { count: d.contact.len(), parts }
     }
 

@@ -104,7 +104,7 @@ pub struct BoundaryFriction {
 }
 
 #[cfg(feature = "files")]
-fn unknown() -> f64 {
+pub(crate) fn unknown() -> f64 {
     f64::NAN
 }
 
@@ -206,8 +206,7 @@ pub(crate) fn recovered_pressure(d: &Discretization, p: &[Vec<DoubleDouble>]) ->
 }
 
 /// The recovered pressure on the pieces of a pair of bodies, by the hats of whole edges of the body that has more of them: a
-/// piece
-/// may be far shorter than any edge, and lambda^h jumps from one to the next.
+/// piece may be far shorter than any edge, and lambda^h jumps from one to the next.
 fn recover_between(
     d: &Discretization,
     p: &[Vec<DoubleDouble>],
@@ -405,16 +404,9 @@ impl ContactBoundary {
             boundary: boundary.to_owned(),
             opening: partner.is_some().then_some(f64::NEG_INFINITY),
             partner,
-            force: 0.0,
-            resultant: [0.0; 2],
-            moment: 0.0,
-            length: 0.0,
-            stretches: Vec::new(),
             peak_pressure: f64::NEG_INFINITY,
-            peak_at: [0.0; 2],
             penetration: f64::NEG_INFINITY,
-            penetration_at: [0.0; 2],
-            friction: None,
+            ..ContactBoundary::default()
         }
     }
 
@@ -482,10 +474,8 @@ impl ContactBoundary {
             }
         }
         self.length += contact.active;
-        let place_at = |s: f64| {
-            let [a, b] = [places[0], places[1]];
-            [0, 1].map(|c| (1.0 - s) * a[c] + s * b[c])
-        };
+        let (start, end) = (places[0], places[1]);
+        let place_at = |s: f64| [0, 1].map(|c| (1.0 - s) * start[c] + s * end[c]);
         for s in [0.0, 1.0].into_iter().chain(edge.degree.vertex(&overlaps)) {
             let depth = edge.degree.value_at(&overlaps, s);
             self.opening = self.opening.map(|opening| opening.max(-depth));
@@ -497,7 +487,6 @@ impl ContactBoundary {
         let mut cuts = edge.degree.roots(&p);
         cuts.extend([0.0, 1.0]);
         cuts.sort_unstable_by(f64::total_cmp);
-        let [start, end] = [places[0], places[1]];
         for pair in cuts.windows(2) {
             if !(edge.degree.value_at(&p, (pair[0] + pair[1]) / 2.0) > 0.0) {
                 continue;

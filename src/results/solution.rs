@@ -256,13 +256,11 @@ fn put_between(
         reaction.iter_mut().zip(intervals).for_each(|(r, &range)| put(r, range));
     }
     for part in boundaries {
-        let Some(of) = proved
+        let own = proved
             .contact
             .iter()
-            .find(|of| of.boundary == part.boundary && of.partner == part.partner)
-        else {
-            continue;
-        };
+            .find(|of| of.boundary == part.boundary && of.partner == part.partner);
+        let Some(of) = own else { continue };
         put(&mut part.force, of.force);
         part.resultant.iter_mut().zip(of.resultant).for_each(|(r, range)| put(r, range));
     }

@@ -39,6 +39,16 @@ pub struct Extreme {
     pub triangle: usize,
 }
 
+impl Extreme {
+    fn or_larger(&mut self, other: Extreme) {
+        *self = if other.value > self.value { other } else { *self };
+    }
+
+    fn or_smaller(&mut self, other: Extreme) {
+        *self = if other.value < self.value { other } else { *self };
+    }
+}
+
 /// The largest stresses over the nodes, each node taken once for each material around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -79,18 +89,12 @@ impl Solution {
                     hoop: of_revolution.then(|| [extreme(stress[2]); 2]),
                 };
                 let so_far = largest.get_or_insert(here);
-                if here.von_mises.value > so_far.von_mises.value {
-                    so_far.von_mises = here.von_mises;
-                }
-                if here.principal_max.value > so_far.principal_max.value {
-                    so_far.principal_max = here.principal_max;
-                }
-                if here.principal_min.value < so_far.principal_min.value {
-                    so_far.principal_min = here.principal_min;
-                }
+                so_far.von_mises.or_larger(here.von_mises);
+                so_far.principal_max.or_larger(here.principal_max);
+                so_far.principal_min.or_smaller(here.principal_min);
                 if let (Some([most, least]), Some([here, _])) = (&mut so_far.hoop, here.hoop) {
-                    *most = if here.value > most.value { here } else { *most };
-                    *least = if here.value < least.value { here } else { *least };
+                    most.or_larger(here);
+                    least.or_smaller(here);
                 }
             }
         }
