@@ -90,9 +90,7 @@ pub struct Case {
 /// The units of a case: words for labels. The numbers are consistent by themselves.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Units {
-    /// The unit of lengths.
     pub(crate) length: String,
-    /// The unit of forces.
     pub(crate) force: String,
 }
 
@@ -100,11 +98,9 @@ pub(crate) struct Units {
 /// per length across the plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Measure {
-    /// A length.
     Length,
     /// A stress or a pressure.
     Stress,
-    /// A force.
     Force,
     /// A moment or an energy.
     Moment,
@@ -207,19 +203,17 @@ impl Case {
     ) -> Result<Case, FileError> {
         parse(Source { file, text, settings: &[], functions }, Some(mesh))
     }
-}
 
-impl Case {
+    /// The units of these measures, if the case has units.
+    pub(super) fn units_of<const N: usize>(&self, measures: [Measure; N]) -> Option<[String; N]> {
+        let units = self.units.as_ref()?;
+        Some(measures.map(|measure| units.of(measure, self.thickness)))
+    }
+
     /// The words of its remarks.
     pub(super) fn words(&self) -> Words {
-        let unit = |units: &Units| {
-            [Measure::Length, Measure::Stress].map(|measure| units.of(measure, self.thickness))
-        };
-        Words {
-            units: self.units.as_ref().map(unit),
-            known_force: None,
-            is_step: self.step.is_some(),
-        }
+        let units = self.units_of([Measure::Length, Measure::Stress]);
+        Words { units, known_force: None, is_step: self.step.is_some() }
     }
 }
 

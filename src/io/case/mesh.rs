@@ -51,7 +51,7 @@ fn with_places(root: &Table, mut mesh: Mesh) -> Result<Mesh, FileError> {
             place.at.wrong(format!("{} = {}: {error}", place.at.name, quoted(text, '"')))
         })?;
         let named = mesh.with_boundary(name, |at| condition.holds(at));
-        mesh = named.map_err(|error| place.at.mesh(error))?;
+        mesh = named.map_err(|error| place.at.about(error))?;
     }
     Ok(mesh)
 }
@@ -105,7 +105,7 @@ fn make_mesh(table: &Table, directory: &Path, pairs: &[Pair]) -> Result<Meshed, 
     }
     let of = value.table()?;
     let structured = if shape == "rectangle" { read_rectangle(&of)? } else { read_trapezoid(&of)? };
-    let mesh = structured.mesh(perturbation).map_err(|error| of.at.mesh(error))?;
+    let mesh = structured.mesh(perturbation).map_err(|error| of.at.about(error))?;
     Ok(Meshed { structured: Some(structured), perturbation, ..mesh.into() })
 }
 

@@ -14,7 +14,7 @@ use super::beyond;
 use super::source::Source;
 use crate::io::expression::Expression;
 use crate::io::input::{Failure, FileError};
-use crate::model::{MeshError, SharedFunction};
+use crate::model::SharedFunction;
 use crate::quote::{cut, key as shown, listed, number, quoted};
 
 /// The subject of a message: its name and its place. The file as a whole has neither.
@@ -30,14 +30,14 @@ impl Spot<'_> {
         self.source.wrong(self.start, error.into())
     }
 
-    /// An error of the mesh here.
-    pub(crate) fn mesh(&self, error: MeshError) -> FileError {
-        self.wrong(Failure::from(error).map(|problem| format!("{}: {problem}", self.name)))
+    /// An error that names its subject.
+    pub(crate) fn about(&self, error: impl Into<Failure>) -> FileError {
+        self.wrong(error.into().map(|problem| format!("{}: {problem}", self.name)))
     }
 
     /// The complaint that something else should be here.
     pub(crate) fn found(&self, found: &str, expected: &str) -> FileError {
-        self.wrong(format!("{}: found {found}; expected {expected}", self.name))
+        self.about(format!("found {found}; expected {expected}"))
     }
 }
 
@@ -207,6 +207,11 @@ impl<'s> Value<'s> {
     /// The value as a table under its key.
     pub(crate) fn table(&self) -> Result<Table<'s>, FileError> {
         self.section(self.at.name.clone())
+    }
+
+    /// The value as a table under its key, where `expected` shows one.
+    pub(crate) fn table_such_as(&self, expected: &str) -> Result<Table<'s>, FileError> {
+        if self.is_table() { self.table() } else { Err(self.wrong(expected)) }
     }
 
     pub(crate) fn is_table(&self) -> bool {

@@ -147,9 +147,7 @@ impl Scene {
             displacement: s.displacement.clone(),
             triangles,
             von_mises,
-            units: case.units.as_ref().map(|units| {
-                [Measure::Stress, Measure::Length].map(|measure| units.of(measure, case.thickness))
-            }),
+            units: case.units_of([Measure::Stress, Measure::Length]),
             stretch: case.stretch,
             apart: apart(s),
             interfaces: interfaces(case).into_iter().flat_map(parts).collect(),
