@@ -25,9 +25,7 @@ pub(crate) type ByDimension<T> = [T; 3];
 
 /// Nodes, elements, and the names of what the elements lie on.
 pub(crate) struct RawMesh {
-    /// The nodes.
     pub(crate) nodes: Vec<Node>,
-    /// The elements.
     pub(crate) elements: Elements,
     /// The names of the points, curves and surfaces on which elements lie, by their numbers; one without a name may be left out.
     pub(crate) names: ByDimension<BTreeMap<i32, Vec<String>>>,
@@ -37,9 +35,7 @@ pub(crate) struct RawMesh {
     pub(crate) remarks: Vec<String>,
 }
 
-/// A node.
 pub(crate) struct Node {
-    /// Its number.
     pub(crate) tag: usize,
     /// x, y, z.
     pub(crate) place: [f64; 3],
@@ -534,14 +530,12 @@ fn halves(places: [[f64; 2]; 4]) -> [[usize; 3]; 2] {
 }
 
 fn said_of_split(quadrangles: usize) -> Option<String> {
-    let are_split = match quadrangles {
+    let [are_split, their] = match quadrangles {
         0 => return None,
-        1 => "1 quadrangle of the mesh is split into two triangles, along its".to_owned(),
-        many => {
-            format!("{many} quadrangles of the mesh are split into two triangles each, along their")
-        }
+        1 => ["quadrangle of the mesh is split into two triangles", "its"],
+        _ => ["quadrangles of the mesh are split into two triangles each", "their"],
     };
-    Some(format!("{are_split} shorter diagonal"))
+    Some(format!("{quadrangles} {are_split}, along {their} shorter diagonal"))
 }
 
 /// The triangles, each once even if listed for each of several groups, with the further entities of each. A triangle that is
@@ -553,38 +547,28 @@ fn once<'e>(
     if triangles.iter().all(|t| t.entity == triangles[0].entity) {
         return (triangles, Vec::new());
     }
-    let sorted = |(t, triangle): (usize, &&Element)| {
+    let mut number = HashMap::with_capacity(triangles.len());
+    let mut further: HashMap<usize, Vec<i32>> = HashMap::new();
+    let (mut kept, mut others): (Vec<&Element>, _) = (Vec::with_capacity(triangles.len()), vec![]);
+    for triangle in triangles {
+        let entity = triangle.entity;
+        let is_apart = |&other: &i32| {
+            let mut own = names_of(names, entity).iter();
+            other != entity && !own.any(|name| names_of(names, other).contains(name))
+        };
         let mut nodes = triangle.triangle();
         nodes.sort_unstable();
-        (nodes, t)
-    };
-    let mut order: Vec<([usize; 3], usize)> = triangles.iter().enumerate().map(sorted).collect();
-    order.sort_unstable();
-    // The first triangle that each is the same as.
-    let mut first: Vec<usize> = (0..triangles.len()).collect();
-    for same in order.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1) {
-        let mut others: Vec<i32> = vec![triangles[same[0].1].entity];
-        for &(_, t) in &same[1..] {
-            let entity = triangles[t].entity;
-            let names_of_this = names_of(names, entity);
-            let is_apart = |&other: &i32| {
-                let shared = names_of(names, other).iter().any(|name| names_of_this.contains(name));
-                other != entity && !shared
-            };
-            if others.iter().all(is_apart) {
-                others.push(entity);
-                first[t] = same[0].1;
-            }
-        }
-    }
-    let mut number = vec![0; triangles.len()];
-    let (mut kept, mut others) = (Vec::with_capacity(triangles.len()), Vec::new());
-    for (t, triangle) in triangles.into_iter().enumerate() {
-        if first[t] == t {
-            number[t] = kept.len();
+        let first = *number.entry(nodes).or_insert(kept.len());
+        if first == kept.len() {
             kept.push(triangle);
+            continue;
+        }
+        let entities = further.entry(first).or_insert_with(|| vec![kept[first].entity]);
+        if entities.iter().all(is_apart) {
+            entities.push(entity);
+            others.push((first, entity));
         } else {
-            others.push((number[first[t]], triangle.entity));
+            kept.push(triangle);
         }
     }
     (kept, others)
