@@ -71,28 +71,18 @@ pub(super) fn rounded(x: f64) -> f64 {
     (x * 100.0).round() / 100.0 + 0.0
 }
 
-/// Appends [`rounded`] coordinates, as `{}` writes them, as whole hundredths: in a picture there are many.
+/// Appends [`rounded`] coordinates, as `{}` writes them, by whole numbers: in a picture there are many.
 fn push_rounded(to: &mut String, x: f64) {
-    if !x.is_finite() {
-        // Writing to a string cannot fail. A page with a number that is not finite is refused.
-        let _ = write!(to, "{x}");
-        return;
-    }
     let hundredths = (x * 100.0).round() as i64;
-    if hundredths < 0 {
-        to.push('-');
-    }
-    let (mut left, mut place) = (hundredths.unsigned_abs(), 100);
-    while left / place >= 10 {
-        place *= 10;
-    }
-    while place >= 100 || left > 0 {
-        if place == 10 {
-            to.push('.');
-        }
-        to.push(char::from(b'0' + (left / place) as u8));
-        (left, place) = (left % place, place / 10);
-    }
+    let sign = if hundredths < 0 { "-" } else { "" };
+    let (whole, part) = (hundredths.unsigned_abs() / 100, hundredths.unsigned_abs() % 100);
+    // Writing to a string cannot fail. A page with a number that is not finite is refused.
+    let _ = match part {
+        _ if !x.is_finite() => write!(to, "{x}"),
+        0 => write!(to, "{sign}{whole}"),
+        _ if part % 10 == 0 => write!(to, "{sign}{whole}.{}", part / 10),
+        _ => write!(to, "{sign}{whole}.{part:02}"),
+    };
 }
 
 /// The width of a text, roughly: no font is at hand, and the reader's may be another.
