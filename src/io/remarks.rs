@@ -7,6 +7,7 @@ mod motion;
 mod resolution;
 
 use super::numbers::short;
+use super::summary::vector as place;
 use crate::contact::contact_line::{ContactLine, Gamma};
 use crate::contact::piece::{Piece, PieceGeometry, Stretch};
 use crate::model::space::Space;
@@ -211,10 +212,6 @@ fn named_obstacle(problem: &Problem, boundary: &str) -> Option<String> {
 fn obstacle_of(problem: &Problem, boundary: &str) -> String {
     let unnamed = || format!("the obstacle of {}", quote::quoted(boundary, '\''));
     named_obstacle(problem, boundary).unwrap_or_else(unnamed)
-}
-
-fn place([x, y]: [f64; 2]) -> String {
-    format!("({}, {})", short(x, 4), short(y, 4))
 }
 
 impl Words {
