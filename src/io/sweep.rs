@@ -103,15 +103,12 @@ fn expanded(item: &str) -> Vec<String> {
 /// The entry of a run that is still to come when a sweep is stopped.
 const NOT_SOLVED: &str = "not solved";
 
-/// The table, and force and peak over what varies.
-pub(crate) const FILES: [&str; 2] = ["sweep.csv", "sweep.svg"];
-
 /// The names of the files of a table of runs: the table, force and peak over what varies, and what ParaView opens, where the runs have
 /// files.
 pub(crate) type Names = [&'static str; 3];
 
 /// The files of a sweep.
-const NAMES: &Names = &[FILES[0], FILES[1], "sweep.pvd"];
+pub(crate) const FILES: &Names = &["sweep.csv", "sweep.svg", "sweep.pvd"];
 
 /// A case and its results for the combinations of the values of some keys.
 #[derive(Clone, Debug)]
@@ -193,7 +190,7 @@ pub(crate) fn run(
     clear(folder);
     let keys = axes.iter().map(|axis| axis.key.clone()).collect();
     let mut sweep =
-        Sweep { title, keys, values, results: Vec::new(), with_files: files, names: NAMES };
+        Sweep { title, keys, values, results: Vec::new(), with_files: files, names: FILES };
     let all = sweep.values.clone();
     let one = |i: usize, last: &mut Earlier| {
         let folder = files.then(|| of_run(folder, i));
@@ -632,7 +629,7 @@ mod tests {
             values: values(rows),
             results: Vec::new(),
             with_files: false,
-            names: NAMES,
+            names: FILES,
         };
         let rows = [["[0, -1]", "1"], ["[0, -1]", "2"], ["[0, -1]", "3"], ["[0, -2]", "1"]];
         assert_eq!(sweep(&rows).abscissa(), Some((1, vec![1.0, 2.0, 3.0, 1.0])));
