@@ -490,17 +490,17 @@ fn solved_exactly(certificate: &DiscreteCertificate) -> String {
 
 /// Says how far the solution can be from the exact solution of the discrete equations (8), and whether there is one.
 fn enclosed(certificate: &DiscreteCertificate) -> String {
-    let reason = certificate.reason.as_deref().unwrap_or_default();
-    let solutions = match (certificate.unique, certificate.radius) {
-        (true, _) => "the discrete equations have exactly one solution",
-        (false, Some(_)) => "the discrete equations have one solution but for sliding",
-        (false, None) => "",
-    };
+    let one = "the discrete equations have exactly one solution";
     let Some(radius) = certificate.radius else {
-        return match solutions {
-            "" => format!("nothing: {reason}"),
-            _ => format!("{solutions}; how far this one is from it is not known: {reason}"),
+        let reason = certificate.reason.as_deref().unwrap_or_default();
+        return match certificate.unique {
+            true => format!("{one}; how far this one is from it is not known: {reason}"),
+            false => format!("nothing: {reason}"),
         };
+    };
+    let solutions = match certificate.unique {
+        true => one,
+        false => "the discrete equations have one solution but for sliding",
     };
     // The power of ten above: what rounding leaves differs from processor to processor.
     let size = match certificate.relative.filter(|relative| *relative > 0.0) {
