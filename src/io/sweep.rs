@@ -304,6 +304,18 @@ fn solve(case: Case, folder: Option<&Path>, last: &mut Earlier) -> Result<Ended,
     Ok((Ok(results), scene))
 }
 
+/// The values of each name, the names in the order in which they come first.
+fn grouped<T>(named: impl Iterator<Item = (String, T)>) -> Vec<(String, Vec<T>)> {
+    let mut groups: Vec<(String, Vec<T>)> = Vec::new();
+    for (name, value) in named {
+        match groups.iter_mut().find(|(other, _)| *other == name) {
+            Some((_, values)) => values.push(value),
+            None => groups.push((name, vec![value])),
+        }
+    }
+    groups
+}
+
 /// The numbers in the value of a key, in their order.
 fn numbers(value: &str) -> Vec<f64> {
     let is_part = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '+' | '-' | '_');
@@ -427,16 +439,11 @@ impl Sweep {
 
     /// The remarks on the runs, a line each: those that several runs share once, with the numbers of these; empty if there are none.
     fn remarks(&self) -> String {
-        let mut remarks: Vec<(String, Vec<String>)> = Vec::new();
-        for (i, results) in (1..).zip(&self.results) {
-            for text in results.iter().flat_map(summary::remarks) {
-                let run = format!("{i}");
-                match remarks.iter_mut().find(|(other, _)| *other == text) {
-                    Some((_, runs)) => runs.push(run),
-                    None => remarks.push((text, vec![run])),
-                }
-            }
-        }
+        let of_run = |(i, results): (i32, &Result<Results, Failure>)| {
+            let remarks: Vec<String> = results.iter().flat_map(summary::remarks).collect();
+            remarks.into_iter().map(move |text| (text, i.to_string()))
+        };
+        let remarks = grouped((1..).zip(&self.results).flat_map(of_run));
         let line = |(text, runs): &(String, Vec<String>)| {
             let of = quote::names(runs.iter().map(String::as_str));
             format!("remark on row {of}: {}\n", quote::unbroken(text))
@@ -495,20 +502,14 @@ impl Sweep {
     /// Force and peak over what varies, a curve for each combination of the other keys; `None` where no number varies.
     fn curves(&self) -> Option<Figure> {
         let (key, numbers) = self.abscissa()?;
-        let others = |run: &[String]| {
+        let others = |run: &Vec<String>| {
             let other = |(k, value): (&String, &String)| {
                 (*k != self.keys[key]).then(|| format!("{k} = {value}"))
             };
             self.keys.iter().zip(run).filter_map(other).collect::<Vec<String>>().join(", ")
         };
-        let mut curves: Vec<(String, Vec<usize>)> = Vec::new();
-        for (i, run) in self.values.iter().enumerate().take(self.results.len()) {
-            let name = others(run);
-            match curves.iter_mut().find(|(other, _)| *other == name) {
-                Some((_, runs)) => runs.push(i),
-                None => curves.push((name, vec![i])),
-            }
-        }
+        let names = self.values.iter().map(others).take(self.results.len());
+        let curves = grouped(names.zip(0..));
         let panel = |name: &str| Panel {
             title: name.replace('_', " "),
             lines: curves

@@ -12,11 +12,6 @@ use crate::solve::{
     ContactQuadrature, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
 };
 
-/// The degree where a case says none. On meshes of parts quadratic elements are nearer at equal time: the table is in docs/case.md.
-pub(super) fn default_degree(mesh_of_a_file: bool) -> Degree {
-    if mesh_of_a_file { Degree::Two } else { Degree::One }
-}
-
 /// `method` has the defaults.
 pub(super) fn read_method(table: &Table, mut method: Method) -> Result<Method, FileError> {
     table.only(&["degree", "gamma0", "kappa", "contact_quadrature", "allow_noncoercive"])?;

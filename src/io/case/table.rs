@@ -287,16 +287,13 @@ impl<'s> Value<'s> {
     }
 
     pub(crate) fn items(&self) -> Result<Vec<Value<'s>>, FileError> {
-        match self.value {
-            DeValue::Array(items) => Ok(items.iter().enumerate().map(|i| self.item(i)).collect()),
-            _ => Err(self.wrong("a list")),
-        }
-    }
-
-    fn item(&self, (i, item): (usize, &'s Spanned<DeValue<'s>>)) -> Value<'s> {
-        let name = format!("{}[{i}]", self.at.name);
-        let at = Spot { source: self.at.source, name, start: Some(item.span().start) };
-        Value { at, value: item.get_ref() }
+        let DeValue::Array(items) = self.value else { return Err(self.wrong("a list")) };
+        let item = |(i, item): (usize, &'s Spanned<DeValue<'s>>)| {
+            let name = format!("{}[{i}]", self.at.name);
+            let at = Spot { source: self.at.source, name, start: Some(item.span().start) };
+            Value { at, value: item.get_ref() }
+        };
+        Ok(items.iter().enumerate().map(item).collect())
     }
 
     pub(crate) fn pair(&self) -> Result<[Value<'s>; 2], FileError> {

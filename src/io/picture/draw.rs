@@ -251,7 +251,8 @@ pub(super) fn legend(
 /// The drawing of the body on the page: the map from the plane, and the room that it takes.
 pub(super) struct PageMap {
     corner: Point,
-    scale: f64,
+    /// The length on the page of a unit of the plane.
+    pub(super) scale: f64,
     /// The point at the centre of the drawing.
     centre: Point,
     pub(super) width: f64,
@@ -275,11 +276,6 @@ impl PageMap {
             width: (scale * extent[0] + 2.0 * AROUND).clamp(600.0, 800.0),
             height: (scale * extent[1] + 2.0 * AROUND).clamp(260.0, 520.0),
         }
-    }
-
-    /// The length on the page of a unit of the plane.
-    pub(super) fn scale(&self) -> f64 {
-        self.scale
     }
 
     pub(super) fn page(&self, [x, y]: Point) -> Point {

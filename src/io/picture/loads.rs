@@ -211,8 +211,8 @@ pub(super) fn cross(at: Point) -> Group {
 
 /// A bar of a round length of the undeformed body, its right end at a point of the page.
 pub(super) fn scale_bar(frame: &PageMap, unit: Option<&str>, [right, y]: Point) -> Group {
-    let length = round_below(110.0 / frame.scale());
-    let left = right - length * frame.scale();
+    let length = round_below(110.0 / frame.scale);
+    let left = right - length * frame.scale;
     let mut path = PathData::default();
     path.line([[left, y - 4.0], [left, y + 4.0]]);
     path.line([[left, y], [right, y]]);

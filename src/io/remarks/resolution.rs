@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::{Known, NO_LENGTH, Words, model, place, size};
+use super::{NO_LENGTH, Words, model, place, size};
 use crate::contact::piece::PieceGeometry;
-use crate::model::{Condition, Problem};
+use crate::model::{Condition, Degree, Problem};
 use crate::quote;
 use crate::results::solution::{ContactEdge, ContactPoint};
 use crate::results::{ContactBoundary, Solution};
@@ -219,18 +219,20 @@ fn short_stretch(
 /// solved, overlaps its obstacle.
 pub(super) fn gaps(
     problem: &Problem,
-    known: Known,
+    degree: Degree,
+    solution: Option<&Solution>,
     line: &[&PieceGeometry],
     words: &Words,
 ) -> Vec<String> {
     let to_obstacles: Vec<&PieceGeometry> = model::to_obstacles(line).collect();
     let by_boundary = to_obstacles.chunk_by(|a, b| a.first().boundary == b.first().boundary);
-    by_boundary.filter_map(|pieces| gap(problem, known, words, pieces)).collect()
+    by_boundary.filter_map(|pieces| gap(problem, degree, solution, words, pieces)).collect()
 }
 
 fn gap(
     problem: &Problem,
-    known: Known,
+    degree: Degree,
+    solution: Option<&Solution>,
     words: &Words,
     pieces: &[&PieceGeometry],
 ) -> Option<String> {
@@ -240,11 +242,9 @@ fn gap(
         Condition::Obstacle(_, obstacle) => Some(obstacle.closest(x, String::new).ok()?.gap),
         _ => None,
     };
-    let motion = match known {
-        Known::Data(_) => {
-            pieces.iter().flat_map(|piece| piece.gaps()).fold(0.0, |most: f64, g| most.max(-g))
-        }
-        Known::Solution(solution) => {
+    let motion = match solution {
+        None => pieces.iter().flat_map(|piece| piece.gaps()).fold(0.0, |most: f64, g| most.max(-g)),
+        Some(solution) => {
             let of_line = solution.contact.iter().filter(|edge| &*edge.boundary == name);
             of_line.flat_map(|edge| &edge.points).fold(0.0, |most: f64, p| most.max(p.u_n.abs()))
         }
@@ -257,7 +257,7 @@ fn gap(
         for s in BETWEEN_NODES {
             let at = [0, 1].map(|c| a[c] + s * (b[c] - a[c]));
             let Some(gap) = gap_at(at) else { continue };
-            let interpolant = known.degree().value_at(&gaps, s);
+            let interpolant = degree.value_at(&gaps, s);
             let off = (interpolant - gap).abs();
             // A gap that the motion does not close does not matter.
             if gap.min(interpolant) <= motion && worst.is_none_or(|worst| off > worst.0) {
