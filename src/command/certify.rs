@@ -71,6 +71,6 @@ pub(crate) fn audit(
     }
     let reason = compare(problem, &audit.certificate, &audit.forces)
         .map_err(|difference| none_of_it(difference.to_string()))?;
-    let case = AuditedCase { file, title, units };
-    Ok(summarised(&summary::audited(&audit, Some((&case, reason.as_deref()))), quiet))
+    let case = AuditedCase { file, title, units, reason };
+    Ok(summarised(&summary::audited(&audit, Some(&case)), quiet))
 }

@@ -21,24 +21,16 @@ pub(crate) fn run(mesh: &Path, out: Option<&Path>, quiet: bool) -> Result<Done, 
     let text = draft::draft(&title, &name_for(mesh, &out), &made.mesh, &pairs);
     write(&out, &text)?;
     // The draft is a guess: mistakes in it are reported, and the file stays.
-    let case = match Case::parse(&out, &text, &[]) {
-        Ok(case) => case,
-        Err(error) => {
-            complain(&format!(
-                "remark: the file has to be changed before it can be solved: {error}"
-            ));
-            return Ok(written(&out, "", quiet));
-        }
-    };
-    Ok(written(&out, &checked::listed(&case), quiet))
-}
-
-fn written(out: &Path, listed: &str, quiet: bool) -> Done {
-    let out = quote::path(out);
+    let listed = Case::parse(&out, &text, &[]).map(|case| checked::listed(&case));
+    let listed = listed.unwrap_or_else(|error| {
+        complain(&format!("remark: the file has to be changed before it can be solved: {error}"));
+        String::new()
+    });
+    let out = quote::path(&out);
     let text = format!(
         "{listed}  written      {out}\n  next         signorini check {out}; signorini solve {out}\n"
     );
-    summarised(&text, quiet)
+    Ok(summarised(&text, quiet))
 }
 
 /// The mesh as the case file names it: relative to that file's folder where it lies there, else by its whole path.

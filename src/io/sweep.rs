@@ -218,6 +218,7 @@ fn each_in_order<T: Send>(
 ) -> Result<(), Failure> {
     let in_a_row = runs.div_ceil(jobs.clamp(1, runs.max(1)));
     let stopped = &AtomicBool::new(false);
+    let stop = |_: &Failure| stopped.store(true, Ordering::Relaxed);
     thread::scope(|scope| {
         let (sender, receiver) = mpsc::channel();
         for first in (0..runs).step_by(in_a_row) {
@@ -233,10 +234,8 @@ fn each_in_order<T: Send>(
                 }
             };
             let started = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work);
-            started.map_err(|error| {
-                stopped.store(true, Ordering::Relaxed);
-                Failure::failed(format!("cannot start a job: {}", reason(&error)))
-            })?;
+            let failed = |error| format!("cannot start a job: {}", reason(&error));
+            started.map_err(|error| Failure::failed(failed(error))).inspect_err(stop)?;
         }
         drop(sender);
         // Runs that ended before one that comes before them in the table.
@@ -245,11 +244,7 @@ fn each_in_order<T: Send>(
             early.insert(i, result);
             while let Some(result) = early.remove(&next) {
                 next += 1;
-                let taken = result.and_then(&mut take);
-                if taken.is_err() {
-                    stopped.store(true, Ordering::Relaxed);
-                }
-                taken?;
+                result.and_then(&mut take).inspect_err(stop)?;
             }
         }
         Ok(())
