@@ -58,7 +58,6 @@ pub(crate) fn run(
     Ok(if results.falls_short() { Done { code: SHORT, ..done } } else { done })
 }
 
-/// Solves the load steps of a case.
 fn step_by_step(
     case: Case,
     folder: &Path,

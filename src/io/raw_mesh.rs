@@ -156,7 +156,6 @@ impl Kind {
         })
     }
 
-    /// The most nodes of an element that is read.
     pub(crate) const MOST_NODES: usize = 36;
 
     /// 0 for a point, 1 for a line, 2 for triangles and quadrangles.
@@ -182,7 +181,6 @@ impl Elements {
         }
     }
 
-    /// The elements of a dimension.
     pub(super) fn of(&self, dimension: usize) -> impl Iterator<Item = &Element> + Clone {
         self.all.iter().filter(move |element| element.dimension() == dimension)
     }
@@ -237,7 +235,6 @@ const NO_TRIANGLE: &str =
 const MIXED: &str = "others of its surface run counter-clockwise";
 
 impl RawMesh {
-    /// The names of its curves.
     pub(super) fn curve_names(&self) -> Vec<String> {
         let names: BTreeSet<&String> = self.names[1].values().flatten().collect();
         names.into_iter().cloned().collect()

@@ -107,7 +107,6 @@ const NOT_SOLVED: &str = "not solved";
 /// files.
 pub(crate) type Names = [&'static str; 3];
 
-/// The files of a sweep.
 pub(crate) const FILES: &Names = &["sweep.csv", "sweep.svg", "sweep.pvd"];
 
 /// A case and its results for the combinations of the values of some keys.
@@ -121,7 +120,6 @@ pub(crate) struct Sweep {
     pub(crate) results: Vec<Result<Results, Failure>>,
     /// The files of each run are written, too.
     pub(crate) with_files: bool,
-    /// The names of the files.
     pub(crate) names: &'static Names,
 }
 

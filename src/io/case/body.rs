@@ -23,7 +23,6 @@ const KEYS: [&str; 8] =
 /// The moduli that a material may be given by.
 pub(super) const EXPECTED: &str = "lambda and mu, young and poisson, stiffness, or orthotropic";
 
-/// The names of the planes.
 pub(super) const PLANES: [(&str, Plane); 3] =
     [("strain", Plane::Strain), ("stress", Plane::Stress), ("axisymmetric", Plane::Axisymmetric)];
 
@@ -36,7 +35,6 @@ pub(crate) struct MaterialEcho {
     /// Young's modulus of a material that is isotropic.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) young: Option<f64>,
-    /// Its Poisson's ratio.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) poisson: Option<f64>,
     /// `[C11, C12, C16, C22, C26, C66]` of one that is not.
@@ -302,7 +300,6 @@ pub(super) fn read_loads(
     Ok((table.optional("body", Value::functions)?.unwrap_or_else(none), forces))
 }
 
-/// A constant function.
 pub(super) fn constant(value: f64) -> SharedFunction {
     Arc::new(Expression::from(value))
 }

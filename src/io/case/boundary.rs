@@ -29,7 +29,6 @@ pub(super) enum Depth {
     Revolution,
 }
 
-/// The area of a boundary of a body of revolution.
 fn area_of_revolution(mesh: &Mesh, edges: &[BoundaryEdge]) -> f64 {
     let of = |&edge: &BoundaryEdge| {
         let [[a, _], [b, _]] = mesh.places_of_ends(edge);

@@ -31,7 +31,6 @@ pub(super) fn read_friction(
     Ok(all)
 }
 
-/// Reads a law of friction.
 pub(super) fn read(value: &Value) -> Result<Friction, FileError> {
     let table = value.table_such_as("a table, such as { coulomb = 0.3 } or { tresca = \"5\" }")?;
     let laws = ["tresca", "coulomb"];

@@ -70,7 +70,6 @@ impl<'s> Table<'s> {
         self.entries.keys().map(|key| &**key.get_ref())
     }
 
-    /// The keys of tables.
     pub(crate) fn keys_of_tables(&self) -> Vec<&'s str> {
         let is_table = |key: &&str| self.get(key).is_some_and(|value| value.is_table());
         self.keys().filter(is_table).collect()
@@ -263,7 +262,6 @@ impl<'s> Value<'s> {
         self.number_that(|x| x > 0.0, "a positive number")
     }
 
-    /// An integer in a range.
     pub(crate) fn whole_number(&self, range: RangeInclusive<usize>) -> Result<usize, FileError> {
         let number = match self.value {
             DeValue::Integer(n) => integer(n).and_then(|n| usize::try_from(n).ok()),

@@ -144,7 +144,6 @@ fn point_support([x, y]: Point, both: bool) -> PathElement {
     stroke(triangle, DARK, 1.2).set("fill", if both { DARK } else { "white" })
 }
 
-/// The sample of a wall.
 pub(super) fn wall_sample() -> Option<Group> {
     hatched([SAMPLE.map(|[x, y]| [x, y - 3.0]).to_vec()])
 }

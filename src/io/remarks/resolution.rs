@@ -131,7 +131,6 @@ impl Line<'_> {
         joined && (0.0..=NEXT).contains(&(start - end))
     }
 
-    /// The middle of a stretch.
     fn middle(&self, stretch: &Stretch) -> [f64; 2] {
         let middle = (stretch.at.start + stretch.at.end) / 2.0;
         let e = middle as usize % self.edges.len();
