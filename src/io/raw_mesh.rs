@@ -544,28 +544,38 @@ fn once<'e>(
     if triangles.iter().all(|t| t.entity == triangles[0].entity) {
         return (triangles, Vec::new());
     }
-    let mut number = HashMap::with_capacity(triangles.len());
-    let mut further: HashMap<usize, Vec<i32>> = HashMap::new();
-    let (mut kept, mut others): (Vec<&Element>, _) = (Vec::with_capacity(triangles.len()), vec![]);
-    for triangle in triangles {
-        let entity = triangle.entity;
-        let is_apart = |&other: &i32| {
-            let mut own = names_of(names, entity).iter();
-            other != entity && !own.any(|name| names_of(names, other).contains(name))
-        };
+    let sorted = |(t, triangle): (usize, &&Element)| {
         let mut nodes = triangle.triangle();
         nodes.sort_unstable();
-        let first = *number.entry(nodes).or_insert(kept.len());
-        if first == kept.len() {
-            kept.push(triangle);
-            continue;
+        (nodes, t)
+    };
+    let mut order: Vec<([usize; 3], usize)> = triangles.iter().enumerate().map(sorted).collect();
+    order.sort_unstable();
+    // The first triangle that each is the same as.
+    let mut first: Vec<usize> = (0..triangles.len()).collect();
+    for same in order.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1) {
+        let mut others: Vec<i32> = vec![triangles[same[0].1].entity];
+        for &(_, t) in &same[1..] {
+            let entity = triangles[t].entity;
+            let names_of_this = names_of(names, entity);
+            let is_apart = |&other: &i32| {
+                let shared = names_of(names, other).iter().any(|name| names_of_this.contains(name));
+                other != entity && !shared
+            };
+            if others.iter().all(is_apart) {
+                others.push(entity);
+                first[t] = same[0].1;
+            }
         }
-        let entities = further.entry(first).or_insert_with(|| vec![kept[first].entity]);
-        if entities.iter().all(is_apart) {
-            entities.push(entity);
-            others.push((first, entity));
-        } else {
+    }
+    let mut number = vec![0; triangles.len()];
+    let (mut kept, mut others) = (Vec::with_capacity(triangles.len()), Vec::new());
+    for (t, triangle) in triangles.into_iter().enumerate() {
+        if first[t] == t {
+            number[t] = kept.len();
             kept.push(triangle);
+        } else {
+            others.push((number[first[t]], triangle.entity));
         }
     }
     (kept, others)
