@@ -107,6 +107,9 @@ fn complain(text: &str) {
 
 const STANDARD_INPUT: &str = "standard input";
 
+/// The phase in which a case is read.
+const READING: &str = "reading the case and its mesh";
+
 fn is_standard_input(file: &Path) -> bool {
     file == Path::new("-")
 }
@@ -141,8 +144,7 @@ fn folder(file: &Path, out: Option<&Path>) -> PathBuf {
 }
 
 fn check(arguments: &CaseArguments, quiet: bool) -> Result<Done, Failure> {
-    let phases = Phases::start(quiet);
-    phases.enter("reading the case and its mesh");
+    let phases = Phases::start(quiet, READING);
     let case = read(arguments)?;
     phases.enter("checking loads, supports and the contact line");
     let outline = library::check(&case.problem, &case.method);

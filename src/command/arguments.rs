@@ -51,30 +51,24 @@ impl Arguments {
                 _ => "",
             };
             let tip = match error.kind() {
-                ErrorKind::InvalidSubcommand
-                    if word(ContextKind::InvalidSubcommand).ends_with(".toml") =>
-                {
-                    "a case is solved by 'signorini solve CASE.toml'"
-                }
-                ErrorKind::InvalidSubcommand
-                    if word(ContextKind::InvalidSubcommand) == "convergence" =>
-                {
-                    "in the sources: 'cargo run --release -p study -- convergence CASE.toml'"
-                }
-                ErrorKind::InvalidSubcommand if !is_similar => {
-                    "the commands are new, check, solve, sweep, certify, audit, completions"
-                }
-                ErrorKind::UnknownArgument if word(ContextKind::InvalidArg) == "-o" => {
-                    "the folder to write to is set by '--out DIR'"
-                }
-                ErrorKind::UnknownArgument
-                    if word(ContextKind::InvalidArg).ends_with(".toml") =>
-                {
-                    "one case at a time; 'signorini sweep' solves a case for several values of its keys"
-                }
-                ErrorKind::UnknownArgument if !is_similar => {
-                    "a key of the case file is set by --set, such as '--set method.degree=2'"
-                }
+                ErrorKind::InvalidSubcommand => match word(ContextKind::InvalidSubcommand) {
+                    case if case.ends_with(".toml") => {
+                        "a case is solved by 'signorini solve CASE.toml'"
+                    }
+                    "convergence" => {
+                        "in the sources: 'cargo run --release -p study -- convergence CASE.toml'"
+                    }
+                    _ if is_similar => return error,
+                    _ => "the commands are new, check, solve, sweep, certify, audit, completions",
+                },
+                ErrorKind::UnknownArgument => match word(ContextKind::InvalidArg) {
+                    "-o" => "the folder to write to is set by '--out DIR'",
+                    case if case.ends_with(".toml") => {
+                        "one case at a time; 'signorini sweep' solves a case for several values of its keys"
+                    }
+                    _ if is_similar => return error,
+                    _ => "a key of the case file is set by --set, such as '--set method.degree=2'",
+                },
                 _ => return error,
             };
             error.insert(

@@ -13,7 +13,7 @@ use crate::solve::{Course, solve_along};
 
 use super::arguments::CaseArguments;
 use super::progress::Phases;
-use super::{Done, folder, read, summarised};
+use super::{Done, READING, folder, read, summarised};
 
 pub(crate) fn certify(
     arguments: &CaseArguments,
@@ -21,8 +21,7 @@ pub(crate) fn certify(
     out: Option<&Path>,
     quiet: bool,
 ) -> Result<Done, Failure> {
-    let phases = Phases::start(quiet);
-    phases.enter("reading the case and its mesh");
+    let phases = Phases::start(quiet, READING);
     let case = read(arguments)?;
     let folder =
         out.map_or_else(|| folder(&arguments.file, None).join("certified"), Path::to_owned);
@@ -36,8 +35,7 @@ pub(crate) fn certify(
     let watcher = |phase| phases.enter_solve(phase);
     let course = Course::default().watched_by(&watcher);
     let (solution, _) = solve_along(&case.problem, &case.method, &case.settings, course)
-        .map_err(|error| error.of_thickness(case.thickness))
-        .map_err(|error| Failure::from(error).of(&case.file))?;
+        .map_err(|error| Failure::from(error.of_thickness(case.thickness)).of(&case.file))?;
     phases.enter("certifying");
     let certified = certify_field(&case.problem, &solution, &field)
         .map_err(|e| Failure::failed(format!("{}: {e}", displacement.display())))?;
@@ -73,6 +71,6 @@ pub(crate) fn audit(
     }
     let reason = compare(problem, &audit.certificate, &audit.forces)
         .map_err(|difference| none_of_it(difference.to_string()))?;
-    let case = AuditedCase { file, title, units };
-    Ok(summarised(&summary::audited(&audit, Some((&case, reason.as_deref()))), quiet))
+    let case = AuditedCase { file, title, units, reason };
+    Ok(summarised(&summary::audited(&audit, Some(&case)), quiet))
 }

@@ -39,24 +39,23 @@ pub(crate) fn fenicsx(
     let mut output = files::Output::new(folder)?;
     let room = std::path::absolute(&output.room).map_err(not_started)?;
     let full = std::path::absolute(case).map_err(not_started)?;
-    let ended = run(safe(&python)
+    let ended = safe(&python)
         .args(["-m", "fenicsx", "--ranks", &ranks.to_string(), "--out"])
         .args([&room, &full])
         .env("PYTHONPATH", path)
-        .current_dir(&room))
-    .map_err(not_started)?;
+        .current_dir(&room)
+        .output()
+        .map_err(not_started)?;
     if !ended.status.success() {
         return Err(failed(&ended, case, &full));
     }
-    let read = || {
-        let file = room.join("result.json");
-        serde_json::from_slice(&fs::read(file)?).map_err(io::Error::from)
-    };
-    let results = read().map_err(|error| {
-        Failure::failed(format!(
-            "the engine fenicsx wrote no result.json that can be read: {error}"
-        ))
-    })?;
+    let results = fs::read(room.join("result.json"))
+        .and_then(|bytes| Ok(serde_json::from_slice(&bytes)?))
+        .map_err(|error| {
+            Failure::failed(format!(
+                "the engine fenicsx wrote no result.json that can be read: {error}"
+            ))
+        })?;
     for name in ["solution.xdmf", "solution.h5", "result.json"] {
         output.adopt(name);
     }
@@ -87,10 +86,6 @@ fn safe(python: &Path) -> Command {
     // The variable is for the processes of Python that MPI starts.
     command.arg("-P").env("PYTHONSAFEPATH", "1").stdin(Stdio::null());
     command
-}
-
-fn run(command: &mut Command) -> io::Result<Output> {
-    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?.wait_with_output()
 }
 
 /// PYTHONPATH with the package in front. Entries that are not paths from the root are left out: they would be folders of
@@ -141,10 +136,11 @@ fn python() -> Result<PathBuf, Failure> {
             let path = env::join_paths(absolute_paths("PYTHONPATH")).unwrap_or_default();
             // PETSc reads .petscrc of the folder where it starts: not of this one.
             let home = python.parent().unwrap_or(Path::new("/"));
-            let import = run(safe(python)
+            let import = safe(python)
                 .args(["-c", "import dolfinx"])
                 .env("PYTHONPATH", path)
-                .current_dir(home));
+                .current_dir(home)
+                .output();
             import.is_ok_and(|output| output.status.success())
         })
         .ok_or_else(|| Failure::failed(NO_DOLFINX))

@@ -1,9 +1,10 @@
 //! `signorini new`: the case file to begin with, from a mesh.
 
-use std::fs::{self, OpenOptions};
+use std::fs::{self, File};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use crate::io::files::folder_of;
 use crate::io::input::reason;
 use crate::io::{Case, Failure, checked, draft, gmsh};
 use crate::quote;
@@ -12,8 +13,7 @@ use super::progress::Phases;
 use super::{Done, complain, summarised};
 
 pub(crate) fn run(mesh: &Path, out: Option<&Path>, quiet: bool) -> Result<Done, Failure> {
-    let phases = Phases::start(quiet);
-    phases.enter("reading the mesh");
+    let phases = Phases::start(quiet, "reading the mesh");
     let (made, pairs) = gmsh::read_with_pairs(mesh)?;
     drop(phases);
     let out = out.map_or_else(|| mesh.with_extension("toml"), Path::to_owned);
@@ -21,34 +21,22 @@ pub(crate) fn run(mesh: &Path, out: Option<&Path>, quiet: bool) -> Result<Done, 
     let text = draft::draft(&title, &name_for(mesh, &out), &made.mesh, &pairs);
     write(&out, &text)?;
     // The draft is a guess: mistakes in it are reported, and the file stays.
-    let case = match Case::parse(&out, &text, &[]) {
-        Ok(case) => case,
-        Err(error) => {
-            complain(&format!(
-                "remark: the file has to be changed before it can be solved: {error}"
-            ));
-            return Ok(written(&out, "", quiet));
-        }
-    };
-    Ok(written(&out, &checked::listed(&case), quiet))
-}
-
-fn written(out: &Path, listed: &str, quiet: bool) -> Done {
-    let out = quote::path(out);
+    let listed = Case::parse(&out, &text, &[]).map(|case| checked::listed(&case));
+    let listed = listed.unwrap_or_else(|error| {
+        complain(&format!("remark: the file has to be changed before it can be solved: {error}"));
+        String::new()
+    });
+    let out = quote::path(&out);
     let text = format!(
         "{listed}  written      {out}\n  next         signorini check {out}; signorini solve {out}\n"
     );
-    summarised(&text, quiet)
+    Ok(summarised(&text, quiet))
 }
 
 /// The mesh as the case file names it: relative to that file's folder where it lies there, else by its whole path.
 fn name_for(mesh: &Path, out: &Path) -> PathBuf {
-    let folder = |path: &Path| {
-        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-        fs::canonicalize(parent.unwrap_or(Path::new("."))).ok()
-    };
     match mesh.file_name() {
-        Some(name) if folder(mesh) == folder(out) => PathBuf::from(name),
+        Some(name) if folder_of(mesh) == folder_of(out) => PathBuf::from(name),
         _ => fs::canonicalize(mesh).unwrap_or_else(|_| mesh.to_owned()),
     }
 }
@@ -64,7 +52,7 @@ fn write(out: &Path, text: &str) -> Result<(), Failure> {
             _ => Failure::failed(format!("cannot write {name}: {}", reason(&error))),
         }
     };
-    let mut file = OpenOptions::new().write(true).create_new(true).open(out).map_err(failed)?;
+    let mut file = File::create_new(out).map_err(failed)?;
     file.write_all(text.as_bytes()).and_then(|()| file.sync_all()).map_err(|error| {
         // Remove an incomplete case file.
         let _ = fs::remove_file(out);

@@ -13,11 +13,13 @@ const CLEAR: &str = "\r\x1b[2K";
 pub(crate) struct Phases(Option<Instant>);
 
 impl Phases {
-    /// Shown unless `quiet`.
-    pub(crate) fn start(quiet: bool) -> Phases {
+    /// Shown unless `quiet`, from this phase on.
+    pub(crate) fn start(quiet: bool, phase: impl Display) -> Phases {
         let term = std::env::var_os("TERM").unwrap_or_default();
         let is_shown = !quiet && stderr().is_terminal() && !term.is_empty() && term != "dumb";
-        Phases(is_shown.then(Instant::now))
+        let phases = Phases(is_shown.then(Instant::now));
+        phases.enter(phase);
+        phases
     }
 
     /// The phase that begins, such as "certifying".

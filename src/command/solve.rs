@@ -13,7 +13,9 @@ use crate::quote;
 
 use super::arguments::{CaseArguments, Engine, SolveOptions};
 use super::progress::Phases;
-use super::{Done, SHORT, complain, engine, folder, is_standard_input, read, summarised, sweep};
+use super::{
+    Done, READING, SHORT, complain, engine, folder, is_standard_input, read, summarised, sweep,
+};
 
 pub(crate) fn run(
     case: &CaseArguments,
@@ -32,8 +34,7 @@ pub(crate) fn run(
     let (results, files) = match (options.engine, options.ranks) {
         (Engine::Fenicsx, _) => solve_by_fenicsx(case, options, quiet)?,
         (Engine::Signorini, None) => {
-            let phases = Phases::start(quiet);
-            phases.enter("reading the case and its mesh");
+            let phases = Phases::start(quiet, READING);
             let (start, read) = (Instant::now(), read(case)?);
             let folder = folder(&case.file, options.out.as_deref());
             if !read.steps.is_empty() {
@@ -57,7 +58,6 @@ pub(crate) fn run(
     Ok(if results.falls_short() { Done { code: SHORT, ..done } } else { done })
 }
 
-/// Solves the load steps of a case.
 fn step_by_step(
     case: Case,
     folder: &Path,
@@ -69,7 +69,7 @@ fn step_by_step(
             "--json: the case has [[step]], whose results are files of their own; expected a case without, or the folder of each step",
         ));
     }
-    spare(folder, &steps::FILES, &case.sources)?;
+    spare(folder, steps::FILES, &case.sources)?;
     let (count, file) = (case.steps.len(), case.file.clone());
     let extra = Extra { certificate: options.certificate, report: options.report };
     let watcher = |step, stage| match stage {
@@ -157,8 +157,7 @@ fn solve_by_fenicsx(
             "-: the engine fenicsx reads the case file itself; expected its name",
         ));
     }
-    let phases = Phases::start(quiet);
-    phases.enter("solving by the engine fenicsx");
+    let _phases = Phases::start(quiet, "solving by the engine fenicsx");
     let folder = folder(file, options.out.as_deref());
     let (ranks, reference) = (options.ranks.unwrap_or(1), options.reference.as_deref());
     engine::fenicsx(file, &folder, ranks, reference)

@@ -24,16 +24,15 @@ pub(crate) fn run(
     let runs = sweep::count(axes)?;
     let folder = folder(file, out);
     let (file, text) = read_text(file)?;
-    spare(&folder, &sweep::FILES, std::slice::from_ref(&file))?;
-    let phases = Phases::start(quiet);
-    let enter = |done| phases.enter(format!("{done} of {runs} runs"));
-    enter(0);
+    spare(&folder, sweep::FILES, std::slice::from_ref(&file))?;
+    let phases = Phases::start(quiet, format!("0 of {runs} runs"));
     // A stopped sweep leaves the table of its solved runs.
     let mut written = Instant::now();
     let done = |sweep: &Sweep| {
-        enter(sweep.results.len());
+        let count = sweep.results.len();
+        phases.enter(format!("{count} of {runs} runs"));
         let some = sweep.results.iter().any(Result::is_ok);
-        if some && sweep.results.len() < runs && written.elapsed() >= BETWEEN_TABLES {
+        if some && count < runs && written.elapsed() >= BETWEEN_TABLES {
             sweep.write(&folder)?;
             written = Instant::now();
         }
@@ -41,8 +40,7 @@ pub(crate) fn run(
     };
     let sweep = sweep::run(&file, &text, axes, &folder, extent, done)?;
     drop(phases);
-    let codes: Vec<u8> = sweep.results.iter().map(code).collect();
-    if codes.iter().all(|code| *code == WRONG)
+    if sweep.results.iter().all(|run| code(run) == WRONG)
         && let Some(Err(failure)) = sweep.results.first()
     {
         return Err(failure.clone().of(&file));
@@ -52,9 +50,8 @@ pub(crate) fn run(
 
 /// Writes the table, and returns how its runs ended.
 pub(super) fn ended(sweep: &Sweep, folder: &Path, quiet: bool) -> Result<Done, Failure> {
-    let codes: Vec<u8> = sweep.results.iter().map(code).collect();
     let written = sweep.write(folder)?;
-    let all_in = |allowed: &[u8]| codes.iter().all(|code| allowed.contains(code));
+    let all_in = |allowed: &[u8]| sweep.results.iter().all(|run| allowed.contains(&code(run)));
     let code = if all_in(&[0]) {
         0
     } else if all_in(&[0, SHORT]) {

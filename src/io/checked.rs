@@ -87,18 +87,17 @@ fn boundaries(case: &Case, lines: &mut Lines) {
                 }
             },
         };
-        format!("{}: {said}{}", quote::cut(name), length(mesh, name, &shown))
+        let edges = mesh.edges_of(name).unwrap_or_default();
+        format!("{}: {said}{}", quote::cut(name), length(mesh, edges, &shown))
     };
     let mut text: Vec<String> = used.into_iter().chain(free).take(MOST).map(said).collect();
     if named.len() > MOST {
         text.push(format!("and {} more", named.len() - MOST));
     }
-    let rest = length_of(mesh, unnamed(mesh).into_iter());
-    if rest > 0.0 {
-        text.push(format!(
-            "without a name: nothing is prescribed, length {}",
-            shown.number(rest, Measure::Length)
-        ));
+    let rest = unnamed(mesh);
+    if !rest.is_empty() {
+        let length = length(mesh, &rest, &shown);
+        text.push(format!("without a name: nothing is prescribed{length}"));
     }
     for (i, line) in text.into_iter().enumerate() {
         lines.line(if i == 0 { "boundaries" } else { "" }, line);
@@ -129,13 +128,8 @@ fn unnamed(mesh: &Mesh) -> Vec<BoundaryEdge> {
     mesh.outline().iter().copied().filter(|&edge| !is_named[mesh.number_of(edge)]).collect()
 }
 
-fn length_of(mesh: &Mesh, edges: impl Iterator<Item = BoundaryEdge>) -> f64 {
-    edges.map(|edge| mesh.length_and_normal(edge).0).sum()
-}
-
-fn length(mesh: &Mesh, name: &str, shown: &QuantityFormat) -> String {
-    let edges = mesh.edges_of(name).unwrap_or_default();
-    let length = length_of(mesh, edges.iter().copied());
+fn length(mesh: &Mesh, edges: &[BoundaryEdge], shown: &QuantityFormat) -> String {
+    let length = edges.iter().map(|&edge| mesh.length_and_normal(edge).0).sum();
     format!(", length {}", shown.number(length, Measure::Length))
 }
 

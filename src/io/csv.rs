@@ -8,14 +8,10 @@ use super::files::{NotFinite, check_finite};
 /// An error names the row, counted from 0.
 pub(super) fn table(names: &[&str], rows: &[(Vec<f64>, &str)]) -> Result<String, NotFinite> {
     check_finite("row", rows.iter().map(|(numbers, _)| numbers.as_slice()))?;
-    let mut text = names.join(",") + "\n";
-    for (numbers, last) in rows {
-        for &x in numbers {
-            text.extend([&number(x), ","]);
-        }
-        text.extend([&cell(last), "\n"]);
-    }
-    Ok(text)
+    let row = |(numbers, last): &(Vec<f64>, &str)| {
+        line(numbers.iter().map(|&x| number(x)).chain([(*last).to_owned()]))
+    };
+    Ok(names.join(",") + "\n" + &rows.iter().map(row).collect::<String>())
 }
 
 /// The debug form is the one that uses exponents where they are shorter.

@@ -96,13 +96,8 @@ pub(crate) enum Binary {
 
 /// A number type over which expressions can be evaluated: doubles, doubles with derivatives, enclosures, degrees.
 pub(crate) trait Number: Clone {
-    /// The number that is this double.
     fn from_double(value: f64) -> Self;
-
-    /// f(a)
     fn unary(f: Unary, a: Self) -> Self;
-
-    /// f(a, b)
     fn binary(f: Binary, a: Self, b: Self) -> Self;
 }
 

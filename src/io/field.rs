@@ -46,11 +46,11 @@ const OTHER: &str = "expected a file that ends in .csv, with the columns x, y, u
 
 fn at_nodes(points: &Points, mesh: &Mesh, degree: Degree) -> Result<Vec<[f64; 2]>, String> {
     let vertices = mesh.vertices().len();
-    let mut nodes = Space::new(mesh, degree).nodes().to_vec();
+    let space = Space::new(mesh, degree);
+    let nodes = space.nodes();
     let tree = Tree::new(nodes.iter().map(|&node| Bounds::around([node])).collect());
     let reach = NEAR * Bounds::around(nodes.iter().copied()).size();
-    let all = nodes.clone();
-    let distance = |k: usize, x: [f64; 2]| (all[k][0] - x[0]).hypot(all[k][1] - x[1]);
+    let distance = |k: usize, x: [f64; 2]| (nodes[k][0] - x[0]).hypot(nodes[k][1] - x[1]);
     let nearest = |x: [f64; 2]| {
         let near = tree.meeting(Bounds::around([x]).widened(reach)).into_iter();
         near.filter(|&k| distance(k, x) <= reach)
@@ -58,13 +58,10 @@ fn at_nodes(points: &Points, mesh: &Mesh, degree: Degree) -> Result<Vec<[f64; 2]
     };
     // A field of degree 1 has points at vertices alone.
     let quadratic = points.iter().any(|&(x, _)| nearest(x).is_some_and(|k| k >= vertices));
-    if !quadratic {
-        nodes.truncate(vertices);
-    }
     let what = if quadratic { "vertex or middle of an edge" } else { "vertex" };
     let size = points.iter().flat_map(|(_, u)| u).fold(0.0_f64, |max, u| max.max(u.abs()));
     // The nearest point to each node.
-    let mut found: Vec<Option<usize>> = vec![None; nodes.len()];
+    let mut found = vec![None; if quadratic { nodes.len() } else { vertices }];
     let mut elsewhere = Vec::new();
     for (i, &(x, u)) in points.iter().enumerate() {
         if !x.iter().chain(&u).all(|c| c.is_finite()) {

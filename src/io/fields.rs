@@ -111,13 +111,11 @@ const CONTACT_NUMBERS: [ContactNumber; 7] = [
     ("shear", |p| p.shear),
 ];
 
-/// The fields of a solution.
 fn contact_numbers(s: &Solution) -> &'static [ContactNumber] {
     let friction = s.boundaries.iter().any(|boundary| boundary.friction.is_some());
     if friction { &CONTACT_NUMBERS } else { &CONTACT_NUMBERS[..5] }
 }
 
-/// The file contact.vtu.
 fn contact_vtu(s: &Solution) -> Result<Vec<u8>, NotFinite> {
     let degree = s.degree.number();
     let per_edge = degree + 1;

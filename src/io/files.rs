@@ -47,13 +47,16 @@ pub(super) fn check_finite<'a>(
     }
 }
 
+/// The folder that a file is in, or would be in, from the root on.
+pub(crate) fn folder_of(file: &Path) -> Option<PathBuf> {
+    let parent = file.parent().filter(|parent| !parent.as_os_str().is_empty());
+    fs::canonicalize(parent.unwrap_or(Path::new("."))).ok()
+}
+
 /// Refuses to write files called `names` into `folder` if one of them is one of the `sources` of the case.
 pub fn spare(folder: &Path, names: &[&str], sources: &[PathBuf]) -> Result<(), Failure> {
     // The place of a name in its folder: a link of that name would be replaced, not what it leads to.
-    let place = |path: &Path| {
-        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-        Some(fs::canonicalize(parent.unwrap_or(Path::new("."))).ok()?.join(path.file_name()?))
-    };
+    let place = |path: &Path| Some(folder_of(path)?.join(path.file_name()?));
     let sources: Vec<PathBuf> = sources.iter().filter_map(|source| place(source)).collect();
     let is_source = |path: &PathBuf| place(path).is_some_and(|place| sources.contains(&place));
     match names.iter().map(|name| folder.join(name)).find(is_source) {

@@ -87,9 +87,11 @@ fn read_sections(cursor: &mut Cursor) -> Result<RawMesh> {
     while let Some((start, section)) = cursor.section()? {
         let is_second = match (section, version) {
             ("PhysicalNames", _) => names.replace(read_names(cursor)?).is_some(),
-            ("Entities", Version::Four) => groups.replace(read_entities(cursor)?).is_some(),
+            ("Entities", Version::Four) => {
+                groups.replace(read_entities(cursor, false)?.groups).is_some()
+            }
             ("PartitionedEntities", Version::Four) => {
-                parts.replace(read_partitioned_entities(cursor)?).is_some()
+                parts.replace(read_entities(cursor, true)?).is_some()
             }
             ("Nodes", Version::Four) => nodes.replace(read_nodes(cursor)?).is_some(),
             ("Nodes" | "ParametricNodes", Version::Two) => {
@@ -266,40 +268,56 @@ fn check_entities(cursor: &Cursor, groups: &Groups, elements: &Elements) -> Resu
     Ok(())
 }
 
-/// `$Entities`: the counts of points, curves, surfaces and volumes; then of each the tag, the place (of a point) or the
-/// box around it, the physical groups and (except of a point) what bounds it. Returns the groups.
-fn read_entities(cursor: &mut Cursor) -> Result<Groups> {
-    let mut all = Groups::default();
-    read_each_entity(cursor, |cursor, dimension| {
-        let tag = cursor.int("the tag of an entity")?;
-        let groups = read_entity(cursor, dimension)?;
-        if let Some(of_dimension) = all.get_mut(dimension) {
-            of_dimension.insert(tag, groups);
-        }
-        Ok(())
-    })?;
-    Ok(all)
+/// The entities of a mesh.
+#[derive(Default)]
+struct Entities {
+    groups: Groups,
+    /// How many partitions there are, if it is a mesh in partitions.
+    partitions: usize,
+    /// The surfaces in each of them.
+    surfaces: BTreeMap<i32, Vec<i32>>,
 }
 
-/// Reads the counts of points, curves, surfaces and volumes, then so many of each.
-fn read_each_entity(
-    cursor: &mut Cursor,
-    mut read: impl FnMut(&mut Cursor, usize) -> Result<()>,
-) -> Result<()> {
+/// `$Entities`: the counts of points, curves, surfaces and volumes; then of each the tag, the place (of a point) or the
+/// box around it, the physical groups and (except of a point) what bounds it. `$PartitionedEntities` begins with the number of
+/// partitions and the ghost entities, and has dimension and tag of the parent and the partitions behind each tag.
+fn read_entities(cursor: &mut Cursor, in_partitions: bool) -> Result<Entities> {
+    let mut all = Entities::default();
+    if in_partitions {
+        all.partitions = cursor.size("the number of partitions")?;
+        for _ in 0..cursor.size("the number of ghost entities")? {
+            cursor.int("the tag of a ghost entity")?;
+            cursor.int("the partition of a ghost entity")?;
+        }
+    }
     let mut counts = [0; 4];
     for count in &mut counts {
         *count = cursor.size("a number of entities")?;
     }
     for (dimension, count) in counts.into_iter().enumerate() {
         for _ in 0..count {
-            read(cursor, dimension)?;
+            let tag = cursor.int("the tag of an entity")?;
+            if in_partitions {
+                cursor.int("the dimension of the parent of an entity")?;
+                cursor.int("the tag of the parent of an entity")?;
+                for _ in 0..cursor.size("the number of partitions of an entity")? {
+                    let partition = cursor.int("the tag of a partition")?;
+                    if dimension == 2 {
+                        all.surfaces.entry(partition).or_default().push(tag);
+                    }
+                }
+            }
+            let groups = read_groups(cursor, dimension)?;
+            if let Some(of_dimension) = all.groups.get_mut(dimension) {
+                of_dimension.insert(tag, groups);
+            }
         }
     }
-    Ok(())
+    Ok(all)
 }
 
-/// Reads what follows the tag of an entity, and returns its groups.
-fn read_entity(cursor: &mut Cursor, dimension: usize) -> Result<Vec<i32>> {
+/// Reads the last part of an entity, and returns its groups.
+fn read_groups(cursor: &mut Cursor, dimension: usize) -> Result<Vec<i32>> {
     for _ in 0..if dimension == 0 { 3 } else { 6 } {
         cursor.double("a coordinate of an entity")?;
     }
@@ -316,53 +334,15 @@ fn read_entity(cursor: &mut Cursor, dimension: usize) -> Result<Vec<i32>> {
     Ok(groups)
 }
 
-/// The entities of a mesh in partitions.
-struct PartitionedEntities {
-    groups: Groups,
-    /// How many partitions there are.
-    count: usize,
-    /// The surfaces in each of them.
-    surfaces: BTreeMap<i32, Vec<i32>>,
-}
-
-/// `$PartitionedEntities`: the number of partitions; the ghost entities; the counts of entities, then of each the tag, dimension
-/// and tag of its parent, its partitions, and the rest as in `$Entities`.
-fn read_partitioned_entities(cursor: &mut Cursor) -> Result<PartitionedEntities> {
-    let count = cursor.size("the number of partitions")?;
-    for _ in 0..cursor.size("the number of ghost entities")? {
-        cursor.int("the tag of a ghost entity")?;
-        cursor.int("the partition of a ghost entity")?;
-    }
-    let mut all =
-        PartitionedEntities { groups: Groups::default(), count, surfaces: BTreeMap::new() };
-    read_each_entity(cursor, |cursor, dimension| {
-        let tag = cursor.int("the tag of an entity")?;
-        cursor.int("the dimension of the parent of an entity")?;
-        cursor.int("the tag of the parent of an entity")?;
-        for _ in 0..cursor.size("the number of partitions of an entity")? {
-            let partition = cursor.int("the tag of a partition")?;
-            if dimension == 2 {
-                all.surfaces.entry(partition).or_default().push(tag);
-            }
-        }
-        let groups = read_entity(cursor, dimension)?;
-        if let Some(of_dimension) = all.groups.get_mut(dimension) {
-            of_dimension.insert(tag, groups);
-        }
-        Ok(())
-    })?;
-    Ok(all)
-}
-
 /// Refuses a file that holds some of the partitions only.
-fn check_parts(cursor: &Cursor, parts: &PartitionedEntities, elements: &Elements) -> Result<()> {
+fn check_parts(cursor: &Cursor, parts: &Entities, elements: &Elements) -> Result<()> {
     let used = elements.entities(2);
     let is_there = |surfaces: &Vec<i32>| surfaces.iter().any(|surface| used.contains_key(surface));
     let found = parts.surfaces.values().filter(|surfaces| is_there(surfaces)).count();
-    if found >= parts.count {
+    let count = parts.partitions;
+    if found >= count {
         return Ok(());
     }
-    let count = parts.count;
     Err(cursor.in_the_file(format!(
         "the file has triangles of {found} of the {count} partitions of the mesh; expected all of them in one file (Mesh.PartitionSplitMeshFiles = 0)"
     )))

@@ -28,7 +28,7 @@ use super::files::{NotFinite, check_finite};
 use super::result::Results;
 use crate::results::Solution;
 use body::{BAR, body, colour_bar, definitions, outlines};
-use contact::{ContactLine, arrow, hatched, obstacle, pressure, tags};
+use contact::{ContactLine, arrow, obstacle, pressure, tags};
 use draw::{
     DARK, GREY, LEGEND_LINE, PageMap, PathData, Point, SAMPLE, clean, fitting, legend, page,
     red_area, short, stroke, text, wrapped,
@@ -66,14 +66,23 @@ fn picture(scene: &Scene, scale: &Scale) -> Result<String, NotFinite> {
     check_finite("page", [frame.page([0.0; 2]).as_slice(), &[frame.width, frame.height]])?;
     let deformed: Vec<Point> = deformed.into_iter().map(|p| frame.page(p)).collect();
     let lines: Vec<ContactLine> = lines.into_iter().map(|line| line.on(&frame)).collect();
-    let drawn = Drawn::of(scene, &deformed, &lines);
+    let on_page = |v: usize| deformed.get(v).copied();
+    let drawn = [
+        obstacle(&lines),
+        loads::drawn_supports(scene, &deformed),
+        pressure(&lines),
+        loads::arrows(scene, &deformed, true),
+        loads::arrows(scene, &deformed, false),
+        scene.most_stressed.and_then(on_page).map(loads::cross),
+    ];
     let magnified = match scale.factor {
         1.0 => "deformation at true scale".to_owned(),
         factor => format!("deformation and gap × {}", short(factor)),
     };
     let width = frame.width + GAP + BAR;
     let legend_at = [MARGIN, HEADER + frame.height + 30.0];
-    let (legend, bottom) = legend(drawn.entries(scene, &magnified), legend_at, MARGIN + width);
+    let entries = entries(scene, drawn.each_ref().map(Option::is_some), &magnified);
+    let (legend, bottom) = legend(entries, legend_at, MARGIN + width);
     let panels_at = bottom + LEGEND_LINE;
     let size = [width + 2.0 * MARGIN, panels_at + panel::height(scene)];
 
@@ -88,8 +97,6 @@ fn picture(scene: &Scene, scale: &Scale) -> Result<String, NotFinite> {
     document.append(half.add(outlines(scene, &deformed, &frame)));
     let bar_at = [MARGIN + frame.width + GAP, HEADER];
     document.append(colour_bar(&scale.colours, unit, bar_at, frame.height));
-    let Drawn { obstacle, supports, pressure, motions, forces, cross } = drawn;
-    let drawn = [obstacle, supports, pressure, motions, forces, cross];
     drawn.into_iter().flatten().for_each(|group| document.append(group));
     let scale_at = [MARGIN + frame.width, HEADER + frame.height + 10.0];
     document.append(loads::scale_bar(&frame, length, scale_at));
@@ -102,58 +109,32 @@ fn picture(scene: &Scene, scale: &Scale) -> Result<String, NotFinite> {
     Ok(format!("{document}\n"))
 }
 
-/// The drawings over the body, as far as there is something to draw.
-struct Drawn {
-    obstacle: Option<Group>,
-    supports: Option<Group>,
-    pressure: Option<Group>,
-    motions: Option<Group>,
-    forces: Option<Group>,
-    cross: Option<Group>,
-}
-
-impl Drawn {
-    fn of(scene: &Scene, deformed: &[Point], lines: &[ContactLine]) -> Drawn {
-        let on_page = |v: usize| deformed.get(v).copied();
-        Drawn {
-            obstacle: obstacle(lines),
-            supports: loads::drawn_supports(scene, deformed),
-            pressure: pressure(lines),
-            motions: loads::arrows(scene, deformed, true),
-            forces: loads::arrows(scene, deformed, false),
-            cross: scene.most_stressed.and_then(on_page).map(loads::cross),
-        }
-    }
-
-    /// The entries of the legend.
-    fn entries<'w>(&self, scene: &Scene, magnified: &'w str) -> Vec<(Option<Group>, &'w str)> {
-        let mut entries: Vec<(Option<Group>, &'w str)> = Vec::new();
-        let mut when = |is_there: bool, sample: Option<Group>, words| {
-            if is_there {
-                entries.push((sample, words));
-            }
-        };
-        let dashed = |line: Group, dashes: &str| Some(line.set("stroke-dasharray", dashes));
-        let wall = hatched([SAMPLE.map(|[x, y]| [x, y - 3.0]).to_vec()]);
-        when(true, dashed(sample(GREY, 1.2), "6 4"), "undeformed");
-        when(scene.of_revolution, dashed(sample(DARK, 1.0), "14 4 3 4"), "axis");
-        let has_borders = !scene.interfaces.is_empty();
-        when(has_borders, Some(sample(DARK, 1.0)), "border of two materials");
-        when(self.obstacle.is_some(), wall, "rigid obstacle");
-        for (sample, words) in loads::support_entries(scene) {
-            when(true, sample, words);
-        }
-        when(self.forces.is_some(), Some(pointed(FORCE)), "load");
-        when(self.motions.is_some(), Some(pointed(MOTION)), "prescribed displacement");
-        let cross = loads::cross([15.0, -4.5]);
-        when(self.cross.is_some(), Some(cross), "largest von Mises stress");
-        when(self.pressure.is_some(), Some(pressed()), "contact pressure");
-        when(self.pressure.is_none(), None, "no contact pressure");
-        let friction = Some(sample(panel::OPEN, 1.6));
-        when(panel::has_shear(scene), friction, "size of the friction");
-        when(true, None, magnified);
-        entries
-    }
+/// The entries of the legend, where these drawings over the body are there.
+fn entries<'w>(
+    scene: &Scene,
+    [obstacle, _, pressure, motions, forces, cross]: [bool; 6],
+    magnified: &'w str,
+) -> Vec<(Option<Group>, &'w str)> {
+    let dashed = |line: Group, dashes: &str| Some(line.set("stroke-dasharray", dashes));
+    let has_borders = !scene.interfaces.is_empty();
+    let friction = Some(sample(panel::OPEN, 1.6));
+    let before = [
+        (true, dashed(sample(GREY, 1.2), "6 4"), "undeformed"),
+        (scene.of_revolution, dashed(sample(DARK, 1.0), "14 4 3 4"), "axis"),
+        (has_borders, Some(sample(DARK, 1.0)), "border of two materials"),
+        (obstacle, loads::wall_sample(), "rigid obstacle"),
+    ];
+    let after = [
+        (forces, Some(pointed(FORCE)), "load"),
+        (motions, Some(pointed(MOTION)), "prescribed displacement"),
+        (cross, Some(loads::cross([15.0, -4.5])), "largest von Mises stress"),
+        (pressure, Some(pressed()), "contact pressure"),
+        (!pressure, None, "no contact pressure"),
+        (panel::has_shear(scene), friction, "size of the friction"),
+        (true, None, magnified),
+    ];
+    let all = before.into_iter().chain(loads::support_entries(scene)).chain(after);
+    all.filter(|entry| entry.0).map(|(_, sample, words)| (sample, words)).collect()
 }
 
 /// Finite data may be drawn beyond the range of doubles, as where displacements are magnified.

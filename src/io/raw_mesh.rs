@@ -25,9 +25,7 @@ pub(crate) type ByDimension<T> = [T; 3];
 
 /// Nodes, elements, and the names of what the elements lie on.
 pub(crate) struct RawMesh {
-    /// The nodes.
     pub(crate) nodes: Vec<Node>,
-    /// The elements.
     pub(crate) elements: Elements,
     /// The names of the points, curves and surfaces on which elements lie, by their numbers; one without a name may be left out.
     pub(crate) names: ByDimension<BTreeMap<i32, Vec<String>>>,
@@ -37,9 +35,7 @@ pub(crate) struct RawMesh {
     pub(crate) remarks: Vec<String>,
 }
 
-/// A node.
 pub(crate) struct Node {
-    /// Its number.
     pub(crate) tag: usize,
     /// x, y, z.
     pub(crate) place: [f64; 3],
@@ -160,7 +156,6 @@ impl Kind {
         })
     }
 
-    /// The most nodes of an element that is read.
     pub(crate) const MOST_NODES: usize = 36;
 
     /// 0 for a point, 1 for a line, 2 for triangles and quadrangles.
@@ -186,7 +181,6 @@ impl Elements {
         }
     }
 
-    /// The elements of a dimension.
     pub(super) fn of(&self, dimension: usize) -> impl Iterator<Item = &Element> + Clone {
         self.all.iter().filter(move |element| element.dimension() == dimension)
     }
@@ -241,7 +235,6 @@ const NO_TRIANGLE: &str =
 const MIXED: &str = "others of its surface run counter-clockwise";
 
 impl RawMesh {
-    /// The names of its curves.
     pub(super) fn curve_names(&self) -> Vec<String> {
         let names: BTreeSet<&String> = self.names[1].values().flatten().collect();
         names.into_iter().cloned().collect()
@@ -534,14 +527,12 @@ fn halves(places: [[f64; 2]; 4]) -> [[usize; 3]; 2] {
 }
 
 fn said_of_split(quadrangles: usize) -> Option<String> {
-    let are_split = match quadrangles {
+    let [are_split, their] = match quadrangles {
         0 => return None,
-        1 => "1 quadrangle of the mesh is split into two triangles, along its".to_owned(),
-        many => {
-            format!("{many} quadrangles of the mesh are split into two triangles each, along their")
-        }
+        1 => ["quadrangle of the mesh is split into two triangles", "its"],
+        _ => ["quadrangles of the mesh are split into two triangles each", "their"],
     };
-    Some(format!("{are_split} shorter diagonal"))
+    Some(format!("{quadrangles} {are_split}, along {their} shorter diagonal"))
 }
 
 /// The triangles, each once even if listed for each of several groups, with the further entities of each. A triangle that is

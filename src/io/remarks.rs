@@ -7,6 +7,7 @@ mod motion;
 mod resolution;
 
 use super::numbers::short;
+use super::summary::vector as place;
 use crate::contact::contact_line::{ContactLine, Gamma};
 use crate::contact::piece::{Piece, PieceGeometry, Stretch};
 use crate::model::space::Space;
@@ -56,7 +57,7 @@ pub(super) fn remarks(problem: &Problem, solution: &Solution, words: &Words) -> 
     let mut remarks = Vec::new();
     remarks.extend(model::separate_bodies(problem, Some(solution)));
     remarks.extend(resolution::short_stretches(problem, solution, words));
-    remarks.extend(resolution::gaps(problem, Known::Solution(solution), &line, words));
+    remarks.extend(resolution::gaps(problem, solution.degree, Some(solution), &line, words));
     remarks.extend(motion::off_the_obstacle(problem, solution, words));
     remarks.extend(motion::beside_the_line(problem, solution, words));
     remarks.extend(model::locking(problem, solution.degree));
@@ -95,7 +96,7 @@ pub(super) fn before(problem: &Problem, degree: Degree, words: &Words) -> Vec<St
     let line = ContactLine::new(problem, &Space::new(&problem.mesh, degree)).ok();
     let line: Vec<&PieceGeometry> = line.iter().flat_map(ContactLine::pieces).collect();
     let mut remarks: Vec<String> = model::separate_bodies(problem, None).into_iter().collect();
-    remarks.extend(resolution::gaps(problem, Known::Data(degree), &line, words));
+    remarks.extend(resolution::gaps(problem, degree, None, &line, words));
     remarks.extend(model::locking(problem, degree));
     remarks.extend(model::overlap(problem, &line, words));
     remarks
@@ -125,24 +126,6 @@ fn friction(solution: &Solution, words: &Words) -> Vec<String> {
         );
     }
     remarks
-}
-
-/// The data that a remark may rest on.
-#[derive(Clone, Copy)]
-enum Known<'s> {
-    /// The data alone, and the degree that will be solved for.
-    Data(Degree),
-    /// A solution.
-    Solution(&'s Solution),
-}
-
-impl Known<'_> {
-    fn degree(self) -> Degree {
-        match self {
-            Known::Data(degree) => degree,
-            Known::Solution(solution) => solution.degree,
-        }
-    }
 }
 
 /// Says which triangle sets gamma0 for a whole line that would allow more, if one does.
@@ -211,10 +194,6 @@ fn named_obstacle(problem: &Problem, boundary: &str) -> Option<String> {
 fn obstacle_of(problem: &Problem, boundary: &str) -> String {
     let unnamed = || format!("the obstacle of {}", quote::quoted(boundary, '\''));
     named_obstacle(problem, boundary).unwrap_or_else(unnamed)
-}
-
-fn place([x, y]: [f64; 2]) -> String {
-    format!("({}, {})", short(x, 4), short(y, 4))
 }
 
 impl Words {

@@ -34,13 +34,11 @@ pub(crate) fn html(case: &Case, results: &Results, picture: &str) -> String {
         page.push_str(&format!("<p><strong>{}</strong></p>\n", escaped(&outcome)));
     }
     page.push_str("<table>\n");
-    for (name, line) in summary::lines_of(results, false) {
-        row(&mut page, &name, &line);
-    }
+    let brief = summary::lines_of(results, false);
+    brief.iter().for_each(|(name, line)| row(&mut page, name, line));
     page.push_str("</table>\n");
     page.push_str(&stretches(results));
     page.push_str("<h2>How it was solved</h2>\n<table>\n");
-    let brief = summary::lines_of(results, false);
     let all = summary::lines_of(results, true);
     for (name, line) in all.iter().filter(|line| !brief.contains(line)) {
         row(&mut page, name, line);

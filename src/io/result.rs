@@ -63,7 +63,6 @@ pub struct Results {
     pub(crate) method: Option<MethodReport>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) play: Vec<Play>,
-    /// Energies, forces, lengths.
     pub(crate) quantities: Quantities,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) contact: Vec<ContactBoundary>,

@@ -11,10 +11,8 @@ use super::run::{self, Earlier};
 use super::sweep::{Names, Sweep, clear, of_run};
 use crate::certificates::adapt::Stage;
 
-/// The table, and force and peak of each step.
-pub(crate) const FILES: [&str; 2] = ["steps.csv", "steps.svg"];
-
-const NAMES: &Names = &[FILES[0], FILES[1], "steps.pvd"];
+/// The files beside those of each step.
+pub(crate) const FILES: &Names = &["steps.csv", "steps.svg", "steps.pvd"];
 
 /// Solves the steps of a `case` and writes the files of step i (from 1) into the folder i of `folder`; those that earlier steps left
 /// there go before. `watcher` is told of each step and of each stage of it. After a step without a solution there is none to go on from:
@@ -33,7 +31,7 @@ pub(crate) fn run(
     let values = (1..=steps.len()).map(|i| vec![i.to_string()]).collect();
     let keys = vec!["step".to_owned()];
     let mut table =
-        Sweep { title, keys, values, results: Vec::new(), with_files: true, names: NAMES };
+        Sweep { title, keys, values, results: Vec::new(), with_files: true, names: FILES };
     let mut last: Option<Vec<Vec<f64>>> = None;
     let (mut series, earlier) = (Series::default(), Earlier::default());
     for (i, mut case) in steps.into_iter().enumerate() {

@@ -396,27 +396,24 @@ fn of_problem(problem: Option<&str>) -> String {
 
 /// The case that a certificate is of, in the summary of an audit.
 pub(crate) struct AuditedCase {
-    /// Its file.
     pub(crate) file: PathBuf,
-    /// Its title.
     pub(crate) title: String,
-    /// Its units.
     pub(crate) units: Option<Units>,
+    /// The reason why the certificate is not rigorous for the case.
+    pub(crate) reason: Option<String>,
 }
 
-/// The summary of a certificate that was verified, and compared with a case; `reason` says why it is not rigorous for that.
-pub(crate) fn audited(audit: &Audit, case: Option<(&AuditedCase, Option<&str>)>) -> String {
+/// The summary of a certificate that was verified, and compared with a case.
+pub(crate) fn audited(audit: &Audit, case: Option<&AuditedCase>) -> String {
     let Audit { header, certificate, proof, reservations, .. } = audit;
     let mut lines = Lines::default();
     let (triangles, edges) = (certificate.pieces.len(), certificate.edges.len());
     lines.line("certificate", format!("accepted: {triangles} triangles, {edges} edges"));
     lines.line("statement", &header.statement);
     let problem = match case {
-        Some((case, _)) => {
-            format!(
-                "that of {}: its mesh, thickness, materials, supports, loads and obstacles",
-                quote::path(&case.file)
-            )
+        Some(case) => {
+            let file = quote::path(&case.file);
+            format!("that of {file}: its mesh, thickness, materials, supports, loads and obstacles")
         }
         None => "that of the numbers in this file; --case CASE.toml compares them with a case"
             .to_owned(),
@@ -427,7 +424,7 @@ pub(crate) fn audited(audit: &Audit, case: Option<(&AuditedCase, Option<&str>)>)
     let size = Some(relative).filter(|r| *r < 1e8);
     let size = size.map_or(String::new(), |r| format!(", {} % of |v|_a", numbers::short(r, 2)));
     lines.line("bound", format!("{}{size}", short(header.bound)));
-    let units = case.and_then(|(case, _)| case.units.clone());
+    let units = case.and_then(|case| case.units.clone());
     let shown = QuantityFormat { units, thickness: header.thickness, no_force: 0.0 };
     let thickness = header.thickness.unwrap_or(1.0);
     for (i, force) in audit.forces().enumerate() {
@@ -438,7 +435,7 @@ pub(crate) fn audited(audit: &Audit, case: Option<(&AuditedCase, Option<&str>)>)
     }
     let problem = of_problem(certificate.problem(proof).as_deref());
     let reservation = match case {
-        Some((_, reason)) => reason.map(str::to_owned),
+        Some(case) => case.reason.clone(),
         None => (!reservations.is_empty()).then(|| reservations.to_string()),
     };
     let rigorous = match reservation {
@@ -447,7 +444,7 @@ pub(crate) fn audited(audit: &Audit, case: Option<(&AuditedCase, Option<&str>)>)
     };
     lines.line("rigorous", rigorous);
     match case {
-        Some((case, _)) => lines.under(&case.title),
+        Some(case) => lines.under(&case.title),
         None => {
             lines.line(
                 "title",
@@ -490,17 +487,17 @@ fn solved_exactly(certificate: &DiscreteCertificate) -> String {
 
 /// Says how far the solution can be from the exact solution of the discrete equations (8), and whether there is one.
 fn enclosed(certificate: &DiscreteCertificate) -> String {
-    let reason = certificate.reason.as_deref().unwrap_or_default();
-    let solutions = match (certificate.unique, certificate.radius) {
-        (true, _) => "the discrete equations have exactly one solution",
-        (false, Some(_)) => "the discrete equations have one solution but for sliding",
-        (false, None) => "",
-    };
+    let one = "the discrete equations have exactly one solution";
     let Some(radius) = certificate.radius else {
-        return match solutions {
-            "" => format!("nothing: {reason}"),
-            _ => format!("{solutions}; how far this one is from it is not known: {reason}"),
+        let reason = certificate.reason.as_deref().unwrap_or_default();
+        return match certificate.unique {
+            true => format!("{one}; how far this one is from it is not known: {reason}"),
+            false => format!("nothing: {reason}"),
         };
+    };
+    let solutions = match certificate.unique {
+        true => one,
+        false => "the discrete equations have one solution but for sliding",
     };
     // The power of ten above: what rounding leaves differs from processor to processor.
     let size = match certificate.relative.filter(|relative| *relative > 0.0) {

@@ -103,15 +103,11 @@ fn expanded(item: &str) -> Vec<String> {
 /// The entry of a run that is still to come when a sweep is stopped.
 const NOT_SOLVED: &str = "not solved";
 
-/// The table, and force and peak over what varies.
-pub(crate) const FILES: [&str; 2] = ["sweep.csv", "sweep.svg"];
-
 /// The names of the files of a table of runs: the table, force and peak over what varies, and what ParaView opens, where the runs have
 /// files.
 pub(crate) type Names = [&'static str; 3];
 
-/// The files of a sweep.
-const NAMES: &Names = &[FILES[0], FILES[1], "sweep.pvd"];
+pub(crate) const FILES: &Names = &["sweep.csv", "sweep.svg", "sweep.pvd"];
 
 /// A case and its results for the combinations of the values of some keys.
 #[derive(Clone, Debug)]
@@ -124,7 +120,6 @@ pub(crate) struct Sweep {
     pub(crate) results: Vec<Result<Results, Failure>>,
     /// The files of each run are written, too.
     pub(crate) with_files: bool,
-    /// The names of the files.
     pub(crate) names: &'static Names,
 }
 
@@ -193,7 +188,7 @@ pub(crate) fn run(
     clear(folder);
     let keys = axes.iter().map(|axis| axis.key.clone()).collect();
     let mut sweep =
-        Sweep { title, keys, values, results: Vec::new(), with_files: files, names: NAMES };
+        Sweep { title, keys, values, results: Vec::new(), with_files: files, names: FILES };
     let all = sweep.values.clone();
     let one = |i: usize, last: &mut Earlier| {
         let folder = files.then(|| of_run(folder, i));
@@ -221,6 +216,7 @@ fn each_in_order<T: Send>(
 ) -> Result<(), Failure> {
     let in_a_row = runs.div_ceil(jobs.clamp(1, runs.max(1)));
     let stopped = &AtomicBool::new(false);
+    let stop = |_: &Failure| stopped.store(true, Ordering::Relaxed);
     thread::scope(|scope| {
         let (sender, receiver) = mpsc::channel();
         for first in (0..runs).step_by(in_a_row) {
@@ -236,10 +232,8 @@ fn each_in_order<T: Send>(
                 }
             };
             let started = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work);
-            started.map_err(|error| {
-                stopped.store(true, Ordering::Relaxed);
-                Failure::failed(format!("cannot start a job: {}", reason(&error)))
-            })?;
+            let failed = |error| format!("cannot start a job: {}", reason(&error));
+            started.map_err(|error| Failure::failed(failed(error))).inspect_err(stop)?;
         }
         drop(sender);
         // Runs that ended before one that comes before them in the table.
@@ -248,11 +242,7 @@ fn each_in_order<T: Send>(
             early.insert(i, result);
             while let Some(result) = early.remove(&next) {
                 next += 1;
-                let taken = result.and_then(&mut take);
-                if taken.is_err() {
-                    stopped.store(true, Ordering::Relaxed);
-                }
-                taken?;
+                result.and_then(&mut take).inspect_err(stop)?;
             }
         }
         Ok(())
@@ -305,6 +295,18 @@ fn solve(case: Case, folder: Option<&Path>, last: &mut Earlier) -> Result<Ended,
     };
     last.start = Some(solved.solution);
     Ok((Ok(results), scene))
+}
+
+/// The values of each name, the names in the order in which they come first.
+fn grouped<T>(named: impl Iterator<Item = (String, T)>) -> Vec<(String, Vec<T>)> {
+    let mut groups: Vec<(String, Vec<T>)> = Vec::new();
+    for (name, value) in named {
+        match groups.iter_mut().find(|(other, _)| *other == name) {
+            Some((_, values)) => values.push(value),
+            None => groups.push((name, vec![value])),
+        }
+    }
+    groups
 }
 
 /// The numbers in the value of a key, in their order.
@@ -430,16 +432,11 @@ impl Sweep {
 
     /// The remarks on the runs, a line each: those that several runs share once, with the numbers of these; empty if there are none.
     fn remarks(&self) -> String {
-        let mut remarks: Vec<(String, Vec<String>)> = Vec::new();
-        for (i, results) in (1..).zip(&self.results) {
-            for text in results.iter().flat_map(summary::remarks) {
-                let run = format!("{i}");
-                match remarks.iter_mut().find(|(other, _)| *other == text) {
-                    Some((_, runs)) => runs.push(run),
-                    None => remarks.push((text, vec![run])),
-                }
-            }
-        }
+        let of_run = |(i, results): (i32, &Result<Results, Failure>)| {
+            let remarks: Vec<String> = results.iter().flat_map(summary::remarks).collect();
+            remarks.into_iter().map(move |text| (text, i.to_string()))
+        };
+        let remarks = grouped((1..).zip(&self.results).flat_map(of_run));
         let line = |(text, runs): &(String, Vec<String>)| {
             let of = quote::names(runs.iter().map(String::as_str));
             format!("remark on row {of}: {}\n", quote::unbroken(text))
@@ -498,20 +495,14 @@ impl Sweep {
     /// Force and peak over what varies, a curve for each combination of the other keys; `None` where no number varies.
     fn curves(&self) -> Option<Figure> {
         let (key, numbers) = self.abscissa()?;
-        let others = |run: &[String]| {
+        let others = |run: &Vec<String>| {
             let other = |(k, value): (&String, &String)| {
                 (*k != self.keys[key]).then(|| format!("{k} = {value}"))
             };
             self.keys.iter().zip(run).filter_map(other).collect::<Vec<String>>().join(", ")
         };
-        let mut curves: Vec<(String, Vec<usize>)> = Vec::new();
-        for (i, run) in self.values.iter().enumerate().take(self.results.len()) {
-            let name = others(run);
-            match curves.iter_mut().find(|(other, _)| *other == name) {
-                Some((_, runs)) => runs.push(i),
-                None => curves.push((name, vec![i])),
-            }
-        }
+        let names = self.values.iter().map(others).take(self.results.len());
+        let curves = grouped(names.zip(0..));
         let panel = |name: &str| Panel {
             title: name.replace('_', " "),
             lines: curves
@@ -632,7 +623,7 @@ mod tests {
             values: values(rows),
             results: Vec::new(),
             with_files: false,
-            names: NAMES,
+            names: FILES,
         };
         let rows = [["[0, -1]", "1"], ["[0, -1]", "2"], ["[0, -1]", "3"], ["[0, -2]", "1"]];
         assert_eq!(sweep(&rows).abscissa(), Some((1, vec![1.0, 2.0, 3.0, 1.0])));

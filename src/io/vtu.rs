@@ -154,14 +154,9 @@ impl Writer {
 
     /// An array of numbers of nodes, in half the bytes where the `largest` allows that.
     fn integers(&mut self, name: &str, largest: usize, numbers: impl Iterator<Item = usize>) {
-        let short = i32::try_from(largest).is_ok();
-        let bits = if short { 32 } else { 64 };
-        self.array(&format!("type=\"Int{bits}\" Name=\"{name}\""), |data| {
-            if short {
-                numbers.for_each(|n| data.extend_from_slice(&(n as u32).to_le_bytes()));
-            } else {
-                numbers.for_each(|n| data.extend_from_slice(&(n as u64).to_le_bytes()));
-            }
+        let bytes = if i32::try_from(largest).is_ok() { 4 } else { 8 };
+        self.array(&format!("type=\"Int{}\" Name=\"{name}\"", 8 * bytes), |data| {
+            numbers.for_each(|n| data.extend_from_slice(&(n as u64).to_le_bytes()[..bytes]));
         });
     }
 

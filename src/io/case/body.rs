@@ -23,7 +23,6 @@ const KEYS: [&str; 8] =
 /// The moduli that a material may be given by.
 pub(super) const EXPECTED: &str = "lambda and mu, young and poisson, stiffness, or orthotropic";
 
-/// The names of the planes.
 pub(super) const PLANES: [(&str, Plane); 3] =
     [("strain", Plane::Strain), ("stress", Plane::Stress), ("axisymmetric", Plane::Axisymmetric)];
 
@@ -36,7 +35,6 @@ pub(crate) struct MaterialEcho {
     /// Young's modulus of a material that is isotropic.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) young: Option<f64>,
-    /// Its Poisson's ratio.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) poisson: Option<f64>,
     /// `[C11, C12, C16, C22, C26, C66]` of one that is not.
@@ -149,7 +147,7 @@ pub(super) fn only_isotropic(
 /// The triangles of a surface, of which there must be some.
 fn on_surface<'m>(mesh: &'m Mesh, at: &Spot, key: &str) -> Result<&'m [usize], FileError> {
     match mesh.surface(key) {
-        Err(error) => Err(at.mesh(error)),
+        Err(error) => Err(at.about(error)),
         Ok([]) => Err(at.found("no triangle in this mesh", "at least one")),
         Ok(triangles) => Ok(triangles),
     }
@@ -210,12 +208,10 @@ fn read_material(table: &Table, plane: Plane) -> Result<(Material<f64>, Material
             };
             let stiffness = value("stiffness")?;
             let entries = numbers(&stiffness, SIX)?;
-            tensor(checked(&stiffness, stable(Material::tensor(entries, across)))?)
+            let material = stable(Material::tensor(entries, across));
+            tensor(material.map_err(|error| stiffness.at.about(error.to_string()))?)
         }
-        ["orthotropic"] => {
-            let moduli = value("orthotropic")?;
-            tensor(checked(&moduli, read_orthotropic(&moduli, plane)?)?)
-        }
+        ["orthotropic"] => tensor(read_orthotropic(&value("orthotropic")?, plane)?),
         _ => return Err(table.combination(&MODULI, EXPECTED)),
     };
     if table.get("across").is_some() && table.get("stiffness").is_none() {
@@ -244,19 +240,8 @@ fn numbers<const N: usize>(list: &Value, expected: &str) -> Result<[f64; N], Fil
     all.try_into().map_err(|_| list.wrong(expected))
 }
 
-/// The material, or the reason why there is none, at the place of its moduli.
-fn checked(
-    moduli: &Value,
-    material: Result<Material<f64>, MaterialError>,
-) -> Result<Material<f64>, FileError> {
-    material.map_err(|error| moduli.at.wrong(format!("{}: {error}", moduli.at.name)))
-}
-
 /// Moduli along and across an axis: in plane strain those across the plane, too.
-fn read_orthotropic(
-    moduli: &Value,
-    plane: Plane,
-) -> Result<Result<Material<f64>, MaterialError>, FileError> {
+fn read_orthotropic(moduli: &Value, plane: Plane) -> Result<Material<f64>, FileError> {
     let table = moduli.table()?;
     let mut keys = vec!["e1", "e2", "nu12", "g12", "angle"];
     if plane != Plane::Stress {
@@ -264,29 +249,28 @@ fn read_orthotropic(
     }
     table.only(&keys)?;
     let number = |key, expected| table.require(key, expected)?.number();
-    let beyond = match plane {
-        Plane::Axisymmetric => "a number, in a body of revolution",
-        _ => "a number, in plane strain",
+    let across = |expected| {
+        let out = |key| number(key, expected);
+        Ok(Some(Across { e3: out("e3")?, nu13: out("nu13")?, nu23: out("nu23")? }))
     };
-    let out = |key| number(key, beyond);
     let across = match plane {
         Plane::Stress => None,
-        Plane::Strain | Plane::Axisymmetric => {
-            Some(Across { e3: out("e3")?, nu13: out("nu13")?, nu23: out("nu23")? })
-        }
+        Plane::Strain => across("a number, in plane strain")?,
+        Plane::Axisymmetric => across("a number, in a body of revolution")?,
     };
     let angle = table.optional("angle", Value::number)?.unwrap_or(0.0);
     let [e1, e2, nu12, g12] = ["e1", "e2", "nu12", "g12"].map(|key| number(key, "a number"));
     let (e1, e2, nu12, g12) = (e1?, e2?, nu12?, g12?);
     let material = stable_orthotropic(Orthotropic { e1, e2, nu12, g12, angle, across });
+    let unstable = |error: MaterialError| moduli.at.about(error.to_string());
     let Some(Across { e3, .. }) = across.filter(|_| plane == Plane::Axisymmetric) else {
-        return Ok(material);
+        return material.map_err(unstable);
     };
     if angle % 90.0 != 0.0 {
         let expected = "a multiple of 90: in a body of revolution the axes of a material are r, z and the hoop";
         return Err(moduli.at.found(&format!("angle {}", quote::number(angle)), expected));
     }
-    Ok(material.and_then(|material| stable(material.of_revolution(e3))))
+    material.and_then(|material| stable(material.of_revolution(e3))).map_err(unstable)
 }
 
 /// The force on the whole body, and those on its surfaces; an exact solution has its own.
@@ -316,7 +300,6 @@ pub(super) fn read_loads(
     Ok((table.optional("body", Value::functions)?.unwrap_or_else(none), forces))
 }
 
-/// A constant function.
 pub(super) fn constant(value: f64) -> SharedFunction {
     Arc::new(Expression::from(value))
 }

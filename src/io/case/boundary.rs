@@ -10,7 +10,8 @@ use crate::contact::Pair;
 use crate::exact::{Exact, Kind};
 use crate::io::input::FileError;
 use crate::model::{
-    BoundaryEdge, Condition, Hand, Mesh, Obstacle, Path, PointSupport, SharedFunction, Side,
+    BoundaryEdge, Condition, Hand, Mesh, Obstacle, Path, PathError, PointSupport, SharedFunction,
+    Side,
 };
 use crate::quote::{listed, names, quoted};
 
@@ -28,7 +29,6 @@ pub(super) enum Depth {
     Revolution,
 }
 
-/// The area of a boundary of a body of revolution.
 fn area_of_revolution(mesh: &Mesh, edges: &[BoundaryEdge]) -> f64 {
     let of = |&edge: &BoundaryEdge| {
         let [[a, _], [b, _]] = mesh.places_of_ends(edge);
@@ -61,7 +61,7 @@ pub(super) fn read_boundaries(
         |key: &&str| pairs.iter().any(|pair| pair.boundaries.iter().any(|of| of == key));
     for key in all.keys().filter(|key| !is_of_pair(key)) {
         let at = all.under_header(key);
-        let edges = mesh.edges_of(key).map_err(|error| at.mesh(error))?;
+        let edges = mesh.edges_of(key).map_err(|error| at.about(error))?;
         if edges.is_empty() {
             return Err(at.found("no edge in this mesh", "at least one"));
         }
@@ -73,7 +73,7 @@ pub(super) fn read_boundaries(
                         Depth::Of(thickness) => {
                             let per_thickness = whole.map(|force| force / thickness);
                             let force = Condition::force(per_thickness, mesh, key);
-                            force.map_err(|error| at.mesh(error))
+                            force.map_err(|error| at.about(error))
                         }
                         Depth::Revolution if whole[0] != 0.0 => Err(value.wrong(
                             "[0, Fz] on a body of revolution, whose radial forces cancel all round: traction and pressure have them",
@@ -94,7 +94,7 @@ pub(super) fn read_boundaries(
         };
         conditions.insert(key.to_owned(), condition);
     }
-    mesh.check_apart(conditions.keys().map(String::as_str)).map_err(|error| all.at.mesh(error))?;
+    mesh.check_apart(conditions.keys().map(String::as_str)).map_err(|error| all.at.about(error))?;
     if pairs.is_empty() && !conditions.values().any(Condition::is_contact) {
         return Err(all.at.found("no contact", expected));
     }
@@ -188,10 +188,8 @@ fn read_mixed(
 }
 
 fn read_contact(value: &Value, obstacles: &Obstacles) -> Result<Condition, FileError> {
-    if !value.is_table() {
-        return Err(value.wrong("a table, such as { gap = \"0\" } or { obstacle = \"floor\" }"));
-    }
-    let contact = value.table()?;
+    let expected = "a table, such as { gap = \"0\" } or { obstacle = \"floor\" }";
+    let contact = value.table_such_as(expected)?;
     contact.only(&["gap", "obstacle", "friction"])?;
     let Some(obstacle) = contact.get("obstacle") else {
         let gap = contact.optional("gap", Value::function)?;
@@ -272,25 +270,27 @@ fn read_path(table: &Table) -> Result<Obstacle, FileError> {
         Ok(each) => each.iter().map(not_negative).collect(),
         Err(_) => Ok(vec![not_negative(radius)?]),
     })?;
-    let path = Path::new(&points, &radii.unwrap_or_default());
-    let path = path.map_err(|error| value.at.wrong(format!("{}: {error}", value.at.name)))?;
-    Ok(Obstacle::Path { path: Arc::new(path), body: read_side(table)? })
+    beside(table, &value, Path::new(&points, &radii.unwrap_or_default()))
 }
 
 /// A named curve of the mesh that bounds no body.
 fn read_curve(table: &Table, mesh: &Mesh) -> Result<Obstacle, FileError> {
     let value = table.require("curve", "the name of a curve")?;
-    let edges = mesh.curve(value.text()?).map_err(|error| value.at.mesh(error))?;
-    let path = Path::through(edges);
-    let path = path.map_err(|error| value.at.wrong(format!("{}: {error}", value.at.name)))?;
-    Ok(Obstacle::Path { path: Arc::new(path), body: read_side(table)? })
+    let edges = mesh.curve(value.text()?).map_err(|error| value.at.about(error))?;
+    beside(table, &value, Path::through(edges))
 }
 
-/// Where the body is beside a line.
-fn read_side(table: &Table) -> Result<Hand, FileError> {
-    let side = table
-        .require("side", "\"left\" or \"right\": where the body is, walking along the line")?;
-    side.one_of(&[("left", Hand::Left), ("right", Hand::Right)])
+/// The line that `value` says, with the body on the side that `table` says.
+fn beside(
+    table: &Table,
+    value: &Value,
+    path: Result<Path, PathError>,
+) -> Result<Obstacle, FileError> {
+    let path = path.map_err(|error| value.at.about(error.to_string()))?;
+    let expected = "\"left\" or \"right\": where the body is, walking along the line";
+    let side = table.require("side", expected)?;
+    let body = side.one_of(&[("left", Hand::Left), ("right", Hand::Right)])?;
+    Ok(Obstacle::Path { path: Arc::new(path), body })
 }
 
 /// `[point.NAME] displacement = [..]` on the mesh.
@@ -302,7 +302,7 @@ pub(super) fn read_points(root: &Table, mesh: &Mesh) -> Result<Vec<PointSupport>
         table.only(&["displacement"])?;
         let displacement = table.require("displacement", "such as [\"0\", \"free\"]")?;
         let displacement = components(&displacement)?;
-        let vertex = mesh.point(key).map_err(|error| table.at.mesh(error))?;
+        let vertex = mesh.point(key).map_err(|error| table.at.about(error))?;
         points.push(PointSupport { name: key.to_owned(), vertex, displacement });
     }
     Ok(points)

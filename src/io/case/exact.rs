@@ -80,7 +80,6 @@ fn read_patch(table: &Table, material: Material<f64>) -> Result<Patch, FileError
     })
 }
 
-/// A number above `least`.
 fn above(table: &Table, key: &str, least: f64) -> Result<f64, FileError> {
     table.number_that(key, |value| value > least, &format!("a number above {least}"))
 }

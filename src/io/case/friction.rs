@@ -31,12 +31,8 @@ pub(super) fn read_friction(
     Ok(all)
 }
 
-/// Reads a law of friction.
 pub(super) fn read(value: &Value) -> Result<Friction, FileError> {
-    if !value.is_table() {
-        return Err(value.wrong("a table, such as { coulomb = 0.3 } or { tresca = \"5\" }"));
-    }
-    let table = value.table()?;
+    let table = value.table_such_as("a table, such as { coulomb = 0.3 } or { tresca = \"5\" }")?;
     let laws = ["tresca", "coulomb"];
     table.only(&laws)?;
     let expected = "either tresca or coulomb";

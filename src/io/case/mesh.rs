@@ -37,7 +37,16 @@ pub(super) fn read_mesh(
     directory: &Path,
     pairs: &[Pair],
 ) -> Result<Meshed, FileError> {
-    let meshed = read_plain_mesh(root, given, directory, pairs)?;
+    let meshed = match (given, root.section("mesh")?) {
+        (Some(_), Some(table)) => {
+            return Err(table.at.found("a mesh beside the one that is given", "one of the two"));
+        }
+        (Some(mesh), None) => mesh.into(),
+        (None, _) => {
+            let expected = "rectangle = { .. } or gmsh = \"..\" in it";
+            make_mesh(&root.required_section("mesh", expected)?, directory, pairs)?
+        }
+    };
     Ok(Meshed { mesh: with_places(root, meshed.mesh)?, ..meshed })
 }
 
@@ -51,27 +60,9 @@ fn with_places(root: &Table, mut mesh: Mesh) -> Result<Mesh, FileError> {
             place.at.wrong(format!("{} = {}: {error}", place.at.name, quoted(text, '"')))
         })?;
         let named = mesh.with_boundary(name, |at| condition.holds(at));
-        mesh = named.map_err(|error| place.at.mesh(error))?;
+        mesh = named.map_err(|error| place.at.about(error))?;
     }
     Ok(mesh)
-}
-
-fn read_plain_mesh(
-    root: &Table,
-    given: Option<Mesh>,
-    directory: &Path,
-    pairs: &[Pair],
-) -> Result<Meshed, FileError> {
-    match (given, root.section("mesh")?) {
-        (Some(_), Some(table)) => {
-            Err(table.at.found("a mesh beside the one that is given", "one of the two"))
-        }
-        (Some(mesh), None) => Ok(mesh.into()),
-        (None, _) => {
-            let expected = "rectangle = { .. } or gmsh = \"..\" in it";
-            make_mesh(&root.required_section("mesh", expected)?, directory, pairs)
-        }
-    }
 }
 
 fn make_mesh(table: &Table, directory: &Path, pairs: &[Pair]) -> Result<Meshed, FileError> {
@@ -105,7 +96,7 @@ fn make_mesh(table: &Table, directory: &Path, pairs: &[Pair]) -> Result<Meshed, 
     }
     let of = value.table()?;
     let structured = if shape == "rectangle" { read_rectangle(&of)? } else { read_trapezoid(&of)? };
-    let mesh = structured.mesh(perturbation).map_err(|error| of.at.mesh(error))?;
+    let mesh = structured.mesh(perturbation).map_err(|error| of.at.about(error))?;
     Ok(Meshed { structured: Some(structured), perturbation, ..mesh.into() })
 }
 

@@ -6,17 +6,11 @@ use super::table::{Table, Value};
 use crate::certificates::{Asked, Ramp, Target};
 use crate::contact::Pair;
 use crate::io::input::FileError;
-use crate::model::Condition;
-use crate::model::Degree;
 use crate::model::structured::MOST_CELLS;
+use crate::model::{Condition, Degree};
 use crate::solve::{
     ContactQuadrature, Gamma0, MOST_GAUSS_POINTS, MOST_ITERATIONS, Method, Settings,
 };
-
-/// The degree where a case says none. On meshes of parts quadratic elements are nearer at equal time: the table is in docs/case.md.
-pub(super) fn default_degree(mesh_of_a_file: bool) -> Degree {
-    if mesh_of_a_file { Degree::Two } else { Degree::One }
-}
 
 /// `method` has the defaults.
 pub(super) fn read_method(table: &Table, mut method: Method) -> Result<Method, FileError> {
@@ -48,13 +42,10 @@ fn read_quadrature(value: &Value) -> Result<ContactQuadrature, FileError> {
     if value.as_text() == Some("exact") {
         return Ok(ContactQuadrature::Exact);
     }
-    if !value.is_table() {
-        return Err(value.wrong("\"exact\" or { gauss = points per edge }"));
-    }
-    let table = value.table()?;
+    let table = value.table_such_as("\"exact\" or { gauss = points per edge }")?;
     table.only(&["gauss"])?;
     let points = table.require("gauss", "a number of points per edge")?;
-    Ok(ContactQuadrature::Gauss(points.whole_number(1..=MOST_GAUSS_POINTS)?))
+    points.whole_number(1..=MOST_GAUSS_POINTS).map(ContactQuadrature::Gauss)
 }
 
 pub(super) fn read_settings(table: &Table) -> Result<Settings, FileError> {

@@ -76,7 +76,7 @@ pub(super) fn of_boundaries(pairs: &[ReadPair]) -> Vec<Pair> {
 pub(super) fn split(mut mesh: Mesh, pairs: &[ReadPair]) -> Result<Mesh, FileError> {
     for ReadPair { at, surfaces, .. } in pairs {
         if let Some(surfaces) = surfaces {
-            mesh = mesh.split_between(surfaces).map_err(|error| at.mesh(error))?;
+            mesh = mesh.split_between(surfaces).map_err(|error| at.about(error))?;
         }
     }
     Ok(mesh)
@@ -96,7 +96,7 @@ pub(super) fn on_mesh(
             return Err(at.found("friction", friction::NOT_IN_REVOLUTION));
         }
         for name in &pair.boundaries {
-            if mesh.edges_of(name).map_err(|error| at.mesh(error))?.is_empty() {
+            if mesh.edges_of(name).map_err(|error| at.about(error))?.is_empty() {
                 let found = format!("no edge on the boundary {}", quoted(name, '\''));
                 return Err(at.found(&found, "at least one"));
             }

@@ -14,7 +14,7 @@ use super::beyond;
 use super::source::Source;
 use crate::io::expression::Expression;
 use crate::io::input::{Failure, FileError};
-use crate::model::{MeshError, SharedFunction};
+use crate::model::SharedFunction;
 use crate::quote::{cut, key as shown, listed, number, quoted};
 
 /// The subject of a message: its name and its place. The file as a whole has neither.
@@ -30,14 +30,14 @@ impl Spot<'_> {
         self.source.wrong(self.start, error.into())
     }
 
-    /// An error of the mesh here.
-    pub(crate) fn mesh(&self, error: MeshError) -> FileError {
-        self.wrong(Failure::from(error).map(|problem| format!("{}: {problem}", self.name)))
+    /// An error that names its subject.
+    pub(crate) fn about(&self, error: impl Into<Failure>) -> FileError {
+        self.wrong(error.into().map(|problem| format!("{}: {problem}", self.name)))
     }
 
     /// The complaint that something else should be here.
     pub(crate) fn found(&self, found: &str, expected: &str) -> FileError {
-        self.wrong(format!("{}: found {found}; expected {expected}", self.name))
+        self.about(format!("found {found}; expected {expected}"))
     }
 }
 
@@ -70,7 +70,6 @@ impl<'s> Table<'s> {
         self.entries.keys().map(|key| &**key.get_ref())
     }
 
-    /// The keys of tables.
     pub(crate) fn keys_of_tables(&self) -> Vec<&'s str> {
         let is_table = |key: &&str| self.get(key).is_some_and(|value| value.is_table());
         self.keys().filter(is_table).collect()
@@ -209,6 +208,11 @@ impl<'s> Value<'s> {
         self.section(self.at.name.clone())
     }
 
+    /// The value as a table under its key, where `expected` shows one.
+    pub(crate) fn table_such_as(&self, expected: &str) -> Result<Table<'s>, FileError> {
+        if self.is_table() { self.table() } else { Err(self.wrong(expected)) }
+    }
+
     pub(crate) fn is_table(&self) -> bool {
         matches!(self.value, DeValue::Table(_))
     }
@@ -258,7 +262,6 @@ impl<'s> Value<'s> {
         self.number_that(|x| x > 0.0, "a positive number")
     }
 
-    /// An integer in a range.
     pub(crate) fn whole_number(&self, range: RangeInclusive<usize>) -> Result<usize, FileError> {
         let number = match self.value {
             DeValue::Integer(n) => integer(n).and_then(|n| usize::try_from(n).ok()),
@@ -282,16 +285,13 @@ impl<'s> Value<'s> {
     }
 
     pub(crate) fn items(&self) -> Result<Vec<Value<'s>>, FileError> {
-        match self.value {
-            DeValue::Array(items) => Ok(items.iter().enumerate().map(|i| self.item(i)).collect()),
-            _ => Err(self.wrong("a list")),
-        }
-    }
-
-    fn item(&self, (i, item): (usize, &'s Spanned<DeValue<'s>>)) -> Value<'s> {
-        let name = format!("{}[{i}]", self.at.name);
-        let at = Spot { source: self.at.source, name, start: Some(item.span().start) };
-        Value { at, value: item.get_ref() }
+        let DeValue::Array(items) = self.value else { return Err(self.wrong("a list")) };
+        let item = |(i, item): (usize, &'s Spanned<DeValue<'s>>)| {
+            let name = format!("{}[{i}]", self.at.name);
+            let at = Spot { source: self.at.source, name, start: Some(item.span().start) };
+            Value { at, value: item.get_ref() }
+        };
+        Ok(items.iter().enumerate().map(item).collect())
     }
 
     pub(crate) fn pair(&self) -> Result<[Value<'s>; 2], FileError> {

@@ -71,28 +71,18 @@ pub(super) fn rounded(x: f64) -> f64 {
     (x * 100.0).round() / 100.0 + 0.0
 }
 
-/// Appends [`rounded`] coordinates, as `{}` writes them, as whole hundredths: in a picture there are many.
+/// Appends [`rounded`] coordinates, as `{}` writes them, by whole numbers: in a picture there are many.
 fn push_rounded(to: &mut String, x: f64) {
-    if !x.is_finite() {
-        // Writing to a string cannot fail. A page with a number that is not finite is refused.
-        let _ = write!(to, "{x}");
-        return;
-    }
     let hundredths = (x * 100.0).round() as i64;
-    if hundredths < 0 {
-        to.push('-');
-    }
-    let (mut left, mut place) = (hundredths.unsigned_abs(), 100);
-    while left / place >= 10 {
-        place *= 10;
-    }
-    while place >= 100 || left > 0 {
-        if place == 10 {
-            to.push('.');
-        }
-        to.push(char::from(b'0' + (left / place) as u8));
-        (left, place) = (left % place, place / 10);
-    }
+    let sign = if hundredths < 0 { "-" } else { "" };
+    let (whole, part) = (hundredths.unsigned_abs() / 100, hundredths.unsigned_abs() % 100);
+    // Writing to a string cannot fail. A page with a number that is not finite is refused.
+    let _ = match part {
+        _ if !x.is_finite() => write!(to, "{x}"),
+        0 => write!(to, "{sign}{whole}"),
+        _ if part % 10 == 0 => write!(to, "{sign}{whole}.{}", part / 10),
+        _ => write!(to, "{sign}{whole}.{part:02}"),
+    };
 }
 
 /// The width of a text, roughly: no font is at hand, and the reader's may be another.
@@ -261,7 +251,8 @@ pub(super) fn legend(
 /// The drawing of the body on the page: the map from the plane, and the room that it takes.
 pub(super) struct PageMap {
     corner: Point,
-    scale: f64,
+    /// The length on the page of a unit of the plane.
+    pub(super) scale: f64,
     /// The point at the centre of the drawing.
     centre: Point,
     pub(super) width: f64,
@@ -285,11 +276,6 @@ impl PageMap {
             width: (scale * extent[0] + 2.0 * AROUND).clamp(600.0, 800.0),
             height: (scale * extent[1] + 2.0 * AROUND).clamp(260.0, 520.0),
         }
-    }
-
-    /// The length on the page of a unit of the plane.
-    pub(super) fn scale(&self) -> f64 {
-        self.scale
     }
 
     pub(super) fn page(&self, [x, y]: Point) -> Point {

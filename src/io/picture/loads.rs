@@ -6,8 +6,8 @@ use svg::node::element::{Circle, Group, Path as PathElement};
 
 use super::contact::{arrow, hatched};
 use super::draw::{
-    DARK, GREY, PageMap, PathData, Point, SAMPLE, anchored, clean, direction, distance, moved,
-    places, rounded, short, stroke,
+    DARK, GREY, PageMap, PathData, Point, SAMPLE, anchored, clean, direction, distance, dot, moved,
+    places, short, stroke,
 };
 use super::scene::{Load, Scene};
 use crate::io::case::Case;
@@ -128,16 +128,13 @@ pub(super) fn drawn_supports(scene: &Scene, deformed: &[Point]) -> Option<Group>
     for (nodes, both) in scene.supports.iter().filter(|(nodes, _)| nodes.len() == 1) {
         group.append(point_support(deformed[nodes[0]], *both));
     }
-    let is_empty = held.is_none() && rollers.is_empty();
-    let points = scene.supports.iter().any(|(nodes, _)| nodes.len() == 1);
     rollers.into_iter().for_each(|at| group.append(roller(at)));
     held.into_iter().for_each(|held| group.append(held));
-    (!is_empty || points).then_some(group)
+    (!group.get_children()?.is_empty()).then_some(group)
 }
 
-fn roller([x, y]: Point) -> Circle {
-    let circle = Circle::new().set("cx", rounded(x)).set("cy", rounded(y)).set("r", 3.2);
-    circle.set("fill", "white").set("stroke", DARK)
+fn roller(at: Point) -> Circle {
+    dot(at).set("r", 3.2).set("fill", "white").set("stroke", DARK)
 }
 
 /// A triangle below a point that is held: full if both components are, else empty.
@@ -147,39 +144,35 @@ fn point_support([x, y]: Point, both: bool) -> PathElement {
     stroke(triangle, DARK, 1.2).set("fill", if both { DARK } else { "white" })
 }
 
-/// The entries of the legend for the kinds of supports that the picture has.
-pub(super) fn support_entries(scene: &Scene) -> Vec<(Option<Group>, &'static str)> {
+pub(super) fn wall_sample() -> Option<Group> {
+    hatched([SAMPLE.map(|[x, y]| [x, y - 3.0]).to_vec()])
+}
+
+/// The entries of the legend for the kinds of supports, each with whether the picture has one.
+pub(super) fn support_entries(scene: &Scene) -> [(bool, Option<Group>, &'static str); 4] {
     let has = |point: bool, both: bool| {
         scene.supports.iter().any(|s| (s.0.len() == 1) == point && s.1 == both)
     };
     let triangle = |both| Some(Group::new().add(point_support([15.0, -10.0], both)));
-    let kinds = [
-        (has(false, true), hatched([SAMPLE.map(|[x, y]| [x, y - 3.0]).to_vec()]), "held"),
-        (
-            has(false, false),
-            Some(Group::new().add(roller([9.0, -4.5])).add(roller([21.0, -4.5]))),
-            "held in one direction",
-        ),
+    let rollers = Group::new().add(roller([9.0, -4.5])).add(roller([21.0, -4.5]));
+    [
+        (has(false, true), wall_sample(), "held"),
+        (has(false, false), Some(rollers), "held in one direction"),
         (has(true, true), triangle(true), "point, held"),
         (has(true, false), triangle(false), "point, held in one direction"),
-    ];
-    kinds.into_iter().filter(|kind| kind.0).map(|(_, sample, words)| (sample, words)).collect()
+    ]
 }
 
 /// Lines that go on where another one ends, in one.
 fn joined(lines: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
     let mut joined: Vec<Vec<Point>> = Vec::new();
     for line in lines {
-        let before = joined.iter_mut().find(|other| other.last() == line.first());
-        match before {
-            Some(before) => before.extend(line.into_iter().skip(1)),
-            None => match joined.iter_mut().find(|other| line.last() == other.first()) {
-                Some(after) => {
-                    let before = line.len().saturating_sub(1);
-                    after.splice(0..0, line.into_iter().take(before));
-                }
-                None => joined.push(line),
-            },
+        if let Some(before) = joined.iter_mut().find(|other| other.last() == line.first()) {
+            before.extend(line.into_iter().skip(1));
+        } else if let Some(after) = joined.iter_mut().find(|other| line.last() == other.first()) {
+            after.splice(0..1, line);
+        } else {
+            joined.push(line);
         }
     }
     joined
@@ -217,8 +210,8 @@ pub(super) fn cross(at: Point) -> Group {
 
 /// A bar of a round length of the undeformed body, its right end at a point of the page.
 pub(super) fn scale_bar(frame: &PageMap, unit: Option<&str>, [right, y]: Point) -> Group {
-    let length = round_below(110.0 / frame.scale());
-    let left = right - length * frame.scale();
+    let length = round_below(110.0 / frame.scale);
+    let left = right - length * frame.scale;
     let mut path = PathData::default();
     path.line([[left, y - 4.0], [left, y + 4.0]]);
     path.line([[left, y], [right, y]]);

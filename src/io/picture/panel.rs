@@ -178,15 +178,19 @@ fn strip((zones, reserved): (&[Zone], bool), [stress, length]: [&str; 2], axes: 
     group
 }
 
+/// The points of a part that are seen, with a stress at each, on the page.
+fn seen(part: &[ContactPoint], axes: &Axes, stress: fn(&ContactPoint) -> f64) -> Vec<Point> {
+    let ([first, last], highest) = (range(axes.x.range.into_iter()), axes.y.range[1]);
+    let shown = part.iter().filter(|s| (first..=last).contains(&s.arc));
+    let points: Vec<Point> = shown.map(|s| axes.at([s.arc, stress(s).min(highest)])).collect();
+    thinned(&points)
+}
+
 fn curve(surface: &ContactSurface, axes: &Axes) -> Group {
-    let [first, last] = range(axes.x.range.into_iter());
     let (mut area, mut line) = (PathData::default(), PathData::default());
     for part in &surface.parts {
-        let shown = part.iter().filter(|s| (first..=last).contains(&s.arc));
-        let highest = axes.y.range[1];
-        let points: Vec<Point> = shown.map(|s| axes.at([s.arc, s.pressure.min(highest)])).collect();
+        let points = seen(part, axes, |s| s.pressure);
         if let [first, .., last] = points[..] {
-            let points = thinned(&points);
             let ends = [last, first].map(|p| [p[0], axes.y.page[0]]);
             area.polygon(points.iter().copied().chain(ends));
             line.line(points);
@@ -197,13 +201,8 @@ fn curve(surface: &ContactSurface, axes: &Axes) -> Group {
 
 /// Draws the sizes of the shear stress as a line.
 fn shear(surface: &ContactSurface, axes: &Axes) -> Group {
-    let ([first, last], highest) = (range(axes.x.range.into_iter()), axes.y.range[1]);
     let mut line = PathData::default();
-    for part in &surface.parts {
-        let shown = part.iter().filter(|s| (first..=last).contains(&s.arc));
-        let point = |s: &ContactPoint| axes.at([s.arc, s.shear.min(highest)]);
-        line.line(thinned(&shown.map(point).collect::<Vec<Point>>()));
-    }
+    surface.parts.iter().for_each(|part| line.line(seen(part, axes, |s| s.shear)));
     Group::new().add(stroke(line, OPEN, 1.6).set("stroke-linejoin", "round"))
 }
 

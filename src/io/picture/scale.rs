@@ -7,7 +7,6 @@ use super::scene::{ContactSurface, Scene};
 use crate::io::files::{NotFinite, check_finite};
 use crate::model::tree::Bounds;
 
-/// The scale of a series of pictures.
 #[derive(Clone, Debug)]
 pub(super) struct Scale {
     /// The amount by which displacement and gap are magnified.

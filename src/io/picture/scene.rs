@@ -48,7 +48,6 @@ pub(crate) struct Scene {
     pub(super) of_revolution: bool,
 }
 
-/// An arrow of a load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Load {
     pub(super) at: usize,
@@ -147,9 +146,7 @@ impl Scene {
             displacement: s.displacement.clone(),
             triangles,
             von_mises,
-            units: case.units.as_ref().map(|units| {
-                [Measure::Stress, Measure::Length].map(|measure| units.of(measure, case.thickness))
-            }),
+            units: case.units_of([Measure::Stress, Measure::Length]),
             stretch: case.stretch,
             apart: apart(s),
             interfaces: interfaces(case).into_iter().flat_map(parts).collect(),
@@ -185,7 +182,6 @@ impl Scene {
         self.points.iter().zip(&self.displacement).map(|(&x, &u)| moved(x, u, factor)).collect()
     }
 
-    /// The number of triangles that are drawn.
     pub(crate) fn triangles(&self) -> usize {
         self.triangles.len()
     }
@@ -243,7 +239,6 @@ fn apart(s: &Solution) -> f64 {
     pressed.map(|point| point.gap.abs()).fold(0.0, f64::max)
 }
 
-/// The edges between triangles of different materials.
 fn interfaces(case: &Case) -> Vec<BoundaryEdge> {
     let (mesh, materials) = (&case.problem.mesh, &case.problem.material);
     let mut material_at = vec![None; mesh.edge_count()];

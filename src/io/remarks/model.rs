@@ -187,14 +187,12 @@ pub(super) fn unbounded_peaks(
         let after = mesh.outline().iter().copied().find(|&e| mesh.ends(e)[0] == vertex)?;
         let [n, m] = [before, after].map(|edge| mesh.length_and_normal(edge).1);
         let bend = n.perp(&m).atan2(n.dot(&m)).to_degrees();
-        let own: BTreeSet<(usize, usize)> = edges.iter().map(|e| (e.triangle, e.local)).collect();
-        let is_own = |edge: BoundaryEdge| own.contains(&(edge.triangle, edge.local));
-        let ends = !(is_own(before) && is_own(after));
+        let ends = !(edges.contains(&before) && edges.contains(&after));
         let is_corner = bend.abs() > SMOOTH;
         if !(ends || is_corner) {
             return None;
         }
-        let edge = if is_own(before) { before } else { after };
+        let edge = if edges.contains(&before) { before } else { after };
         let obtuse = bend < 90.0 - A_RIGHT_ANGLE;
         let oblique = bend < 90.0 + A_RIGHT_ANGLE && is_out_of_line(problem, edge);
         (obtuse || oblique).then(|| {

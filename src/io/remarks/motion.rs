@@ -27,9 +27,9 @@ fn moved(x: [f64; 2], u: [f64; 2]) -> ([f64; 2], f64) {
 }
 
 /// Says where the deformed boundary is farther from its obstacle, or deeper in it, than the linearised gap has it.
-pub(super) fn off_the_obstacle(
+pub(super) fn off_the_obstacle<'s>(
     problem: &Problem,
-    solution: &Solution,
+    solution: &'s Solution,
     words: &Words,
 ) -> Vec<String> {
     let mut remarks = Vec::new();
@@ -38,25 +38,17 @@ pub(super) fn off_the_obstacle(
         let Some(Condition::Obstacle(_, obstacle)) = problem.conditions.get(name) else {
             continue;
         };
-        let mut worst: Option<(f64, ContactPoint, f64, f64)> = None;
-        for edge in edges {
-            // Vertices only: on a curved edge the gap in the middle is that of a place off the chord.
-            for &point in [edge.points.first(), edge.points.last()].into_iter().flatten() {
-                let (x, motion) = moved(point.place, point.displacement);
-                let Some(found) = distance(obstacle, x) else { continue };
-                let meant = point.gap - point.u_n;
-                let off = (found - meant).abs();
-                let counts = point.pressure > 0.0 || found < 0.0;
-                if counts && off > MOST_OFF * motion && off > worst.map_or(0.0, |worst| worst.0) {
-                    worst = Some((off, point, found, meant));
-                }
-            }
-        }
-        let Some((off, point, found, meant)) = worst else { continue };
-        if off <= NO_LENGTH * size(problem) {
-            continue;
-        }
-        let motion = moved(point.place, point.displacement).1;
+        // Vertices only: on a curved edge the gap in the middle is that of a place off the chord.
+        let vertices = edges.iter().flat_map(|edge| [edge.points.first(), edge.points.last()]);
+        let off = |point: &'s ContactPoint| {
+            let (x, motion) = moved(point.place, point.displacement);
+            let (found, meant) = (distance(obstacle, x)?, point.gap - point.u_n);
+            let (off, counts) = ((found - meant).abs(), point.pressure > 0.0 || found < 0.0);
+            (counts && off > MOST_OFF * motion).then_some((off, point, motion, found, meant))
+        };
+        let worst = vertices.flatten().filter_map(off).reduce(|a, b| if b.0 > a.0 { b } else { a });
+        let worst = worst.filter(|worst| worst.0 > NO_LENGTH * size(problem));
+        let Some((_, point, motion, found, meant)) = worst else { continue };
         remarks.push(format!(
             "{} at {} moves by {}: its distance from {} is then {}, not {} as the gap at the undeformed place has it. Large motions beside a curved obstacle are not computed: expected a motion for which both differ by less than {} % of it, or a mesh of the body nearer to where it ends",
             quote::quoted(name, '\''),

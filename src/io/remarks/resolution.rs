@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::{Known, NO_LENGTH, Words, model, place, size};
+use super::{NO_LENGTH, Words, model, place, size};
 use crate::contact::piece::PieceGeometry;
-use crate::model::{Condition, Problem};
+use crate::model::{Condition, Degree, Problem};
 use crate::quote;
 use crate::results::solution::{ContactEdge, ContactPoint};
 use crate::results::{ContactBoundary, Solution};
@@ -67,12 +67,10 @@ impl Line<'_> {
             let [[a, b], [c, d]] = self.ends(e).map(|end| end.place);
             let (along, length) = ([c - a, d - b], self.length(e));
             let s = ((x - a) * along[0] + (y - b) * along[1]) / (length * length);
-            let s = if s < NO_LENGTH {
-                0.0
-            } else if s > 1.0 - NO_LENGTH {
-                1.0
-            } else {
-                s
+            let s = match s {
+                s if s < NO_LENGTH => 0.0,
+                s if s > 1.0 - NO_LENGTH => 1.0,
+                s => s,
             };
             let off = (x - a - s * along[0]).hypot(y - b - s * along[1]);
             (off <= NO_LENGTH * length && s != if ends { 0.0 } else { 1.0 }).then_some(e as f64 + s)
@@ -94,15 +92,11 @@ impl Line<'_> {
         let goes_on =
             |node, end: usize| (0..self.edges.len()).any(|e| self.ends(e)[1 - end].node == node);
         let [first, last] = [at.start as usize, (at.end.ceil() as usize).saturating_sub(1)];
-        let start_free = at.start.fract() > 0.0 || goes_on(self.ends(first)[0].node, 0);
-        let end_free = at.end.fract() > 0.0 || goes_on(self.ends(last)[1].node, 1);
-        (at.end > at.start).then_some(Stretch {
-            at,
-            length,
-            edges,
-            free: [start_free, end_free],
-            force,
-        })
+        let free = [
+            at.start.fract() > 0.0 || goes_on(self.ends(first)[0].node, 0),
+            at.end.fract() > 0.0 || goes_on(self.ends(last)[1].node, 1),
+        ];
+        (at.end > at.start).then_some(Stretch { at, length, edges, free, force })
     }
 
     /// The stretches of contact; those that meet, or nearly, are one.
@@ -137,7 +131,6 @@ impl Line<'_> {
         joined && (0.0..=NEXT).contains(&(start - end))
     }
 
-    /// The middle of a stretch.
     fn middle(&self, stretch: &Stretch) -> [f64; 2] {
         let middle = (stretch.at.start + stretch.at.end) / 2.0;
         let e = middle as usize % self.edges.len();
@@ -197,14 +190,10 @@ fn short_stretch(
         more => format!(", and likewise in {more} other places"),
     };
     let mean = part.force / part.length;
-    let below = if part.peak_pressure < BELOW_THE_MEAN * mean {
-        format!(
-            " (the peak of {} is even below force / length, {})",
-            words.stress(part.peak_pressure),
-            words.stress(mean)
-        )
-    } else {
-        String::new()
+    let [peak, shown_mean] = [part.peak_pressure, mean].map(|stress| words.stress(stress));
+    let below = match part.peak_pressure < BELOW_THE_MEAN * mean {
+        true => format!(" (the peak of {peak} is even below force / length, {shown_mean})"),
+        false => String::new(),
     };
     let depends = if words.known_force.as_deref() == Some(name) {
         "the pressure depends on the mesh; make it finer there".to_owned()
@@ -229,31 +218,20 @@ fn short_stretch(
 /// solved, overlaps its obstacle.
 pub(super) fn gaps(
     problem: &Problem,
-    known: Known,
+    degree: Degree,
+    solution: Option<&Solution>,
     line: &[&PieceGeometry],
     words: &Words,
 ) -> Vec<String> {
     let to_obstacles: Vec<&PieceGeometry> = model::to_obstacles(line).collect();
     let by_boundary = to_obstacles.chunk_by(|a, b| a.first().boundary == b.first().boundary);
-    by_boundary.filter_map(|pieces| gap(problem, known, words, pieces)).collect()
-}
-
-/// A place on an edge with the gap there and its interpolant.
-struct Interpolated {
-    at: [f64; 2],
-    gap: f64,
-    interpolant: f64,
-}
-
-impl Interpolated {
-    fn off(&self) -> f64 {
-        (self.interpolant - self.gap).abs()
-    }
+    by_boundary.filter_map(|pieces| gap(problem, degree, solution, words, pieces)).collect()
 }
 
 fn gap(
     problem: &Problem,
-    known: Known,
+    degree: Degree,
+    solution: Option<&Solution>,
     words: &Words,
     pieces: &[&PieceGeometry],
 ) -> Option<String> {
@@ -263,36 +241,36 @@ fn gap(
         Condition::Obstacle(_, obstacle) => Some(obstacle.closest(x, String::new).ok()?.gap),
         _ => None,
     };
-    let motion = match known {
-        Known::Data(_) => {
-            pieces.iter().flat_map(|piece| piece.gaps()).fold(0.0, |most: f64, g| most.max(-g))
-        }
-        Known::Solution(solution) => {
+    let motion = match solution {
+        None => pieces.iter().flat_map(|piece| piece.gaps()).fold(0.0, |most: f64, g| most.max(-g)),
+        Some(solution) => {
             let of_line = solution.contact.iter().filter(|edge| &*edge.boundary == name);
             of_line.flat_map(|edge| &edge.points).fold(0.0, |most: f64, p| most.max(p.u_n.abs()))
         }
     };
-    let mut worst: Option<Interpolated> = None;
+    // By how much the interpolant is off, the place, the gap there and its interpolant.
+    let mut worst: Option<(f64, [f64; 2], f64, f64)> = None;
     for piece in pieces.iter().filter(|piece| !piece.curved) {
         let [a, b] = problem.mesh.places_of_ends(piece.first().edge);
         let gaps: Vec<f64> = piece.gaps().collect();
         for s in BETWEEN_NODES {
             let at = [0, 1].map(|c| a[c] + s * (b[c] - a[c]));
             let Some(gap) = gap_at(at) else { continue };
-            let found = Interpolated { at, gap, interpolant: known.degree().value_at(&gaps, s) };
+            let interpolant = degree.value_at(&gaps, s);
+            let off = (interpolant - gap).abs();
             // A gap that the motion does not close does not matter.
-            let closes = found.gap.min(found.interpolant) <= motion;
-            if closes && worst.as_ref().is_none_or(|worst| found.off() > worst.off()) {
-                worst = Some(found);
+            if gap.min(interpolant) <= motion && worst.is_none_or(|worst| off > worst.0) {
+                worst = Some((off, at, gap, interpolant));
             }
         }
     }
-    let worst = worst.filter(|w| w.off() > (GAP_OFF * motion).max(NO_LENGTH * size(problem)))?;
+    let least = (GAP_OFF * motion).max(NO_LENGTH * size(problem));
+    let (_, at, gap, interpolant) = worst.filter(|worst| worst.0 > least)?;
     Some(format!(
         "the gap of {} at {}, between two nodes, is {}; interpolated on the edge there it is {}: the mesh does not resolve it, make it finer there",
         quote::quoted(name, '\''),
-        place(worst.at),
-        words.length(worst.gap),
-        words.length(worst.interpolant)
+        place(at),
+        words.length(gap),
+        words.length(interpolant)
     ))
 }
