@@ -237,10 +237,10 @@ pub(super) fn on_the_verge(
 ) -> Option<Vec<f64>> {
     let directions = singular_vectors(rows, loads.len());
     directions.into_iter().filter(|(value, _)| *value > none).find_map(|(_, direction)| {
-        let changed = |by: f64| -> Vec<f64> {
-            loads.iter().zip(&direction).map(|(l, d)| l + by * d).collect()
+        let changed = |share: f64| -> Vec<f64> {
+            loads.iter().zip(&direction).map(|(l, d)| l + share * d).collect()
         };
-        [-MARGIN, MARGIN].into_iter().find_map(|by| left(&changed(by)))
+        [-MARGIN, MARGIN].into_iter().find_map(|share| left(&changed(share)))
     })
 }
 
