@@ -274,7 +274,7 @@ pub struct Cover {
     pub between: [f64; 2],
 }
 
-/// What omega costs from below and from above: bounds of it times g - v_n, and R(w0) times those times w0_n; and int s |chi|.
+/// The cost of omega from below and from above: bounds of it times g - v_n, and R(w0) times those times w0_n; and int s |chi|.
 #[derive(Clone, Copy)]
 pub(crate) struct Missed {
     pub(crate) open: [f64; 2],

@@ -242,7 +242,7 @@ impl<'a> Discretization<'a> {
         self.internal_forces_of(|_| true, u)
     }
 
-    /// What the triangles with nodes that are `taken` have in [`Discretization::internal_forces`].
+    /// The share of the triangles with nodes that are `taken` in [`Discretization::internal_forces`].
     pub(crate) fn internal_forces_of(
         &self,
         taken: impl Fn(&[usize]) -> bool,

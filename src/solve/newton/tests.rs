@@ -17,10 +17,10 @@ use crate::kernel::DoubleDouble;
 use crate::solve::SolveError;
 use crate::solve::body::{self, Body as _, ContactEnergy, Derivatives, Residual, Step};
 
-/// What was found where a property does not hold.
+/// The reason why a property does not hold.
 type Outcome = Result<(), String>;
 
-/// What holds of as many bodies, the same in each run.
+/// Asks whether a property holds of as many bodies, the same in each run.
 fn for_all(draws: u32, holds: impl Fn(Body) -> Outcome) -> Outcome {
     let config = Config { cases: draws, failure_persistence: None, ..Config::default() };
     let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
@@ -32,7 +32,7 @@ fn for_all(draws: u32, holds: impl Fn(Body) -> Outcome) -> Outcome {
 type Vector = [f64; 3];
 type Matrix = [Vector; 3];
 
-/// Of the springs.
+/// The stiffness of the springs.
 const STIFFNESS: f64 = 1000.0;
 
 /// Three springs.
