@@ -9,7 +9,7 @@ use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
 use faer::{Accum, MatMut, MatRef, Par};
-use pulp::{Arch, NullaryFnOnce};
+use pulp::{Arch, Scalar, Simd, WithSimd};
 
 use super::factor::Structure;
 use crate::linear::cholesky;
@@ -21,6 +21,9 @@ const PACKED: usize = 8192;
 
 /// Columns of a supernode from which its block on the diagonal is left to faer.
 const WIDE: usize = 32;
+
+/// The numbers in a vector, at most.
+const MOST_LANES: usize = 8;
 
 /// No supernode.
 const NONE: usize = usize::MAX;
@@ -98,6 +101,78 @@ pub(super) fn solve_columns(structure: &Structure, values: &[f64], x: &mut [f64]
     }
 }
 
+/// Runs through columns in steps of 4, and at the end of 2 and 1: loops of a body over so many, a constant, become a few instructions
+/// each.
+macro_rules! in_columns {
+    ($C:ident at $j:ident in ($from:expr, $to:expr) => $body:expr) => {{
+        let (mut next, to) = ($from, $to);
+        in_columns!(4, $C at $j in (next, to) => $body);
+        in_columns!(2, $C at $j in (next, to) => $body);
+        in_columns!(1, $C at $j in (next, to) => $body);
+    }};
+    ($step:literal, $C:ident at $j:ident in ($next:ident, $to:ident) => $body:expr) => {{
+        const $C: usize = $step;
+        while $next + $C <= $to {
+            let $j = $next;
+            $body;
+            $next += $C;
+        }
+    }};
+}
+
+/// Runs through rows two vectors at a time, and at the end one, and then row by row.
+macro_rules! in_rows {
+    ($simd:ident, $V:ident at $i:ident in ($from:expr, $to:expr) => $body:expr) => {{
+        let (mut next, to) = ($from, $to);
+        in_rows!(2, $simd, $V at $i in (next, to) => $body);
+        in_rows!(1, $simd, $V at $i in (next, to) => $body);
+        let $simd = Scalar::new();
+        in_rows!(1, $simd, $V at $i in (next, to) => $body);
+    }};
+    ($vectors:literal, $simd:ident, $V:ident at $i:ident in ($next:ident, $to:ident) => $body:expr) => {{
+        const $V: usize = $vectors;
+        let step = $V * lanes($simd);
+        while $next + step <= $to {
+            let $i = $next;
+            $body;
+            $next += step;
+        }
+    }};
+}
+
+/// The numbers in a vector.
+#[inline(always)]
+fn lanes<S: Simd>(_: S) -> usize {
+    S::F64_LANES
+}
+
+/// V vectors, from a list.
+#[inline(always)]
+fn load<S: Simd, const V: usize>(_: S, from: &[f64]) -> [S::f64s; V] {
+    let (vectors, _) = S::as_simd_f64s(&from[..V * S::F64_LANES]);
+    std::array::from_fn(|v| vectors[v])
+}
+
+/// Writes vectors into a list.
+#[inline(always)]
+fn store<S: Simd, const V: usize>(_: S, to: &mut [f64], vectors: [S::f64s; V]) {
+    S::as_mut_simd_f64s(&mut to[..V * S::F64_LANES]).0.copy_from_slice(&vectors);
+}
+
+/// x <- x + y b
+#[inline(always)]
+fn add_product<S: Simd, const V: usize>(
+    simd: S,
+    x: &mut [S::f64s; V],
+    y: &[S::f64s; V],
+    b: f64,
+) {
+    let b = simd.splat_f64s(b);
+    for v in 0..V {
+        x[v] = simd.add_f64s(x[v], simd.mul_f64s(y[v], b));
+    }
+}
+
 struct Factorisation<'a, F> {
     structure: &'a Structure,
     matrix: &'a LowerTriangle,
@@ -106,11 +181,11 @@ struct Factorisation<'a, F> {
     stale: F,
 }
 
-impl<F: Fn(usize) -> bool> NullaryFnOnce for Factorisation<'_, F> {
+impl<F: Fn(usize) -> bool> WithSimd for Factorisation<'_, F> {
     type Output = Result<(), SolveError>;
 
     #[inline(always)]
-    fn call(self) -> Self::Output {
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let Factorisation { structure, matrix, values, stale } = self;
         let count = structure.supernodes();
         // The place of each row in the block at hand.
@@ -148,12 +223,9 @@ impl<F: Fn(usize) -> bool> NullaryFnOnce for Factorisation<'_, F> {
                     local.clear();
                     local.extend(pattern.iter().map(|&row| places[row]));
                     let [of_d, width] = structure.shape(d);
-                    let source = Block {
-                        values: &left[structure.start(d)..structure.start(d) + of_d * width],
-                        rows: of_d,
-                        from: width + used[d],
-                    };
-                    source.subtract_square(inside, &local, (&mut *block, rows), &mut sums);
+                    let values = &left[structure.start(d)..structure.start(d) + of_d * width];
+                    let (source, from) = (Block { values, rows: of_d }, width + used[d]);
+                    source.subtract_square(simd, (from, inside), &local, (&mut *block, rows), &mut sums);
                 }
                 used[d] += inside;
                 if let Some(&row) = pattern.get(inside) {
@@ -163,7 +235,7 @@ impl<F: Fn(usize) -> bool> NullaryFnOnce for Factorisation<'_, F> {
                 d = following;
             }
             if is_stale {
-                cholesky(block, rows, width)?;
+                cholesky(simd, block, rows, width)?;
             }
             if let Some(&row) = below.first() {
                 let parent = structure.supernode_of(row);
@@ -174,44 +246,65 @@ impl<F: Fn(usize) -> bool> NullaryFnOnce for Factorisation<'_, F> {
     }
 }
 
-/// The rows of a block of L from one on.
+/// Columns of a block of L, one after the other, each with this many rows.
+#[derive(Clone, Copy)]
 struct Block<'a> {
     values: &'a [f64],
-    /// The rows of the whole block.
     rows: usize,
-    /// The first of those that count.
-    from: usize,
 }
 
 impl Block<'_> {
-    /// Subtracts the lower triangle of the product of these rows and the transposed first ones of them, `inside` in number, from a
-    /// block of so many rows; `local` are the places of the rows there.
+    /// The products of its rows in V vectors from `i` on with C of its rows from `j` on: sums over its columns, so few that a
+    /// processor keeps them at hand.
+    #[inline(always)]
+    fn tile<S: Simd, const V: usize, const C: usize>(
+        self,
+        simd: S,
+        [i, j]: [usize; 2],
+    ) -> [[S::f64s; V]; C] {
+        let mut sums = [[simd.splat_f64s(0.0); V]; C];
+        for column in self.values.chunks_exact(self.rows) {
+            let (a, b) = (load(simd, &column[i..]), &column[j..j + C]);
+            for c in 0..C {
+                add_product(simd, &mut sums[c], &a, b[c]);
+            }
+        }
+        sums
+    }
+
+    /// Subtracts the lower triangle of the product of its rows `from` on and the transposed first ones of them, `inside` in number,
+    /// from a block of so many rows; `local` are the places of the rows there.
     #[inline(always)]
     fn subtract_square(
-        &self,
-        inside: usize,
+        self,
+        simd: impl Simd,
+        (from, inside): (usize, usize),
         local: &[usize],
         (block, rows): (&mut [f64], usize),
         sums: &mut Vec<f64>,
     ) {
         let (height, width) = (local.len(), self.values.len() / self.rows);
         if height * inside * width < PACKED {
-            sums.resize(height.max(sums.len()), 0.0);
-            for j in 0..inside {
-                let sums = &mut sums[..height - j];
-                sums.fill(0.0);
-                add_columns(sums, self.values, (self.rows, self.from + j), |_, column| column[0]);
-                let (column, places) = (&mut block[local[j] * rows..][..rows], &local[j..]);
-                for i in 0..places.len() {
-                    column[places[i]] -= sums[i];
-                }
-            }
+            in_columns!(C at j in (0, inside) => {
+                in_rows!(simd, V at i in (j, height) => {
+                    let products = self.tile::<_, V, C>(simd, [from + i, from + j]);
+                    for c in 0..C {
+                        let column = &mut block[local[j + c] * rows..][..rows];
+                        let mut product = [0.0; 2 * MOST_LANES];
+                        store(simd, &mut product, products[c]);
+                        let places = &local[i..i + V * lanes(simd)];
+                        for r in (j + c).saturating_sub(i)..places.len() {
+                            column[places[r]] -= product[r];
+                        }
+                    }
+                });
+            });
             return;
         }
         sums.resize((height * inside).max(sums.len()), 0.0);
         let sums = &mut sums[..height * inside];
         let source = MatRef::from_column_major_slice(self.values, self.rows, width);
-        let (top, bottom) = source.subrows(self.from, height).split_at_row(inside);
+        let (top, bottom) = source.subrows(from, height).split_at_row(inside);
         let product = MatMut::from_column_major_slice_mut(&mut *sums, height, inside);
         let (square, rest) = product.split_at_row_mut(inside);
         triangular::matmul(
@@ -235,63 +328,66 @@ impl Block<'_> {
     }
 }
 
-/// Adds to `sums` the columns of a block of so many rows from row `from` on, each times its factor.
-#[inline(always)]
-fn add_columns(
-    sums: &mut [f64],
-    block: &[f64],
-    (rows, from): (usize, usize),
-    factor: impl Fn(usize, &[f64]) -> f64,
-) {
-    let (count, n) = (block.len() / rows, sums.len());
-    let mut k = 0;
-    while k + 4 <= count {
-        let a = &block[k * rows + from..][..n];
-        let b = &block[(k + 1) * rows + from..][..n];
-        let c = &block[(k + 2) * rows + from..][..n];
-        let d = &block[(k + 3) * rows + from..][..n];
-        let (p, q, r, s) = (factor(k, a), factor(k + 1, b), factor(k + 2, c), factor(k + 3, d));
-        for i in 0..n {
-            sums[i] += (p * a[i] + q * b[i]) + (r * c[i] + s * d[i]);
-        }
-        k += 4;
-    }
-    while k < count {
-        let a = &block[k * rows + from..][..n];
-        let p = factor(k, a);
-        for i in 0..n {
-            sums[i] += p * a[i];
-        }
-        k += 1;
-    }
-}
-
 /// The block of a supernode: its lower triangle on the diagonal becomes its Cholesky factor, the rows below are divided by that.
 #[inline(always)]
-fn cholesky(block: &mut [f64], rows: usize, width: usize) -> Result<(), SolveError> {
+fn cholesky(
+    simd: impl Simd,
+    block: &mut [f64],
+    rows: usize,
+    width: usize,
+) -> Result<(), SolveError> {
     if width >= WIDE {
         return wide_cholesky(block, rows, width);
     }
-    for k in 0..width {
-        let (before, later) = block.split_at_mut((k + 1) * rows);
-        let column = &mut before[k * rows + k..];
-        let pivot = column[0];
-        // A NaN is not positive.
-        if !(pivot > 0.0) {
-            return Err(SolveError::NotPositiveDefinite);
-        }
-        let root = pivot.sqrt();
-        let inverse = 1.0 / root;
-        column[0] = root;
-        column[1..].iter_mut().for_each(|entry| *entry *= inverse);
-        for (j, other) in (k + 1..width).zip(later.chunks_exact_mut(rows)) {
-            let (own, other) = (&column[j - k..], &mut other[j..]);
-            let factor = own[0];
-            for i in 0..other.len() {
-                other[i] -= factor * own[i];
+    in_columns!(C at k in (0, width) => panel::<_, C>(simd, block, rows, k)?);
+    Ok(())
+}
+
+/// C columns of L from column `k` on, in a block of so many rows whose columns before are done.
+#[inline(always)]
+fn panel<S: Simd, const C: usize>(
+    simd: S,
+    block: &mut [f64],
+    rows: usize,
+    k: usize,
+) -> Result<(), SolveError> {
+    let (left, own) = block.split_at_mut(k * rows);
+    let left = Block { values: left, rows };
+    let mut top = [[0.0; C]; C];
+    let mut inverse = [0.0; C];
+    for c in 0..C {
+        for r in c..C {
+            let [[product]] = left.tile::<_, 1, 1>(Scalar::new(), [k + r, k + c]);
+            top[c][r] = own[c * rows + k + r] - product;
+            for d in 0..c {
+                top[c][r] -= top[d][r] * top[d][c];
             }
         }
+        // A NaN is not positive.
+        if !(top[c][c] > 0.0) {
+            return Err(SolveError::NotPositiveDefinite);
+        }
+        top[c][c] = top[c][c].sqrt();
+        inverse[c] = 1.0 / top[c][c];
+        top[c][c + 1..].iter_mut().for_each(|entry| *entry *= inverse[c]);
+        own[c * rows + k + c..][..C - c].copy_from_slice(&top[c][c..]);
     }
+    in_rows!(simd, V at i in (k + C, rows) => {
+        let mut x = left.tile::<_, V, C>(simd, [i, k]);
+        for c in 0..C {
+            let column = &mut own[c * rows + i..];
+            let entries = load::<_, V>(simd, column);
+            for d in 0..c {
+                let done = x[d];
+                add_product::<_, V>(simd, &mut x[c], &done, top[d][c]);
+            }
+            let inverse = simd.splat_f64s(inverse[c]);
+            for v in 0..V {
+                x[c][v] = simd.mul_f64s(simd.sub_f64s(entries[v], x[c][v]), inverse);
+            }
+            store(simd, column, x[c]);
+        }
+    });
     Ok(())
 }
 
@@ -309,31 +405,42 @@ struct Forward<'a> {
     x: &'a mut [f64],
 }
 
-impl NullaryFnOnce for Forward<'_> {
+impl WithSimd for Forward<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let Forward { structure, values, x } = self;
-        let mut sums = Vec::new();
+        let mut local = Vec::new();
         for s in 0..structure.supernodes() {
             let [rows, width] = structure.shape(s);
-            let block = &values[structure.start(s)..structure.start(s) + rows * width];
-            let below = structure.rows_below(s);
-            let own = &mut x[structure.columns(s)];
-            for (k, column) in block.chunks_exact(rows).enumerate() {
-                let value = own[k] / column[k];
-                own[k] = value;
-                for i in k + 1..width {
-                    own[i] -= value * column[i];
+            let block = &values[structure.start(s)..][..rows * width];
+            let (columns, below) = (structure.columns(s), structure.rows_below(s));
+            local.clear();
+            local.extend_from_slice(&x[columns.clone()]);
+            local.resize(rows, 0.0);
+            in_columns!(C at k in (0, width) => {
+                let panel = &block[k * rows..(k + C) * rows];
+                let mut own = [0.0; C];
+                for c in 0..C {
+                    own[c] = local[k + c];
+                    for d in 0..c {
+                        own[c] -= panel[d * rows + k + c] * own[d];
+                    }
+                    own[c] /= panel[c * rows + k + c];
                 }
-            }
-            sums.resize(below.len().max(sums.len()), 0.0);
-            let sums = &mut sums[..below.len()];
-            sums.fill(0.0);
-            add_columns(sums, block, (rows, width), |k, _| own[k]);
-            for i in 0..below.len() {
-                x[below[i]] -= sums[i];
+                local[k..k + C].copy_from_slice(&own);
+                in_rows!(simd, V at i in (k + C, rows) => {
+                    let mut sums = load::<_, V>(simd, &local[i..]);
+                    for c in 0..C {
+                        add_product(simd, &mut sums, &load(simd, &panel[c * rows + i..]), -own[c]);
+                    }
+                    store(simd, &mut local[i..], sums);
+                });
+            });
+            x[columns].copy_from_slice(&local[..width]);
+            for (&row, change) in below.iter().zip(&local[width..]) {
+                x[row] += change;
             }
         }
     }
@@ -345,51 +452,46 @@ struct Backward<'a> {
     x: &'a mut [f64],
 }
 
-impl NullaryFnOnce for Backward<'_> {
+impl WithSimd for Backward<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let Backward { structure, values, x } = self;
-        let mut known = Vec::new();
+        let mut local = Vec::new();
         for s in (0..structure.supernodes()).rev() {
             let [rows, width] = structure.shape(s);
-            let block = &values[structure.start(s)..structure.start(s) + rows * width];
-            known.clear();
-            known.extend(structure.rows_below(s).iter().map(|&row| x[row]));
-            let own = &mut x[structure.columns(s)];
-            for (k, column) in block.chunks_exact(rows).enumerate().rev() {
-                let inside = product(&column[k + 1..width], &own[k + 1..]);
-                own[k] = (own[k] - (inside + product(&column[width..], &known))) / column[k];
-            }
+            let block = &values[structure.start(s)..][..rows * width];
+            local.clear();
+            local.extend_from_slice(&x[structure.columns(s)]);
+            local.extend(structure.rows_below(s).iter().map(|&row| x[row]));
+            in_columns!(C at done in (0, width) => {
+                let k = width - C - done;
+                let panel = &block[k * rows..(k + C) * rows];
+                let mut own = [0.0; C];
+                in_rows!(simd, V at i in (k + C, rows) => {
+                    let known = load::<_, V>(simd, &local[i..]);
+                    for c in 0..C {
+                        let column = load::<_, V>(simd, &panel[c * rows + i..]);
+                        let mut products = simd.mul_f64s(column[0], known[0]);
+                        for v in 1..V {
+                            products = simd.add_f64s(products, simd.mul_f64s(column[v], known[v]));
+                        }
+                        own[c] += simd.reduce_sum_f64s(products);
+                    }
+                });
+                for c in (0..C).rev() {
+                    own[c] = local[k + c] - own[c];
+                    for d in c + 1..C {
+                        own[c] -= panel[c * rows + k + d] * own[d];
+                    }
+                    own[c] /= panel[c * rows + k + c];
+                }
+                local[k..k + C].copy_from_slice(&own);
+            });
+            x[structure.columns(s)].copy_from_slice(&local[..width]);
         }
     }
-}
-
-/// The sum of the products of two lists, in eight sums that a processor adds at once.
-#[inline(always)]
-fn product(a: &[f64], b: &[f64]) -> f64 {
-    const LANES: usize = 8;
-    let n = a.len();
-    let b = &b[..n];
-    let mut sums = [0.0; LANES];
-    let whole = n - n % LANES;
-    for start in (0..whole).step_by(LANES) {
-        let (a, b) = (&a[start..start + LANES], &b[start..start + LANES]);
-        for i in 0..LANES {
-            sums[i] += a[i] * b[i];
-        }
-    }
-    let mut sum = 0.0;
-    for i in whole..n {
-        sum += a[i] * b[i];
-    }
-    if whole > 0 {
-        for i in 0..LANES {
-            sum += sums[i];
-        }
-    }
-    sum
 }
 
 #[cfg(test)]
