@@ -71,27 +71,32 @@ impl Structure {
     }
 
     /// The columns of supernode `s`.
+    #[inline]
     pub(crate) fn columns(&self, s: usize) -> std::ops::Range<usize> {
         self.symbolic.supernode_begin()[s]..self.symbolic.supernode_end()[s]
     }
 
     /// The rows of L below the block of supernode `s` on the diagonal, in increasing order.
+    #[inline]
     pub(crate) fn rows_below(&self, s: usize) -> &[usize] {
         self.symbolic.supernode(s).pattern()
     }
 
     /// The supernode of a column.
+    #[inline]
     pub(crate) fn supernode_of(&self, column: usize) -> usize {
         self.supernodes[column]
     }
 
     /// The numbers of rows and of columns of the block of supernode `s`.
+    #[inline]
     pub(super) fn shape(&self, s: usize) -> [usize; 2] {
         let columns = self.columns(s).len();
         [columns + self.rows_below(s).len(), columns]
     }
 
     /// The place of the block of supernode `s` among the entries of L.
+    #[inline]
     pub(super) fn start(&self, s: usize) -> usize {
         self.symbolic.col_ptr_for_val()[s]
     }

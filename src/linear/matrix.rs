@@ -247,32 +247,35 @@ impl<S: Scalar + From<f64>> LowerTriangle<S> {
                 if turned {
                     block = numbering.turned_block([row_node, column_node], block);
                 }
-                for (d, column) in numbering.of[column_node].into_iter().enumerate() {
-                    if let Some(column) = column {
-                        self.add_to_column(column, numbering.of[row_node], block.column(d).into())?;
-                    }
-                }
+                self.add_block(numbering.of[row_node], numbering.of[column_node], block)?;
             }
         }
         Ok(())
     }
 
-    /// Adds to the entries of a column in increasing rows; what is above the diagonal is left out.
-    fn add_to_column(
+    /// Adds a block of a pair of nodes, whose components have these numbers; what is above the diagonal is left out.
+    fn add_block(
         &mut self,
-        column: usize,
         rows: [Option<usize>; 2],
-        entries: [S; 2],
+        columns: [Option<usize>; 2],
+        block: Matrix2<S>,
     ) -> Result<(), OutsidePattern> {
-        let (mut place, end) = (self.starts[column], self.starts[column + 1]);
-        for (row, entry) in rows.into_iter().zip(entries) {
-            if let Some(row) = row
-                && row >= column
-            {
-                // A column has few rows: a linear search is faster than a binary one.
-                let step = self.rows[place..end].iter().position(|&other| other == row);
-                place += step.ok_or(OutsidePattern { row, column })?;
-                self.values[place] += entry;
+        let (Some(row), Some(column)) = (rows[0].or(rows[1]), columns[0].or(columns[1])) else {
+            return Ok(());
+        };
+        // A column has few rows: a linear search is faster than a binary one.
+        let of_column = &self.rows[self.starts[column]..self.starts[column + 1]];
+        let place = of_column.iter().position(|&other| other == row);
+        let place = place.ok_or(OutsidePattern { row, column })?;
+        // Both columns of a node have the same rows, each from its diagonal on, and the rows of a node follow each other.
+        for (d, j) in columns.into_iter().enumerate() {
+            for (c, i) in rows.into_iter().enumerate() {
+                if let (Some(i), Some(j)) = (i, j)
+                    && i >= j
+                {
+                    let at = self.starts[j] + place + (i - row) - (j - column);
+                    self.values[at] += block[(c, d)];
+                }
             }
         }
         Ok(())
