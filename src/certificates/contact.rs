@@ -392,7 +392,7 @@ impl Contact {
         };
         let between = |[from, to]: [f64; 2]| {
             let at = |s: f64| value(degree, p, from + s * (to - from));
-            profile(&degree.edge_positions().into_iter().map(at).collect::<Vec<f64>>())
+            profile(&degree.edge_positions().map(at).collect::<Vec<f64>>())
         };
         let traction = |s: f64| -> Vector2<f64> {
             let shapes = degree.edge_values(s);

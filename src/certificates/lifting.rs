@@ -177,7 +177,7 @@ fn demands(
     let mut demands: BTreeMap<usize, Vec<Prescription>> = BTreeMap::new();
     // Along a direction at each node, or one for all.
     let mut add = |edge: BoundaryEdge, boundary: usize, what: What, of: [Vector2<f64>; 3]| {
-        for (node, direction) in space.edge_nodes(edge).into_iter().zip(of) {
+        for (node, direction) in space.edge_nodes(edge).zip(of) {
             let (at_node, demand) =
                 (demands.entry(node).or_default(), Prescription { direction, boundary, what });
             if !at_node.contains(&demand) {
@@ -225,7 +225,7 @@ fn ties(
     let is_tied = |k: usize| parts.contact[k].is_tied();
     for OnContact { edge, directions, contact, .. } in on_contact(parts, names, is_tied) {
         let is_glued = parts.contact[contact].law == Law::Bonded;
-        for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
+        for (a, node) in space.edge_nodes(edge).enumerate() {
             let across = is_glued.then(|| turned(directions[a]));
             tied.entry(node).or_default().extend([directions[a]].into_iter().chain(across));
         }
@@ -405,7 +405,7 @@ impl<'a> Lifter<'a> {
         let may_open = |k: usize| !self.parts.contact[k].is_tied();
         for on in on_contact(self.parts, self.names, may_open) {
             let share = self.shares[on.boundary][on.side];
-            for (node, d) in self.space.edge_nodes(on.edge).into_iter().zip(on.directions) {
+            for (node, d) in self.space.edge_nodes(on.edge).zip(on.directions) {
                 let Some(along) = self.free_along(node, d, share) else { continue };
                 let (moved, w) = (along.dot(&d), Vector2::from(field[node]));
                 if moved.abs() > 0.5 {

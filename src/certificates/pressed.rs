@@ -122,12 +122,11 @@ fn add_on_edge(
     [a, b, bubble]: [Vector2<f64>; 3],
     forces: &mut [[f64; 2]],
 ) {
-    let nodes = space.edge_nodes(edge);
-    let moments = match nodes.len() {
-        2 => vec![a, b],
-        _ => vec![a - bubble / 2.0, b - bubble / 2.0, bubble],
+    let moments = match space.degree() {
+        Degree::One => vec![a, b],
+        Degree::Two => vec![a - bubble / 2.0, b - bubble / 2.0, bubble],
     };
-    for (node, moment) in nodes.into_iter().zip(moments) {
+    for (node, moment) in space.edge_nodes(edge).zip(moments) {
         add(&mut forces[node], moment);
     }
 }

@@ -453,7 +453,7 @@ impl Obstacles<'_> {
         let (_, normal) = mesh.length_and_normal(edge);
         let curve = self.smooth.along(mesh, edge);
         let mut nodes = Vec::with_capacity(space.degree().nodes_per_edge());
-        for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
+        for (a, node) in space.edge_nodes(edge).enumerate() {
             let on_facet = SmoothPoint { place: space.nodes()[node], normal };
             let point = curve.map_or(on_facet, |points| points[a]);
             let Closest { gap, direction } = self.closest(&boundary, point)?;
@@ -467,7 +467,7 @@ impl Obstacles<'_> {
             // The distance to a plane.
             _ => 0.0,
         };
-        let positions = space.degree().edge_positions();
+        let positions = space.degree().edge_positions().collect();
         let law = match self.problem.friction.get(&*boundary) {
             None => Law::Contact,
             Some(friction) => law_of(friction, [nodes[0].place, nodes[1].place], || {

@@ -398,7 +398,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
                     let of = with_element!(degree, E => {
                         hoop::<E, _, _, _>(data, (stretch.edge.local, &positions), ends)
                     });
-                    let at: Vec<S> = degree.edge_positions().into_iter().map(exact).collect();
+                    let at: Vec<S> = degree.edge_positions().map(exact).collect();
                     let share = shares.map(|(weight, ratio)| weight * ratio);
                     let [own_p0, own_stress] =
                         of.add_to([&mut p0, &mut sigma_n], &at, (own_gamma, share));
@@ -456,7 +456,7 @@ impl<S: Scalar + From<f64>> Piece<S> {
     pub(crate) fn edge_nodes(&self) -> impl Iterator<Item = usize> + '_ {
         let of = |(side, stretch): (&Side<S>, &Stretch)| {
             let first = side.entries.start;
-            let on_edge = self.degree.edge_nodes(stretch.edge.local).into_iter();
+            let on_edge = self.degree.edge_nodes(stretch.edge.local);
             on_edge.map(|k| self.nodes[first + k]).collect::<Vec<_>>()
         };
         self.sides.iter().zip(&self.geometry.stretches).flat_map(of)
@@ -686,11 +686,10 @@ impl<S: Scalar + From<f64>> Piece<S> {
 
 /// For each node of a piece, the nearest node of the triangle on the edge.
 fn nearest(degree: Degree, stretch: &Stretch) -> Vec<usize> {
-    let (nodes, places) = (degree.edge_nodes(stretch.edge.local), degree.edge_positions());
     let next_to = |&s: &f64| {
-        let distance = |a: &usize| (places[*a] - s).abs();
-        let best = (0..nodes.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        best.map_or(nodes[0], |a| nodes[a])
+        let distance = |(_, place): &(usize, f64)| (place - s).abs();
+        let nodes = degree.edge_nodes(stretch.edge.local).zip(degree.edge_positions());
+        nodes.min_by(|a, b| distance(a).total_cmp(&distance(b))).map_or(0, |(node, _)| node)
     };
     stretch.positions.iter().map(next_to).collect()
 }
@@ -700,7 +699,7 @@ impl Piece {
     pub(crate) fn jumps(&self, u: &[[f64; 2]]) -> Vec<f64> {
         let count = self.degree.nodes_per_edge();
         let displacement = |(side, stretch): (&Side, &Stretch), a: usize| {
-            let nodes = self.degree.edge_nodes(stretch.edge.local).into_iter();
+            let nodes = self.degree.edge_nodes(stretch.edge.local);
             let shapes = self.degree.edge_values(stretch.positions[a]);
             nodes.zip(shapes).fold([0.0; 2], |sum, (k, shape)| {
                 let u = u[self.nodes[side.entries.start + k]];
@@ -722,9 +721,9 @@ impl Piece {
 
     /// The piece with the jumps alone for its functionals: P0 without the stress.
     pub(crate) fn of_jumps(&self) -> Piece {
-        let (count, places) = (self.degree.nodes_per_edge(), self.degree.edge_positions());
+        let places: Vec<f64> = self.degree.edge_positions().collect();
         let row = |(i, p0): (usize, &Vec<Vector2<f64>>)| {
-            let (s, ends) = (places[i % count], 2 * (i / count));
+            let (s, ends) = (places[i % places.len()], 2 * (i / places.len()));
             let stress = self.sigma_n[ends].iter().zip(&self.sigma_n[ends + 1]);
             let stress = stress.map(|(a, b)| a * (1.0 - s) + b * s);
             p0.iter().zip(stress).map(|(p0, stress)| p0 + stress * self.gamma).collect()

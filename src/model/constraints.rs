@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use super::boundary_normals::SmoothBoundary;
 use super::data::{DataError, finite};
 use super::function::SharedFunction;
-use super::mesh::{BoundaryEdge, NO_ANGLE, ROUNDED};
+use super::mesh::{NO_ANGLE, ROUNDED};
 use super::problem::{Condition, Problem};
 use super::revolution::AXIS;
 use super::space::Space;
@@ -304,7 +304,7 @@ fn demands<'a>(problem: &'a Problem, space: &Space) -> Result<Demands<'a>, DataE
     for (name, condition) in &problem.conditions {
         match condition {
             Condition::Displacement(displacement) | Condition::Mixed { displacement, .. } => {
-                for node in nodes_of(space, mesh.edges_of(name)?) {
+                for node in mesh.edges_of(name)?.iter().flat_map(|&edge| space.edge_nodes(edge)) {
                     for (c, function) in displacement.iter().enumerate() {
                         let Some(function) = function else { continue };
                         let key = || format!("[boundary.{}] displacement[{c}]", quote::key(name));
@@ -317,7 +317,7 @@ fn demands<'a>(problem: &'a Problem, space: &Space) -> Result<Demands<'a>, DataE
                 for &edge in mesh.edges_of(name)? {
                     let facet = mesh.length_and_normal(edge).1;
                     let normals = smooth.along(mesh, edge).map(|points| points.map(|p| p.normal));
-                    for (a, node) in space.edge_nodes(edge).into_iter().enumerate() {
+                    for (a, node) in space.edge_nodes(edge).enumerate() {
                         let n: [f64; 2] = normals.map_or(facet, |normals| normals[a]).into();
                         let t = [-n[1], n[0]];
                         for (function, direction, key) in
@@ -349,8 +349,4 @@ fn demands<'a>(problem: &'a Problem, space: &Space) -> Result<Demands<'a>, DataE
         }
     }
     Ok(demands)
-}
-
-fn nodes_of(space: &Space, edges: &[BoundaryEdge]) -> Vec<usize> {
-    edges.iter().flat_map(|&edge| space.edge_nodes(edge)).collect()
 }

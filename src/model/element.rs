@@ -7,7 +7,7 @@ use crate::kernel::axial;
 use crate::kernel::contact_edge;
 use crate::kernel::edge_integral;
 use crate::kernel::element::displacement_gradient;
-use crate::kernel::{Element, Scalar};
+use crate::kernel::{Element, P2, Scalar};
 
 /// The polynomial degree of V^h.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,13 +52,13 @@ impl Degree {
     }
 
     /// The nodes of a triangle on its edge `i` (mod 3): start, end, then the midpoint if there is one.
-    pub fn edge_nodes(self, i: usize) -> Vec<usize> {
-        with_element!(self, E => E::edge_nodes(i).into())
+    pub fn edge_nodes(self, i: usize) -> impl Iterator<Item = usize> {
+        P2::edge_nodes(i).into_iter().take(self.nodes_per_edge())
     }
 
     /// Where on an edge its nodes lie, from 0 to 1.
-    pub fn edge_positions(self) -> Vec<f64> {
-        with_element!(self, E => E::edge_positions().into())
+    pub fn edge_positions(self) -> impl Iterator<Item = f64> {
+        P2::edge_positions().into_iter().take(self.nodes_per_edge())
     }
 
     /// The shape functions of an edge at `s` in \[0, 1\].

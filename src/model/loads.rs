@@ -386,7 +386,7 @@ fn each_force_on_boundary(
     for &edge in space.mesh().edges_of(name)? {
         let (length, normal) = space.mesh().length_and_normal(edge);
         let ends = space.mesh().places_of_ends(edge);
-        let nodes = &space.edge_nodes(edge);
+        let nodes = &space.edge_nodes(edge).collect::<Vec<_>>();
         rule.on_edge(ends, [], |point| match value(point.x, normal.into()) {
             Ok(t) => {
                 let value = point.weight * length * t;

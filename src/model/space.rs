@@ -78,9 +78,9 @@ impl<'a> Space<'a> {
     }
 
     /// The nodes on a boundary edge: start, end, then the midpoint if there is one.
-    pub fn edge_nodes(&self, edge: BoundaryEdge) -> Vec<usize> {
+    pub fn edge_nodes(&self, edge: BoundaryEdge) -> impl Iterator<Item = usize> {
         let nodes = self.nodes_of(edge.triangle);
-        self.degree.edge_nodes(edge.local).into_iter().map(|k| nodes[k]).collect()
+        self.degree.edge_nodes(edge.local).map(|k| nodes[k])
     }
 
     /// The nodal values of `field` on triangle `t`.

@@ -330,7 +330,7 @@ fn groups(d: &Discretization) -> Vec<Vec<usize>> {
             groups.push(Vec::new());
             continue;
         }
-        let nodes = d.space.edge_nodes(edge.edge());
+        let nodes: Vec<usize> = d.space.edge_nodes(edge.edge()).collect();
         let group = |a: usize| {
             let known = of_end.entry((nodes[a], &**edge.boundary())).or_default();
             let direction = edge.geometry.nodes[a].direction;

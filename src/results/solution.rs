@@ -315,16 +315,16 @@ fn contact_edge(
     let (sigma_n, jumps) = (piece.sigma_n(u), piece.jumps(u));
     let response = piece.geometry.law.responses()[0];
     let displacement = |stretch: &Stretch, a: usize| {
-        let nodes = d.space.edge_nodes(stretch.edge);
         [0, 1].map(|c| {
-            let values: Vec<f64> = nodes.iter().map(|&node| u[node][c]).collect();
+            let values: Vec<f64> =
+                d.space.edge_nodes(stretch.edge).map(|node| u[node][c]).collect();
             degree.value_at(&values, stretch.positions[a])
         })
     };
     let value = |(a, s): (usize, f64)| {
         let PieceNode { direction, gap, .. } = piece.geometry.nodes[a];
         let node = match &stretches[..] {
-            [only] => Some(d.space.edge_nodes(only.edge)[a]),
+            [only] => d.space.edge_nodes(only.edge).nth(a),
             _ => None,
         };
         let each = stretches.iter().map(|stretch| displacement(stretch, a));
@@ -345,8 +345,7 @@ fn contact_edge(
             shear: piece.shear_at(p, a) + 0.0,
         }
     };
-    let mut points: Vec<ContactPoint> =
-        degree.edge_positions().into_iter().enumerate().map(value).collect();
+    let mut points: Vec<ContactPoint> = degree.edge_positions().enumerate().map(value).collect();
     points.sort_by(|a, b| a.arc.total_cmp(&b.arc));
     let name = |k: usize| stretches.get(k).map(|stretch| Arc::clone(&stretch.boundary));
     ContactEdge { boundary: Arc::clone(&stretches[side].boundary), partner: name(1 - side), points }

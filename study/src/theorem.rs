@@ -102,7 +102,7 @@ fn projection(d: &Discretization, exact: &dyn ExactSolution) -> Result<Vec<[f64;
     let rule = Rule::new(exact.features(), errors::POINTS);
     for edge in &d.contact {
         let ends = d.space.mesh().places_of_ends(edge.edge());
-        let (nodes, normal) = (d.space.edge_nodes(edge.edge()), edge.normal());
+        let (nodes, normal) = (d.space.edge_nodes(edge.edge()).collect::<Vec<_>>(), edge.normal());
         rule.on_edge(ends, [], |point| {
             let sigma_n = exact.stress(point.x).normal(normal);
             let shapes = d.space.degree().edge_values(point.s);

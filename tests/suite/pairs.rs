@@ -149,7 +149,7 @@ fn with_geometry(d: &Discretization, change: impl Fn(&mut PieceGeometry)) -> Vec
 fn with_stress(d: &Discretization, factor: impl Fn(&Piece, usize) -> f64) -> Vec<Piece> {
     let changed = |piece: &Piece| {
         let mut changed = piece.clone();
-        let positions = piece.degree.edge_positions();
+        let positions: Vec<f64> = piece.degree.edge_positions().collect();
         for (i, side) in piece.sides.iter().enumerate() {
             let by = factor(piece, i);
             for j in side.entries.clone() {

@@ -93,7 +93,7 @@ impl Sums {
             rule.on_edge(mesh.ends(edge).map(|v| mesh.vertices()[v]), [], |point| {
                 let t = solution.stress(point.x).traction(n);
                 let shapes: [f64; M] = E::edge_values(point.s);
-                for (node, shape) in d.space.edge_nodes(edge).into_iter().zip(shapes) {
+                for (node, shape) in d.space.edge_nodes(edge).zip(shapes) {
                     for c in 0..2 {
                         self.add(node, c, -terms.load * point.weight * length * t[c] * shape);
                     }

@@ -74,7 +74,7 @@ impl<'a, 'p> At<'a, 'p> {
     /// The field that has these values of n . v at the nodes of the edge, and is 0 elsewhere.
     fn field(&self, values: Vec<f64>) -> Vec<[f64; 2]> {
         let mut v = vec![[0.0; 2]; self.d.space.nodes().len()];
-        for (node, value) in self.d.space.edge_nodes(self.edge().edge()).into_iter().zip(values) {
+        for (node, value) in self.d.space.edge_nodes(self.edge().edge()).zip(values) {
             v[node][1] = -value;
         }
         v
@@ -208,7 +208,7 @@ fn holds_on(degree: Degree, rule: EdgeRule, kappa: f64, share: f64) -> Result<f6
     let mut nearest: f64 = 0.0;
     for (s, hold) in places.into_iter().zip(&holds) {
         let mut component = Mat::zeros(count - 1, 1);
-        let nodes = d.space.edge_nodes(at.edge().edge()).into_iter().zip(degree.edge_values(s));
+        let nodes = d.space.edge_nodes(at.edge().edge()).zip(degree.edge_values(s));
         for ((node, shape), Term { at: x, along: [_, y], .. }) in nodes.zip(&hold.terms) {
             let place = d.space.nodes()[node];
             let near = |ball: kernel::Ball, value: f64| {

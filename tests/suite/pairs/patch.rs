@@ -206,7 +206,7 @@ fn unmerged(d: &Discretization) -> Vec<Piece> {
     let whole = with_geometry(d, |geometry| {
         let [own, other] = [0, 1].map(|i| geometry.stretches[i].positions.clone());
         let slope = (other[1] - other[0]) / (own[1] - own[0]);
-        for (a, s) in d.space.degree().edge_positions().into_iter().enumerate() {
+        for (a, s) in d.space.degree().edge_positions().enumerate() {
             geometry.stretches[0].positions[a] = s;
             geometry.stretches[1].positions[a] = other[0] + (s - own[0]) * slope;
         }

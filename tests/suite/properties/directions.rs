@@ -58,10 +58,10 @@ fn functionals_on(degree: Degree, plane: Plane, directions: Directions) -> Outco
         }
         let p = edge.p(v);
         let nodes = degree.edge_nodes(edge.edge().local);
-        for (a, s) in degree.edge_positions().into_iter().enumerate() {
+        for (a, (node, s)) in nodes.zip(degree.edge_positions()).enumerate() {
             let along = (1.0 - s) * stress[0] + s * stress[1];
             let expected =
-                n[a].dot(&vectors[nodes[a]]) - edge.gamma * along - edge.geometry.nodes[a].gap;
+                n[a].dot(&vectors[node]) - edge.gamma * along - edge.geometry.nodes[a].gap;
             if !near(p[a], expected) {
                 return Err(format!("P(v) = {}, by definition {expected}", p[a]));
             }

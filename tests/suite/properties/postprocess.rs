@@ -307,7 +307,7 @@ fn recovered_from(d: &Discretization, u: Vec<[f64; 2]>, across: bool) -> Outcome
         .contact
         .iter()
         .map(|line| {
-            let nodes = d.space.edge_nodes(line.edge()).into_iter();
+            let nodes = d.space.edge_nodes(line.edge());
             nodes.map(|node| key(d.space.nodes()[node], line.normal().into())).collect()
         })
         .collect();
