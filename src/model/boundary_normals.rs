@@ -102,48 +102,47 @@ pub(crate) fn smooth_normals(
         (length, Vector2::new(along.y, -along.x) / length)
     };
     let facets: Vec<(f64, Vector2<f64>)> = ends.iter().map(facet).collect();
-    // The edges that end and that start at each vertex: one each, but where parts of the body touch in a point.
-    let mut around: BTreeMap<usize, [Vec<usize>; 2]> = BTreeMap::new();
-    for (e, &[start, end]) in ends.iter().enumerate() {
-        around.entry(end).or_default()[0].push(e);
-        around.entry(start).or_default()[1].push(e);
+    // How many edges end and start at each vertex, and the last of these: one each, but where parts of the body touch in a point.
+    let vertices = ends.as_flattened().iter().max().map_or(0, |last| last + 1);
+    let mut around = vec![[(0, 0); 2]; vertices];
+    for (e, ends) in ends.iter().enumerate() {
+        for (&vertex, k) in ends.iter().zip([1, 0]) {
+            let (count, last) = &mut around[vertex][k];
+            (*count, *last) = (*count + 1, e);
+        }
     }
     let passage = |vertex: usize| -> Option<Passage> {
-        let [before, after] = around.get(&vertex)?;
-        let (&[before], &[after]) = (&before[..], &after[..]) else { return None };
+        let [(1, before), (1, after)] = around[vertex] else { return None };
         let (n, m) = (facets[before].1, facets[after].1);
         let bend = n.perp(&m).atan2(n.dot(&m));
-        let straight = bend.abs() <= NO_ANGLE.max(rounding(before)).max(rounding(after));
+        let is_rounding = |e: usize| bend.abs() <= rounding(e);
+        let straight = bend.abs() <= NO_ANGLE || is_rounding(before) || is_rounding(after);
         Some(Passage { before, after, bend, straight })
     };
     let bend_at = |vertex: usize| passage(vertex).map_or(f64::INFINITY, |p| p.bend);
     let straight = |vertex: usize| passage(vertex).is_some_and(|p| p.straight);
 
     // The normal that both edges share at a vertex, where they share one.
-    let mut shared: BTreeMap<usize, Vector2<f64>> = BTreeMap::new();
-    for &vertex in around.keys() {
-        let Some(Passage { before, after, bend, straight: false }) = passage(vertex) else {
-            continue;
-        };
-        if bend.abs() > SMOOTH.to_radians() {
-            continue;
-        }
+    let shared = |vertex: usize| -> Option<Vector2<f64>> {
+        let passage =
+            passage(vertex).filter(|p| !p.straight && p.bend.abs() <= SMOOTH.to_radians());
+        let Passage { before, after, bend, .. } = passage?;
         let [previous, _] = ends[before];
         let [_, next] = ends[after];
         let (behind, ahead) = (bend_at(previous), bend_at(next));
         let arc_starts = |beyond: f64| beyond * bend > 0.0 && bend.abs() <= beyond.abs();
         let ((a, n), (b, m)) = (facets[before], facets[after]);
-        let normal = match (straight(previous), straight(next)) {
+        match (straight(previous), straight(next)) {
             (true, true) => None,
             (true, false) => arc_starts(ahead).then_some(n),
             (false, true) => arc_starts(behind).then_some(m),
             (false, false) => Some(unit(n / a + m / b)),
-        };
-        shared.extend(normal.map(|normal| (vertex, normal)));
-    }
+        }
+    };
+    let shared: Vec<Option<Vector2<f64>>> = (0..vertices).map(shared).collect();
 
     let both = |(ends, &(_, facet)): (&[usize; 2], &(f64, Vector2<f64>))| {
-        let own = ends.map(|vertex| shared.get(&vertex).copied());
+        let own = ends.map(|vertex| shared[vertex]);
         Some(match own {
             [Some(start), Some(end)] => [start, end],
             [Some(start), None] if straight(ends[1]) => [start, facet],

@@ -279,11 +279,10 @@ impl Mesh {
         &self,
         names: impl IntoIterator<Item = &'n str>,
     ) -> Result<(), MeshError> {
-        let mut name_of: BTreeMap<usize, &str> = BTreeMap::new();
+        let mut name_of: Vec<Option<&str>> = vec![None; self.edge_count()];
         for name in names {
             for &edge in self.edges_of(name)? {
-                let number = self.topology.triangle_edges[edge.triangle][edge.local];
-                if let Some(first) = name_of.insert(number, name) {
+                if let Some(first) = name_of[self.number_of(edge)].replace(name) {
                     let names = [first, name].map(str::to_owned);
                     return Err(MeshError::NamedTwice { ends: self.places_of_ends(edge), names });
                 }
