@@ -93,13 +93,17 @@ fn contact_edges(problem: &Problem) -> Result<Vec<(BoundaryEdge, &str)>, DataErr
 
 /// Sorts edges or pieces into chains, in which each item starts where the item before it ends.
 fn chains<T, K: Ord + Copy>(items: Vec<T>, ends: impl Fn(&T) -> [K; 2]) -> Vec<T> {
+    let follows = |before: &T, after: &T| ends(before)[1] == ends(after)[0];
+    let is_closed = items.first().zip(items.last()).is_some_and(|(a, b)| follows(b, a));
+    if !is_closed && items.is_sorted_by(follows) {
+        return items;
+    }
     let targets: BTreeSet<K> = items.iter().map(|item| ends(item)[1]).collect();
     let mut from: BTreeMap<K, T> = items.into_iter().map(|item| (ends(&item)[0], item)).collect();
     // First the chains that have a beginning, then the closed ones.
-    let mut starts: Vec<K> = from.keys().copied().collect();
-    starts.sort_by_key(|start| targets.contains(start));
+    let (closed, open): (Vec<K>, Vec<K>) = from.keys().partition(|start| targets.contains(start));
     let mut chained = Vec::with_capacity(from.len());
-    for start in starts {
+    for start in open.into_iter().chain(closed) {
         let mut next = from.remove(&start);
         while let Some(item) = next {
             next = from.remove(&ends(&item)[1]);
@@ -270,27 +274,17 @@ impl<S> Share<S> {
 /// kappa on each triangle: the sum over its edges and their partners. Of pieces on different parts of one edge the `largest`
 /// counts, for their integrals add up to at most that over the edge.
 pub(crate) fn by_triangle<S: Scalar>(
-    shares: Vec<Share<S>>,
+    mut shares: Vec<Share<S>>,
     largest: impl Fn(S, S) -> S,
 ) -> BTreeMap<usize, S> {
-    let mut groups: Vec<Vec<Share<S>>> = Vec::new();
-    let mut number = BTreeMap::new();
-    for share in shares {
-        let group = *number.entry(share.place.clone()).or_insert(groups.len());
-        if group == groups.len() {
-            groups.push(Vec::new());
-        }
-        groups[group].push(share);
-    }
+    shares.sort_by(|a, b| a.place.cmp(&b.place).then(a.part[0].total_cmp(&b.part[0])));
     let mut sums = BTreeMap::new();
-    for mut group in groups {
-        group.sort_by(|a, b| a.part[0].total_cmp(&b.part[0]));
+    for group in shares.chunk_by(|a, b| a.place == b.place) {
         let apart = group.windows(2).all(|pair| pair[0].part[1] <= pair[1].part[0]);
-        let triangle = group[0].place.0;
-        let values = group.into_iter().map(|share| share.value);
+        let values = group.iter().map(|share| share.value);
         let value = values.reduce(|a, b| if apart { largest(a, b) } else { a + b });
         if let Some(value) = value {
-            *sums.entry(triangle).or_insert(S::from(0)) += value;
+            *sums.entry(group[0].place.0).or_insert(S::from(0)) += value;
         }
     }
     sums
