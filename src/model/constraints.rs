@@ -63,7 +63,7 @@ struct Demand<'a> {
 }
 
 /// The demands at each node.
-type Demands<'a> = BTreeMap<usize, Vec<Demand<'a>>>;
+type Demands<'a> = Vec<Vec<Demand<'a>>>;
 
 impl Constraints {
     /// The constraints of a problem.
@@ -72,7 +72,7 @@ impl Constraints {
     /// A value that is not finite, or two that disagree.
     pub fn new(problem: &Problem, space: &Space) -> Result<Self, DataError> {
         let mut demands = demands(problem, space)?;
-        let all = demands.values().flatten();
+        let all = demands.iter().flatten();
         let largest = all.fold(0.0, |max: f64, demand| max.max(demand.value.abs()));
         let mut constraints = Constraints {
             values: vec![[None; 2]; space.nodes().len()],
@@ -82,7 +82,7 @@ impl Constraints {
             rounding: rounding_of_supports(problem)?,
             of_revolution: problem.material.are_of_revolution(),
         };
-        for (&node, at_node) in &mut demands {
+        for (node, at_node) in demands.iter_mut().enumerate().filter(|(_, of)| !of.is_empty()) {
             // Coordinate directions first: a value that is given for a component is taken as it is.
             at_node.sort_by_key(|demand| demand.axis().is_none());
             let tolerances = [NO_ANGLE.max(constraints.rounding), ROUNDED * largest];
@@ -129,7 +129,10 @@ impl Constraints {
                 return;
             }
             let held = Held { node, direction: demand.direction, dual };
-            self.holders.entry(demand.name.to_owned()).or_default().push(held);
+            match self.holders.get_mut(demand.name) {
+                Some(holders) => holders.push(held),
+                None => drop(self.holders.insert(demand.name.to_owned(), vec![held])),
+            }
         };
         match demands {
             [one] => {
@@ -285,13 +288,13 @@ fn independent<'d, 'a>(
 /// All demands of a problem, in the alphabetical order of the boundaries, those of points last.
 fn demands<'a>(problem: &'a Problem, space: &Space) -> Result<Demands<'a>, DataError> {
     let mesh = space.mesh();
-    let mut demands = Demands::new();
+    let mut demands: Demands = space.nodes().iter().map(|_| Vec::new()).collect();
     let mut ask = |node: usize,
                    name: &'a str,
                    direction: [f64; 2],
                    function: &SharedFunction,
                    key: &dyn Fn() -> String| {
-        let at_node: &mut Vec<Demand> = demands.entry(node).or_default();
+        let at_node = &mut demands[node];
         // Both edges at a node ask.
         if at_node.iter().all(|d| d.name != name || d.direction != direction) {
             let value = finite(&**function, space.nodes()[node], key)?;
@@ -344,7 +347,7 @@ fn demands<'a>(problem: &'a Problem, space: &Space) -> Result<Demands<'a>, DataE
         for (node, [x, _]) in space.nodes().iter().enumerate() {
             if *x == 0.0 {
                 let demand = Demand { name: AXIS, direction: AXES[0], value: 0.0 };
-                demands.entry(node).or_default().push(demand);
+                demands[node].push(demand);
             }
         }
     }
