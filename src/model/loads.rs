@@ -124,15 +124,33 @@ pub(crate) struct LoadVector {
 pub(crate) fn assemble_twice(problem: &Problem, space: &Space) -> Result<LoadVector, DataError> {
     let mut in_doubles = vec![[0.0; 2]; space.nodes().len()];
     let mut in_balls = vec![[PreciseBall::from(0.0); 2]; space.nodes().len()];
+    // Those at corners with one factor at a node, as [`Shapes::for_corner`] says, are added up before they are multiplied by it.
+    let none = [[PreciseBall::from(0.0); 2]; 2];
+    let mut at_corners = vec![none; space.nodes().len()];
     each_force(problem, space, enough(tested(problem, space)), |force| {
         force.add_to(&force.shapes.in_doubles, &mut in_doubles);
-        force.add_to(&force.shapes.in_balls, &mut in_balls);
+        let Some(corner) = force.shapes.corner else {
+            return force.add_to(&force.shapes.in_balls, &mut in_balls);
+        };
+        for (j, &node) in force.nodes.iter().enumerate() {
+            at_corners[node][force.c][usize::from(j % 3 != corner)] += force.value.into();
+        }
     })?;
+    let factors = [0, 1].map(|k| Shapes::for_corner(space.degree(), k).in_balls);
+    let vertices = space.mesh().vertices().len();
+    for (node, (load, sums)) in in_balls.iter_mut().zip(&at_corners).enumerate() {
+        let j = if node < vertices { 0 } else { 3 };
+        for c in (0..2).filter(|&c| sums[c] != none[c]) {
+            load[c] += sums[c][0] * factors[0][j] + sums[c][1] * factors[1][j];
+        }
+    }
     Ok(LoadVector { in_doubles, in_balls })
 }
 
 /// The shape functions at a point of a triangle or an edge.
 struct Shapes {
+    /// The corner, where they are those of [`Shapes::for_corner`].
+    corner: Option<usize>,
     in_doubles: Vec<f64>,
     in_balls: Vec<PreciseBall>,
 }
@@ -141,13 +159,15 @@ impl Shapes {
     /// At barycentric coordinates.
     fn inside(degree: Degree, l: [f64; 3]) -> Self {
         with_element!(degree, E => Shapes {
+            corner: None,
             in_doubles: E::values(l).to_vec(),
             in_balls: E::values(l.map(PreciseBall::from)).to_vec(),
         })
     }
 
     /// For an affine load, whose value is that at the corners times their barycentric coordinates: the integrals of corner k's times
-    /// the shape functions, beside a third of the area.
+    /// the shape functions, beside a third of the area. They differ between corners and middles of edges, and between corner k with
+    /// the edge opposite (nodes k and 3 + k) and the others; that is all.
     fn for_corner(degree: Degree, k: usize) -> Self {
         let ratio = |a: i32, b: i32| PreciseBall::from(a) / PreciseBall::from(b);
         let near = |i: usize| std::array::from_fn(|j| ratio(if i == j { 3 } else { 1 }, 5));
@@ -160,12 +180,14 @@ impl Shapes {
             let weight = weight * PreciseBall::from(3) * l[k];
             in_balls.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
         }
-        Shapes { in_doubles: in_balls.iter().map(|ball| ball.head()).collect(), in_balls }
+        let in_doubles = in_balls.iter().map(|ball| ball.head()).collect();
+        Shapes { corner: Some(k), in_doubles, in_balls }
     }
 
     /// Between the ends of an edge, from 0 to 1.
     fn on_edge(degree: Degree, s: f64) -> Self {
         with_element!(degree, E => Shapes {
+            corner: None,
             in_doubles: E::edge_values(s).to_vec(),
             in_balls: E::edge_values(PreciseBall::from(s)).to_vec(),
         })
@@ -397,4 +419,45 @@ fn each_force_on_boundary(
         });
     }
     wrong.map_or(Ok(()), Err)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::io::Expression;
+    use crate::kernel::{Material, Plane};
+    use crate::model::Mesh;
+
+    /// Some ten operations on numbers of size 1; in balls, with twice the digits, the square.
+    const ROUNDING: f64 = 1e-14;
+
+    #[test]
+    fn forces_at_corners_that_are_added_up_before_they_are_multiplied_are_those_in_doubles() {
+        let corners = vec![[0.0, 0.0], [1.0, 0.1], [0.9, 0.8], [-0.2, 1.0]];
+        let mesh = Mesh::new(corners, vec![[0, 1, 2], [2, 3, 0]], []).unwrap();
+        let affine = |text: &str| -> SharedFunction {
+            Arc::new(text.parse::<Expression>().expect("a valid expression"))
+        };
+        let force = [affine("1 + 2*x - y"), affine("x - 3*y")];
+        let problem =
+            Problem::new(mesh, Material::lame(1.0, 1.0, Plane::Strain), force, BTreeMap::new());
+        for degree in [Degree::One, Degree::Two] {
+            let space = Space::new(&problem.mesh, degree);
+            let load = assemble_twice(&problem, &space).unwrap();
+            let at_points = assemble_with(&problem, &space, |_| 3).unwrap();
+            let balls = || load.in_balls.as_flattened().iter();
+            for in_doubles in [&load.in_doubles, &at_points] {
+                for (ball, double) in balls().zip(in_doubles.as_flattened()) {
+                    assert!((ball.head() - double).abs() < ROUNDING, "{ball:?} {double}");
+                    assert!(ball.radius() < ROUNDING * ROUNDING, "{ball:?}");
+                }
+            }
+            // Control: no two forces are the same, so that one in another's place is seen.
+            let mut forces: Vec<f64> = balls().map(|ball| ball.head()).collect();
+            forces.sort_unstable_by(f64::total_cmp);
+            assert!(forces.windows(2).all(|pair| pair[1] - pair[0] > 1e-6), "{forces:?}");
+        }
+    }
 }
