@@ -208,15 +208,21 @@ impl Paths<'_> {
     }
 }
 
-/// The prescribed components at vertices, whose places are exact, with one triangle at each.
+/// The prescribed components at nodes, with one triangle at each.
 fn supports(space: &Space, constraints: &Constraints) -> Vec<Hold> {
     let mut holds = Vec::new();
-    let mut seen = vec![false; space.nodes().len()];
+    let is_held = |values: &[Option<f64>; 2]| values.iter().any(Option::is_some);
+    let mut waits: Vec<bool> = constraints.values().iter().map(is_held).collect();
     for (triangle, nodes) in space.elements().enumerate() {
-        for &node in nodes {
-            if !std::mem::replace(&mut seen[node], true) {
+        for (k, &node) in nodes.iter().enumerate() {
+            if std::mem::take(&mut waits[node]) {
                 let exactly = |x: [f64; 2]| x.map(Ball::point);
-                let at = exactly(space.nodes()[node]);
+                let [from, to] = [1, 2].map(|i| exactly(space.nodes()[nodes[(k + i) % 3]]));
+                let at = match k {
+                    0..3 => exactly(space.nodes()[node]),
+                    // The place of a middle is rounded.
+                    _ => [0, 1].map(|c| (from[c] + to[c]) * Ball::point(0.5)),
+                };
                 holds.extend(constraints.directions(node).map(|direction| Hold {
                     terms: vec![Term { triangle, at, along: exactly(direction) }],
                     most: 0.0,
@@ -451,6 +457,30 @@ mod tests {
             let korn = Korn::new(&space, &problem.material, &constraints, &[]);
             assert_eq!(korn.is_some(), held);
         }
+    }
+
+    #[test]
+    fn the_places_of_supports_are_those_of_the_mesh_and_not_what_is_rounded() {
+        let vertices = [[0.1, 0.0], [1.0, 0.3], [0.0, 1.0]];
+        let named = [("first".to_owned(), vec![[0, 1]])];
+        let mesh = Mesh::new(vertices.to_vec(), vec![[0, 1, 2]], named).unwrap();
+        let problem = Problem::of(mesh, Material::lame(3.0, 0.7, Plane::Strain))
+            .with("first", Condition::clamped());
+        let space = Space::new(&problem.mesh, Degree::Two);
+        let constraints = Constraints::new(&problem, &space).unwrap();
+        let holds = supports(&space, &constraints);
+        let [a, b] = [0, 1].map(|i| vertices[i].map(PreciseBall::from));
+        let middle = [0, 1].map(|c| (a[c] + b[c]) / PreciseBall::from(2));
+        // Two components at each node of the edge.
+        for (k, place) in [a, a, b, b, middle, middle].into_iter().enumerate() {
+            for (at, exact) in holds[k].terms[0].at.into_iter().zip(place) {
+                let off = PreciseBall::from(at) - exact;
+                assert!(off.lower() <= 0.0 && off.upper() >= 0.0 && off.magnitude() < 1e-15);
+            }
+        }
+        assert_eq!(holds.len(), 6);
+        let rounded = PreciseBall::from(space.nodes()[space.nodes_of(0)[5]][0]);
+        assert!((rounded - middle[0]).least_magnitude() > 0.0, "control");
     }
 
     /// The mean over a triangle of the square of an affine function, with a weight: both have these values at the corners.
