@@ -28,8 +28,8 @@ use super::isolated::{self, Isolated, MOST_ENTRIES, MOST_FUNCTIONALS};
 use super::pressed::{self, Pressed};
 use crate::contact::Discretization;
 use crate::held::solvability::Slides;
-use crate::kernel::DoubleDouble;
 use crate::kernel::ball::{PreciseBall, up};
+use crate::kernel::{Ball, DoubleDouble};
 use crate::linear::factor::Factor;
 use crate::linear::system::{Factored, System};
 use crate::model::rigid::NEGLIGIBLE;
@@ -654,13 +654,13 @@ fn dual_norm(
         }
         let (mut az, off) = a.times(&z);
         let off = up(off / coercivity.sqrt());
-        let mut square = PreciseBall::from(0);
+        let mut square = Ball::from(0);
         for (az, (&z, &r)) in az.iter_mut().zip(z.iter().zip(r)) {
-            square += z * *az;
+            square += z.rounded() * az.rounded();
             *az = r - *az;
         }
         // x^2 = z . A z is off q = z . az by off x at most, so x <= off + q^(1/2).
-        let energy = up(off + root(square));
+        let energy = up(off + root(square.into()));
         left = Cow::Owned(az);
         let rest = up(weighted(&left, crude) + off);
         let norm = up(energy + rest);
