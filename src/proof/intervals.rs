@@ -240,11 +240,15 @@ impl EnclosedResidual {
 
         let mut max_displacement = [0.0_f64; 2];
         for (u, by) in u.iter().zip(nodes) {
-            let [a, b] = u.map(PreciseBall::least_magnitude);
-            let low = (a * a + b * b).sqrt() * (1.0 - 16.0 * f64::EPSILON);
-            let low = (low - by) * (1.0 - 2.0 * f64::EPSILON);
             let high = up(length(*u) + by);
-            max_displacement = [max_displacement[0].max(low), max_displacement[1].max(high)];
+            max_displacement[1] = max_displacement[1].max(high);
+            // A length below what the largest is at least makes no difference.
+            if high > max_displacement[0] {
+                let [a, b] = u.map(PreciseBall::least_magnitude);
+                let low = (a * a + b * b).sqrt() * (1.0 - 16.0 * f64::EPSILON);
+                let low = (low - by) * (1.0 - 2.0 * f64::EPSILON);
+                max_displacement[0] = max_displacement[0].max(low);
+            }
         }
 
         let mut contact: Vec<(&Piece, [PreciseBall; 3], f64)> = Vec::new();
@@ -297,12 +301,13 @@ impl EnclosedResidual {
         lines: &Lines,
         [rho, pressure]: [f64; 2],
     ) -> BTreeMap<String, [Range; 2]> {
+        let zero = PreciseBall::from(0);
+        let mut test = vec![[zero; 2]; self.u.len()];
         let of = |(boundary, held): (&String, &Vec<crate::model::constraints::Held>)| {
             let ranges = [0, 1].map(|c| {
                 // The reaction is the residual at this field.
-                let zero = PreciseBall::from(0);
-                let (mut test, mut reaction) = (vec![[zero; 2]; self.u.len()], zero);
-                for held in held {
+                let mut reaction = zero;
+                for held in held.iter().filter(|held| held.direction[c] != 0.0) {
                     let direction = PreciseBall::from(held.direction[c]);
                     for k in 0..2 {
                         let part = direction * PreciseBall::from(held.dual[k]);
@@ -322,6 +327,7 @@ impl EnclosedResidual {
                     sum + line.whole_weight() * PreciseBall::from(most) * PreciseBall::from(most)
                 });
                 let by_contact = root(by_contact);
+                held.iter().for_each(|held| test[held.node] = [zero; 2]);
                 range(reaction.widened(up((rho + self.off) * by_body + pressure * by_contact)))
             });
             (boundary.clone(), ranges)
