@@ -413,12 +413,14 @@ fn energy_norm_of<E: Element<N, M>, const N: usize, const M: usize>(
     v: &[[PreciseBall; 2]],
 ) -> f64 {
     let moduli = Moduli::of_each(&d.problem.material);
+    // The tails are below a unit of the heads.
+    let size = |v: &PreciseBall| v.head().abs() + v.radius();
+    let sizes: Vec<f64> = v.iter().map(|v| v.iter().map(size).sum()).collect();
     let mut square = 0.0;
-    for (t, (triangle, nodes)) in d.space.triangles::<N>().enumerate() {
-        // The tails are below a unit of the heads.
-        let size = |v: PreciseBall| v.head().abs() + v.radius();
-        let size: f64 = nodes.iter().flat_map(|&node| v[node]).map(size).sum();
+    for (t, nodes) in d.space.elements_of::<N>().iter().enumerate() {
+        let size: f64 = nodes.iter().map(|&node| sizes[node]).sum();
         if size != 0.0 {
+            let triangle = d.space.mesh().triangle(t);
             let gradients = Gradients::new(&triangle);
             let mut strain = E::DEGREE as f64 * gradients.slope * size;
             let mut weight = gradients.area;
