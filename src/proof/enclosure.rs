@@ -601,8 +601,7 @@ impl Product<'_, '_, '_> {
     /// the b that comes with it.
     fn times(&self, z: &[PreciseBall]) -> (Vec<PreciseBall>, f64) {
         let v = field(self.system, |number, _, _| z[number], |_, _| 0.0);
-        let mut forces = vec![[PreciseBall::from(0); 2]; v.len()];
-        let off = self.arithmetic.add_small_forces(self.system.d, &v, &mut forces);
+        let (mut forces, off) = self.arithmetic.small_forces(self.system.d, &v);
         let off = self.arithmetic.add_stresses(self.system.d, self.lines, &v, (&mut forces, off));
         self.pressed.add_springs(self.lines, &v, &mut forces);
         (free(self.system, &forces), off)

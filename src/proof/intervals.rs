@@ -84,17 +84,18 @@ impl Arithmetic {
         }
     }
 
-    /// Adds them for a displacement that is next to nothing, where sums in doubles do.
-    pub(super) fn add_small_forces(
+    /// a(u, v) for every basis function v, likewise, for a displacement that is next to nothing, where sums in doubles do.
+    pub(super) fn small_forces(
         self,
         d: &Discretization,
         u: &[[PreciseBall; 2]],
-        forces: &mut [[PreciseBall; 2]],
-    ) -> f64 {
-        match self {
-            Arithmetic::Doubles => rounded_stress::add_small_forces(d, u, forces),
-            Arithmetic::Balls => self.add_forces(d, u, forces),
+    ) -> (Vec<[PreciseBall; 2]>, f64) {
+        if self == Arithmetic::Doubles {
+            return rounded_stress::small_forces(d, u);
         }
+        let mut forces = vec![[PreciseBall::from(0); 2]; u.len()];
+        let off = self.add_forces(d, u, &mut forces);
+        (forces, off)
     }
 
     /// Adds -int gamma sigma_n(u) sigma_n(v) for every basis function v; returns what the `bound` of the functional by which the forces

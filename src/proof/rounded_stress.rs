@@ -34,13 +34,9 @@ pub fn add_forces(
     )
 }
 
-/// [`add_forces`] with sums in doubles, their rounding in the radii, for very small displacements.
-pub fn add_small_forces(
-    d: &Discretization,
-    u: &[[PreciseBall; 2]],
-    forces: &mut [[PreciseBall; 2]],
-) -> f64 {
-    let mut sums = vec![[RoundedSum::default(); 2]; forces.len()];
+/// The forces of [`add_forces`] by sums in doubles, their rounding in the radii, for very small displacements; and the bound.
+pub fn small_forces(d: &Discretization, u: &[[PreciseBall; 2]]) -> (Vec<[PreciseBall; 2]>, f64) {
+    let mut sums = vec![[RoundedSum::default(); 2]; u.len()];
     let bound = each_force(
         d,
         u,
@@ -55,10 +51,7 @@ pub fn add_small_forces(
             Part::Hoop { stress, area } => sums[node][0].add([stress * area.head(), 0.0]),
         },
     );
-    for (force, sum) in forces.iter_mut().zip(&sums) {
-        *force = [0, 1].map(|c| force[c] + sum[c].enclosed());
-    }
-    bound
+    (sums.into_iter().map(|sum| sum.map(RoundedSum::enclosed)).collect(), bound)
 }
 
 /// A sum of products of doubles, and a bound of its error in units of roundoff.
@@ -122,9 +115,13 @@ fn each_force_of<E: Element<N, M>, const N: usize, const M: usize>(
     u: &[[PreciseBall; 2]],
     mut add: impl FnMut(usize, Part),
 ) -> f64 {
-    let mut points = Vec::new();
-    E::at_stiffness_points(|l: [f64; 3], weight: f64| points.push((l, weight)));
-    let terms = Term::all::<E, M>(&points);
+    let (mut points, mut count) = ([([0.0; 3], 0.0); N], 0);
+    E::at_stiffness_points(|l: [f64; 3], weight: f64| {
+        points[count] = (l, weight);
+        count += 1;
+    });
+    let points = &points[..E::POINTS];
+    let terms = Term::all::<E, M>();
     let moduli = Moduli::of_each(&d.problem.material);
     let hoop_terms = HoopTerm::all::<E, N, M>();
     let mut stresses = [[0.0; 3]; N];
@@ -136,7 +133,7 @@ fn each_force_of<E: Element<N, M>, const N: usize, const M: usize>(
         if moves_as_a_whole(nodes, u) && (radii.is_none() || nodes.iter().all(is_still)) {
             continue;
         }
-        let nodal = nodes.map(|node| u[node]);
+        let nodal = nodes.map(|node| &u[node]);
         let rounded = RoundedStrain::new::<E, M>(Gradients::new(&triangle), nodal);
         let moduli = &moduli[d.problem.material.place_of(t)];
         if let Some(radii) = radii {
@@ -147,11 +144,11 @@ fn each_force_of<E: Element<N, M>, const N: usize, const M: usize>(
                 let gradient = rounded.gradient::<E, M>(l);
                 states[a] = material.stress_of_revolution(gradient, hoop.strains[a]);
             }
-            for (b, at) in stresses.iter_mut().enumerate().take(points.len()) {
-                *at = axial::weighted(&hoop.mass, &states, b, points.len()).components();
+            for (b, at) in stresses.iter_mut().enumerate().take(E::POINTS) {
+                *at = axial::weighted(&hoop.mass, &states, b, E::POINTS).components();
             }
             let mut hoops = [states.map(|(_, hoop)| hoop)];
-            if points.len() > 1 {
+            if E::POINTS > 1 {
                 make_sums_exact(&mut hoops);
             }
             let double_area = exactly::<PreciseBall>(triangle).double_area();
@@ -166,10 +163,11 @@ fn each_force_of<E: Element<N, M>, const N: usize, const M: usize>(
                 *at = rounded.stress::<E, M>(material, l).components().map(|s| weight * s);
             }
         }
-        if points.len() > 1 {
-            make_sums_exact(&mut stresses);
+        let stresses = &mut stresses[..E::POINTS];
+        if E::POINTS > 1 {
+            make_sums_exact(stresses);
         }
-        each_part(&terms, &stresses[..points.len()], (&triangle, nodes), &mut add);
+        each_part(&terms, stresses, (&triangle, nodes), &mut add);
     }
     SAFETY * square.sqrt()
 }
@@ -183,10 +181,11 @@ fn each_part<const N: usize>(
     add: &mut impl FnMut(usize, Part),
 ) {
     // The area times the gradient of a barycentric coordinate is half a normal.
-    let normals = [0, 1, 2].map(|i| {
-        let [from, to] = [1, 2].map(|k| triangle.vertices[(i + k) % 3] * 0.5);
+    let half = triangle.vertices.map(|x| x * 0.5);
+    let normal = |from: Vector2<f64>, to: Vector2<f64>| {
         [DoubleDouble::sum(from[1], -to[1]), DoubleDouble::sum(to[0], -from[0])]
-    });
+    };
+    let normals = [normal(half[1], half[2]), normal(half[2], half[0]), normal(half[0], half[1])];
     for Term { node, side, coefficients } in terms {
         let mut sum = [0.0; 3];
         for (coefficient, stress) in coefficients.iter().zip(stresses) {
@@ -209,10 +208,10 @@ struct Term<const N: usize> {
 impl<const N: usize> Term<N> {
     /// Those that are not zero. At the points of the rules the gradients of the shape functions are sums of those of the
     /// barycentric coordinates, each once or twice, with either sign.
-    fn all<E: Element<N, M>, const M: usize>(points: &[([f64; 3], f64)]) -> Vec<Term<N>> {
+    fn all<E: Element<N, M>, const M: usize>() -> Vec<Term<N>> {
         let unit = [Vector3::x(), Vector3::y(), Vector3::z()];
-        let at: Vec<[Vector3<f64>; N]> =
-            points.iter().map(|&(l, _)| E::gradients(l, unit)).collect();
+        let mut at: Vec<[Vector3<f64>; N]> = Vec::new();
+        E::at_stiffness_points(|l: [f64; 3], _: f64| at.push(E::gradients(l, unit)));
         let term = |node: usize, side: usize| {
             let mut coefficients = [0.0; N];
             for (coefficient, gradients) in coefficients.iter_mut().zip(&at) {
@@ -249,7 +248,8 @@ impl HoopTerm {
 
 /// Rounds numbers to multiples of one power of two, by no more than 2^-50 of the largest: their sums are then exact, while these
 /// are less than eight times the largest.
-fn make_sums_exact<const N: usize>(numbers: &mut [[f64; 3]; N]) {
+#[inline(always)]
+fn make_sums_exact(numbers: &mut [[f64; 3]]) {
     let largest = numbers.iter().flatten().fold(0.0, |m: f64, s| m.max(s.abs()));
     // The power of two just below.
     let power = f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits());
@@ -278,9 +278,7 @@ fn add_contact_stresses_of<E: Element<N, M>, const N: usize, const M: usize>(
     u: &[[PreciseBall; 2]],
     forces: &mut [[PreciseBall; 2]],
 ) -> f64 {
-    let mut points = Vec::new();
-    E::at_stiffness_points(|l: [f64; 3], weight: f64| points.push((l, weight)));
-    let terms = Term::all::<E, M>(&points);
+    let terms = Term::all::<E, M>();
     let moduli = Moduli::of_each(&d.problem.material);
     let mut square = 0.0;
     for piece in d.contact.iter().filter(|piece| is_plain(piece)) {
@@ -294,18 +292,19 @@ fn add_contact_stresses_of<E: Element<N, M>, const N: usize, const M: usize>(
         for (a, factor) in factors.into_iter().enumerate() {
             let outer = piece.direction(a) * normal.transpose();
             let of_unit = d.problem.material.of(t).stress(outer).components();
-            for (p, stress) in stresses.iter_mut().enumerate().take(points.len()) {
-                let share = factor * at_vertex(points.len(), p, (local + 1 + a) % 3);
+            for (p, stress) in stresses.iter_mut().enumerate().take(E::POINTS) {
+                let share = factor * at_vertex(E::POINTS, p, (local + 1 + a) % 3);
                 *stress = [0, 1, 2].map(|k| stress[k] + share * of_unit[k]);
             }
         }
-        if points.len() > 1 {
-            make_sums_exact(&mut stresses);
+        let stresses = &mut stresses[..E::POINTS];
+        if E::POINTS > 1 {
+            make_sums_exact(stresses);
         }
         let add = &mut |node: usize, part: Part| part.add_to(&mut forces[node]);
-        each_part(&terms, &stresses[..points.len()], (&triangle, nodes), add);
+        each_part(&terms, stresses, (&triangle, nodes), add);
         let Moduli { most, least } = moduli[d.problem.material.place_of(t)];
-        let largest = points.len() as f64 * 2.0 * most * weight * size / area;
+        let largest = E::POINTS as f64 * 2.0 * most * weight * size / area;
         let more = f64::EPSILON * (40.0 + 4.0 * skew) * largest + f64::MIN_POSITIVE;
         // Up to three edges of a triangle are on Gamma_C.
         square += more * (2.0 * off + 3.0 * more) * (area / least) + f64::MIN_POSITIVE;
@@ -383,7 +382,7 @@ impl<'d, const N: usize> RoundedPiece<'d, N> {
         let (triangle, material) = (d.space.mesh().triangle(t), d.problem.material.of(t));
         let nodes = &d.space.elements_of::<N>()[t];
         let strain =
-            RoundedStrain::new::<E, M>(Gradients::new(&triangle), nodes.map(|node| u[node]));
+            RoundedStrain::new::<E, M>(Gradients::new(&triangle), nodes.map(|node| &u[node]));
         let (mut p, mut size, mut traces) = (0, 0.0, [0.0; 2]);
         E::at_stiffness_points(|l: [f64; 3], _: f64| {
             let stress = strain.stress::<E, M>(material, l);
@@ -515,7 +514,7 @@ struct RoundedHoop {
 impl RoundedHoop {
     fn new<E: Element<N, M>, const N: usize, const M: usize>(
         radii: [f64; 3],
-        nodal: [[PreciseBall; 2]; N],
+        nodal: [&[PreciseBall; 2]; N],
     ) -> Self {
         let radial = nodal.map(|u| u[0].head());
         let mass = axial::mass::<E, _, _, _>(radii);
@@ -559,16 +558,16 @@ impl<const N: usize> RoundedStrain<N> {
     #[inline(always)]
     fn new<E: Element<N, M>, const M: usize>(
         gradients: Gradients,
-        nodal: [[PreciseBall; 2]; N],
+        nodal: [&[PreciseBall; 2]; N],
     ) -> Self {
         let first = nodal[0];
-        let difference = |u: [PreciseBall; 2], c: usize| {
+        let difference = |u: &[PreciseBall; 2], c: usize| {
             (u[c].head() - first[c].head()) + (u[c].centre().tail() - first[c].centre().tail())
         };
         let differences = nodal.map(|u| Vector2::new(difference(u, 0), difference(u, 1)));
         // The absolute part of the error of the differences: what each node adds, and the first one to each.
         let of = |u: &PreciseBall| 2.0 * f64::EPSILON * u.centre().tail().abs() + u.radius();
-        let off = nodal.iter().flatten().map(of).sum::<f64>()
+        let off = nodal.into_iter().flatten().map(of).sum::<f64>()
             + N as f64 * (of(&first[0]) + of(&first[1]));
         let slope = E::DEGREE as f64 * gradients.slope;
         let sizes: f64 = differences.iter().flatten().map(|d| d.abs()).sum();

@@ -59,8 +59,7 @@ fn rounding_of_stresses(degree: Degree, problem: &Problem, by: f64) -> Result<f6
         .collect();
     let mut sums = [vec![[PreciseBall::from(0); 2]; nodes], vec![[PreciseBall::from(0); 2]; nodes]];
     let bound = rounded_stress::add_forces(&d, &u, &mut sums[0]);
-    let mut in_doubles = vec![[PreciseBall::from(0); 2]; nodes];
-    rounded_stress::add_small_forces(&d, &u, &mut in_doubles);
+    let (in_doubles, _) = rounded_stress::small_forces(&d, &u);
     let pairs = in_doubles.as_flattened().iter().zip(sums[0].as_flattened());
     let of_sums = pairs.map(|(&sum, &exact)| {
         (PreciseBall::point(sum.centre()) - exact).magnitude() / sum.radius()
