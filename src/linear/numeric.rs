@@ -17,7 +17,7 @@ use crate::linear::matrix::LowerTriangle;
 use crate::solve::SolveError;
 
 /// Multiplications with an addition from which a packed product takes less time than loops.
-const PACKED: usize = 8192;
+const PACKED: usize = 16384;
 
 /// Columns of a supernode from which its block on the diagonal is left to faer.
 const WIDE: usize = 32;
