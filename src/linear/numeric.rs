@@ -161,12 +161,7 @@ fn store<S: Simd, const V: usize>(_: S, to: &mut [f64], vectors: [S::f64s; V]) {
 
 /// x <- x + y b
 #[inline(always)]
-fn add_product<S: Simd, const V: usize>(
-    simd: S,
-    x: &mut [S::f64s; V],
-    y: &[S::f64s; V],
-    b: f64,
-) {
+fn add_product<S: Simd, const V: usize>(simd: S, x: &mut [S::f64s; V], y: &[S::f64s; V], b: f64) {
     let b = simd.splat_f64s(b);
     for v in 0..V {
         x[v] = simd.add_f64s(x[v], simd.mul_f64s(y[v], b));
@@ -225,7 +220,13 @@ impl<F: Fn(usize) -> bool> WithSimd for Factorisation<'_, F> {
                     let [of_d, width] = structure.shape(d);
                     let values = &left[structure.start(d)..structure.start(d) + of_d * width];
                     let (source, from) = (Block { values, rows: of_d }, width + used[d]);
-                    source.subtract_square(simd, (from, inside), &local, (&mut *block, rows), &mut sums);
+                    source.subtract_square(
+                        simd,
+                        (from, inside),
+                        &local,
+                        (&mut *block, rows),
+                        &mut sums,
+                    );
                 }
                 used[d] += inside;
                 if let Some(&row) = pattern.get(inside) {
