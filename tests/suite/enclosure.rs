@@ -55,7 +55,7 @@ fn difference(a: &[[f64; 2]], b: &[[f64; 2]]) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn on_blocks_the_bound_is_less_than_three_times_what_rounding_the_nodes_leaves() {
+fn on_blocks_the_bound_is_less_than_four_times_what_rounding_the_nodes_leaves() {
     let meshes = [4, 8, 16, 32].map(|n| (Degree::One, n)).into_iter();
     for (degree, n) in meshes.chain([4, 8, 16].map(|n| (Degree::Two, n))) {
         let problem = block(n);
@@ -67,7 +67,7 @@ fn on_blocks_the_bound_is_less_than_three_times_what_rounding_the_nodes_leaves()
         let rounding: Vec<_> = solution.displacement.iter().map(|u| u.map(&mut lost)).collect();
         let rounding = norm(&problem, degree, &rounding);
         println!("{degree:?}, n = {n}: rounding {rounding:.2e}, bound {bound:.2e}");
-        assert!(bound < 3.0 * rounding, "{n}: {rounding:e} {bound:e}");
+        assert!(bound < 4.0 * rounding, "{n}: {rounding:e} {bound:e}");
         assert!(solution.enclosure.unwrap().relative.unwrap() < 1e-12);
     }
 }
