@@ -474,8 +474,8 @@ impl WithSimd for Backward<'_> {
                     let known = load::<_, V>(simd, &local[i..]);
                     for c in 0..C {
                         let column = load::<_, V>(simd, &panel[c * rows + i..]);
-                        let mut products = simd.mul_f64s(column[0], known[0]);
-                        for v in 1..V {
+                        let mut products = simd.splat_f64s(0.0);
+                        for v in 0..V {
                             products = simd.add_f64s(products, simd.mul_f64s(column[v], known[v]));
                         }
                         own[c] += simd.reduce_sum_f64s(products);
