@@ -1,7 +1,7 @@
 //! The numbers of the sparse Cholesky factor L of H = L L^T in its [structure](super::factor::Structure), supernode by supernode,
-//! looking to the left, and the substitutions with it. Small supernodes, most of all in number, are done by plain loops, compiled for the
-//! instructions that the processor has; large ones by faer. faer's own supernodal factorisation calls its packed products for each:
-//! on a strip, where a product has a hundred terms, that takes several times as many instructions.
+//! looking to the left, and the substitutions with it. Small supernodes, most of all in number, are done in tiles of a constant size, some rows by
+//! some columns, whose sums stay in the registers of the processor; large ones by faer. faer's own supernodal factorisation calls its
+//! packed products for each: on a strip, where a product has a hundred terms, that takes several times as many instructions.
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
@@ -16,7 +16,7 @@ use crate::linear::cholesky;
 use crate::linear::matrix::LowerTriangle;
 use crate::solve::SolveError;
 
-/// Multiplications with an addition from which a packed product takes less time than loops.
+/// Multiplications with an addition from which a packed product takes less time than tiles.
 const PACKED: usize = 16384;
 
 /// Columns of a supernode from which its block on the diagonal is left to faer.
