@@ -309,8 +309,8 @@ factorisations). A body that the other one alone holds is factored on a few spri
 /// What stands in place of [`large`].
 pub const NOT_LARGE: &str = "## Large
 
-A square of P2 with n = 1118, one run of `-- --huge` on 2026-11-26: 10,008,338 unknowns, 117 s and 7.5 s for the proof of 4e-12, 16
-Newton steps, 18.8 GB.
+A square of P2 with n = 1118, one run of `-- --huge` on 2026-11-28: 10,008,338 unknowns, 73 s and 4.4 s for the proof of 4e-12, 9
+Newton steps, 18.4 GB.
 ";
 
 /// One run each in a process of its own.
