@@ -213,15 +213,17 @@ impl Scene {
 }
 
 /// Takes the wave out of a pressure of quadratic triangles that rises and falls from node to node: each value inside a stretch of
-/// contact becomes the mean of itself and of the mean of its neighbours.
+/// contact becomes the mean of itself and of the mean of its neighbours, but the largest, which the summary names.
 fn smooth(part: &mut [ContactPoint]) {
     let before = part.to_vec();
+    let largest = before.iter().map(|sample| sample.pressure).fold(0.0, f64::max);
     for (i, sample) in part.iter_mut().enumerate() {
         let is_other = |other: &&ContactPoint| other.arc != before[i].arc;
         let neighbours =
             [before[..i].iter().rev().find(is_other), before[i..].iter().find(is_other)];
         if let [Some(a), Some(b)] = neighbours
             && a.pressure.min(b.pressure).min(sample.pressure) > 0.0
+            && sample.pressure < largest
         {
             sample.pressure = sample.pressure / 2.0 + (a.pressure + b.pressure) / 4.0;
         }
