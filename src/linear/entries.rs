@@ -38,9 +38,6 @@ impl Entries {
 
     /// A copy; `None` if there is no memory for one.
     pub(super) fn copied(&self) -> Option<Self> {
-        if let Entries::Short(entries) = self {
-            return Some(Entries::Short(entries.clone()));
-        }
         let mut copy = Entries::zeros(self.len())?;
         copy.copy_from_slice(self);
         Some(copy)

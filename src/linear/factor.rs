@@ -35,12 +35,12 @@ pub(crate) struct Structure {
     starts: Vec<usize>,
 }
 
-/// How much of a supernode may be zeros where two are joined (faer's `relax`): its own shares, by nodes of two columns each.
+/// Up to how many nodes two supernodes are joined in which this share is zero (faer's `relax`): fewer than faer joins, as on strips.
 const RELAX: &[(usize, f64)] = &[(2, 0.6), (8, 0.4), (24, 0.1), (usize::MAX, 0.05)];
 
 impl Structure {
-    /// The structure of the factor of a matrix with this pattern, by faer from that of its [nodes](Nodes), which takes a quarter of
-    /// the time.
+    /// The structure of the factor of a matrix with this pattern, by faer from that of its [nodes](Nodes), which has a quarter of
+    /// the entries.
     ///
     /// # Errors
     /// [`SolveError::OutOfMemory`].
@@ -75,7 +75,7 @@ impl Structure {
     fn of_columns(nodes: &Nodes, symbolic: &SymbolicSupernodalCholesky<usize>) -> Self {
         let mut structure = Structure {
             columns: vec![0],
-            supernodes: Vec::with_capacity(nodes.columns.len()),
+            supernodes: Vec::with_capacity(nodes.of.len()),
             rows_below: vec![0],
             rows: Vec::new(),
             starts: vec![0],
